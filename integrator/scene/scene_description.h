@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "integrator/geometry/polygon_mesh.h"
+#include "integrator/scene/texture_source.h"
+#include "integrator/values/rgb.h"
+#include "integrator/values/vec.h"
+
+namespace pm {
+
+// Object to world, 3 x 4, row-major: p' = M[:, 0:3] p + M[:, 3].
+using Transform = std::array<double, 12>;
+inline constexpr Transform kIdentityTransform = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+
+enum class MaterialKind { kSurface, kMirror, kDielectric };
+
+// A material as the host gives it: numbers, each multiplied by its texture where it has one.
+// Units and ranges as PmrMaterialDesc in pm_plugin.h.
+struct MaterialDescription {
+    std::string name;
+    MaterialKind kind = MaterialKind::kSurface;
+    bool fresnelMirror = false;
+    Rgb diffuse;
+    Rgb glossy;
+    float glossyExponent = 0.0f;
+    float ior = 1.5f;
+    Rgb transmission{1.0f};
+    Rgb emission;
+    float transparency = 0.0f;
+    std::int32_t diffuseTexture = kNoTexture;
+    std::int32_t glossyTexture = kNoTexture;
+    std::int32_t glossyExponentTexture = kNoTexture;
+    std::int32_t transmissionTexture = kNoTexture;
+    std::int32_t emissionTexture = kNoTexture;
+    std::int32_t opacityTexture = kNoTexture;
+};
+
+// An analytic sphere in object space; its front is outside. Under a transform it must stay a
+// sphere: rotation, translation, uniform scale.
+struct SphereShape {
+    Vec3d centre;
+    double radius = 1.0;  // > 0, scene units
+};
+
+using Shape = std::variant<std::shared_ptr<const TriangleMesh>, SphereShape>;
+
+struct InstanceDescription {
+    Shape shape;
+    Transform transform = kIdentityTransform;
+    std::vector<std::uint32_t> materials;  // index into SceneDescription::materials for each slot
+    std::string name;
+    std::uint32_t id = 0;
+};
+
+// A light without area that shines equally in all directions.
+struct PointLightDescription {
+    Vec3d position;  // world
+    Rgb intensity;   // W/sr
+    std::string name;
+};
+
+// A pinhole camera that looks along -z of its transform, +y up, +x right.
+struct CameraDescription {
+    Transform cameraToWorld = kIdentityTransform;
+    double verticalFieldOfView = 0.7;  // radians, in (0, pi)
+    double pixelAspect = 1.0;          // width of a pixel over its height
+};
+
+struct SceneDescription {
+    std::vector<MaterialDescription> materials;
+    std::vector<InstanceDescription> instances;
+    std::vector<PointLightDescription> pointLights;
+    std::optional<CameraDescription> camera;
+    std::shared_ptr<const TextureSource> textures;  // may be null when no material names one
+    std::string renderingSpace = "linear Rec.709";
+    std::array<double, 9> rgbToXyz{};
+};
+
+}  // namespace pm

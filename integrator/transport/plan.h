@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "integrator/transport/render_settings.h"
+#include "integrator/values/notice.h"
+
+namespace pm {
+
+class Scene;
+
+// What a scene needs: computed once from scene and settings, obeyed by everything after it. What is
+// not planned is not built, not traced, not allocated.
+struct Plan {
+    bool tracePhotons = false;
+    bool globalMap = false;   // the scene has indirect diffuse light to gather
+    bool causticMap = false;  // light can reach a diffuse surface by way of a specular one
+    std::uint64_t globalPhotons = 0;   // emitted a pass for the global map (and the caustic one)
+    std::uint64_t causticPhotons = 0;  // emitted a pass for the caustic map alone
+    std::uint64_t mapBytes = 0;        // estimated peak of the maps
+    std::vector<std::string> reasons;  // one line each: what and why
+    std::vector<Notice> notices;
+
+    // The lines that --explain prints.
+    std::string explain() const;
+};
+
+// Pure: depends on its arguments only.
+Plan makePlan(const Scene& scene, const RenderSettings& settings);
+
+}  // namespace pm

@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <cstdint>
+
+#include "integrator/values/rect.h"
+
+namespace pm {
+
+enum class IntegratorKind { kPhoton, kPath };
+
+// Everything that a picture depends on beside the scene. Ranges are checked by whoever fills it.
+struct RenderSettings {
+    std::int32_t width = 640;   // pixels of the frame
+    std::int32_t height = 480;
+    Rect window{0, 0, 640, 480};  // pixels to render; may exceed the frame
+    IntegratorKind integrator = IntegratorKind::kPhoton;
+    std::uint64_t photons = 0;           // emitted a pass; 0 = chosen by the plan
+    std::uint32_t estimatePhotons = 50;  // k of the k-nearest estimates, >= 2
+    std::uint32_t gatherRays = 1;        // final-gather rays a sample, >= 1
+    std::uint32_t passes = 4;            // >= 1
+    std::uint32_t aaLevel = 3;           // 1..6: 4^(level-1) samples a pixel in four passes
+    std::uint64_t seed = 1;
+    bool wantAlbedo = false;
+    bool wantNormal = false;
+    bool wantDepth = false;
+};
+
+}  // namespace pm

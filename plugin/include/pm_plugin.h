@@ -1,0 +1,481 @@
+/* SPDX-License-Identifier: Apache-2.0
+ * SPDX-FileCopyrightText: The pm authors
+ *
+ * pm_plugin.h - the C interface of pm, a photon-mapping bucket renderer. C11; the only public
+ * header.
+ *
+ * How a host uses it
+ *     load libpm_plugin.so, look up pmrGetApi, ask for PMR_ABI_VERSION, and call through the table:
+ *     createContext -> createMesh / createMaterial / ... -> createScene, addInstance, setCamera,
+ *     commitScene -> createRender, setSetting..., startRender -> callbacks, readPixels ->
+ *     destroyRender, release...
+ *
+ * Conventions
+ *   - Every function returns a PmrStatus: PMR_OK or a negative code. lastError gives the text.
+ *   - Structs hold fixed-width integers, float, double and pointers only. Their first member is
+ *     their size in bytes as the caller was compiled; a larger struct than the library knows is
+ *     accepted when its unknown tail is zero, a smaller one is read as if the rest were zero, so
+ *     zero always means "the default". Use PMR_INIT.
+ *   - Text is UTF-8, ends with 0, and numbers in it have a dot in any locale.
+ *   - Arrays are copied before the call returns, unless said otherwise.
+ *   - Right-handed coordinates; lengths in scene units; angles in radians; radiance in
+ *     W m^-2 sr^-1 for each channel of the scene-linear rendering space; flux in W.
+ *   - Rectangles are half-open pixels [x0,x1) x [y0,y1), origin top left, y down.
+ *   - Transforms are 3 x 4 doubles, row-major, object to world: p' = M[:, 0:3] p + M[:, 3].
+ *   - Nothing throws, exits, prints, installs a signal handler or reads an environment variable.
+ *   - A handle that was released is recognised: PMR_ERROR_HANDLE, never a crash.
+ *
+ * Threads
+ *   All functions may be called from any thread. Calls on one scene that is not committed yet, and
+ *   on one render before startRender, are for one thread at a time. cancelRender, readPixels,
+ *   renderState, renderStatistics and the enumerations may be called at any time, also inside a
+ *   callback. Inside a callback waitRender, pollRender, destroyRender and releaseContext return
+ *   PMR_ERROR_IN_CALLBACK. Callbacks of one render come one at a time: from a thread of the
+ *   library (PMR_CALLBACKS_THREAD) or from inside pollRender (PMR_CALLBACKS_POLL).
+ *
+ * States of a render
+ *   CREATED --startRender--> RUNNING --(done, failed, cancelled)--> FINISHED
+ *   Settings change only in CREATED. `finished` is called exactly once and last of all callbacks.
+ *   destroyRender is allowed in every state; it cancels, waits for the workers, and drops events
+ *   that were not delivered yet, except `finished`, which it delivers.
+ */
+#ifndef PM_PLUGIN_H
+#define PM_PLUGIN_H
+
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#if defined(_WIN32)
+#define PMR_CALL __cdecl
+#define PMR_EXPORT __declspec(dllexport)
+#else
+#define PMR_CALL
+#define PMR_EXPORT __attribute__((visibility("default")))
+#endif
+
+#define PMR_ABI_VERSION 1u
+
+/* Zeroes a struct and sets its size: PmrMeshDesc mesh = PMR_INIT(PmrMeshDesc); */
+#ifdef __cplusplus
+#define PMR_INIT(Type)              \
+    ([] {                           \
+        Type zeroed{};              \
+        zeroed.size = sizeof(Type); \
+        return zeroed;              \
+    }())
+#else
+#define PMR_INIT(Type) \
+    { .size = sizeof(Type) }
+#endif
+
+/* ---- Status ------------------------------------------------------------------------------- */
+
+typedef int32_t PmrStatus;
+#define PMR_OK 0
+#define PMR_ERROR_INTERNAL (-1)     /* a fault of the library */
+#define PMR_ERROR_ARGUMENT (-2)     /* null pointer, bad size, value outside its range */
+#define PMR_ERROR_HANDLE (-3)       /* not a live handle of the kind that is wanted */
+#define PMR_ERROR_STATE (-4)        /* not allowed in this state (see the head of this file) */
+#define PMR_ERROR_SCENE (-5)        /* the scene can't be rendered as it is */
+#define PMR_ERROR_UNSUPPORTED (-6)  /* a kind that this version does not render yet */
+#define PMR_ERROR_MEMORY (-7)       /* out of memory, or over the memory limit */
+#define PMR_ERROR_IO (-8)           /* a file can't be read */
+#define PMR_ERROR_CANCELLED (-9)    /* the render was cancelled: a result, not a fault */
+#define PMR_ERROR_IN_CALLBACK (-10) /* not allowed inside a callback */
+#define PMR_ERROR_TIMEOUT (-11)     /* waitRender or pollRender: nothing yet */
+#define PMR_ERROR_ABI (-12)         /* this ABI version is not offered */
+#define PMR_ERROR_NAME (-13)        /* no setting or layer of that name */
+
+/* ---- Handles: opaque; never dereferenced by the host -------------------------------------- */
+
+typedef struct PmrContextHandle* PmrContext;
+typedef struct PmrMeshHandle* PmrMesh; /* polygon mesh, subdivision cage or sphere */
+typedef struct PmrTextureHandle* PmrTexture;
+typedef struct PmrMaterialHandle* PmrMaterial;
+typedef struct PmrSceneHandle* PmrScene;
+typedef struct PmrRenderHandle* PmrRender;
+
+/* ---- Messages ----------------------------------------------------------------------------- */
+
+#define PMR_LEVEL_DEBUG 0
+#define PMR_LEVEL_INFO 1
+#define PMR_LEVEL_WARNING 2
+#define PMR_LEVEL_ERROR 3
+
+/* Codes of messages; texts may change, codes don't. Statistics count warnings by code. */
+#define PMR_MESSAGE_NONE 0
+#define PMR_MESSAGE_NO_LIGHT 100            /* nothing emits: the picture will be black */
+#define PMR_MESSAGE_NO_PHOTONS 101          /* photons were traced and none reached a surface */
+#define PMR_MESSAGE_NO_CAUSTIC_PHOTONS 102  /* specular surfaces, but an empty caustic map */
+#define PMR_MESSAGE_BAD_VALUES 103          /* NaN or infinite samples were replaced by 0 */
+#define PMR_MESSAGE_LOST_PHOTONS 104        /* photons ended for a numerical reason */
+#define PMR_MESSAGE_DEGENERATE_GEOMETRY 105 /* zero-area triangles or unusable normals dropped */
+#define PMR_MESSAGE_TEXTURE 106             /* a texture look-up failed */
+#define PMR_MESSAGE_NOT_COVERED 107         /* a class of light paths that no estimator covers */
+#define PMR_MESSAGE_PHASE 200               /* info: a phase began or ended */
+
+/* render is null for messages of the context (creation of objects, commit). */
+typedef void(PMR_CALL* PmrMessageFunction)(void* user, PmrRender render, int32_t level,
+                                           int32_t code, const char* text);
+
+typedef struct PmrContextDesc {
+    uint64_t size;
+    PmrMessageFunction message; /* may be null; called by the thread that calls into the context */
+    void* user;
+    const char* isa;  /* instruction set of the ray tracer: "best" (also null), "sse2", "sse4.2",
+                         "avx", "avx2", "avx512"; the same bits on unlike machines need the same */
+    uint32_t threads; /* for building scenes; 0 = all that affinity and cgroup allow */
+    uint32_t reserved;
+} PmrContextDesc;
+
+/* ---- Geometry ----------------------------------------------------------------------------- */
+
+#define PMR_NO_INDEX 0xffffffffu
+
+/* A polygon mesh. Faces of 3 and more corners, in winding order: counter-clockwise seen from the
+ * front. Normals and texture coordinates belong to corners through indices of their own. */
+typedef struct PmrMeshDesc {
+    uint64_t size;
+    const float* positions; /* 3 x positionCount, object space, scene units */
+    uint64_t positionCount;
+    const uint32_t* faceSizes; /* faceCount numbers of corners; null = all triangles */
+    uint64_t faceCount;
+    const uint32_t* indices; /* indexCount = sum of the face sizes */
+    uint64_t indexCount;
+    const float* normals; /* 3 x normalCount, or null */
+    uint64_t normalCount;
+    const uint32_t* normalIndices; /* indexCount; PMR_NO_INDEX = the face's own; null = indices */
+    const float* uvs;              /* 2 x uvCount, or null; origin bottom left */
+    uint64_t uvCount;
+    const uint32_t* uvIndices;     /* indexCount; PMR_NO_INDEX = none (0,0); null = indices */
+    const uint32_t* materialSlots; /* faceCount slots < slotCount; null = all 0 */
+    uint64_t slotCount;            /* 0 counts as 1 */
+} PmrMeshDesc;
+
+#define PMR_SCHEME_CATMULL_CLARK 0
+#define PMR_SCHEME_LOOP 1
+#define PMR_SCHEME_BILINEAR 2
+#define PMR_BOUNDARY_EDGE_AND_CORNER 0
+#define PMR_BOUNDARY_EDGE_ONLY 1
+#define PMR_BOUNDARY_NONE 2
+
+/* A subdivision cage, rendered as its limit surface. The mesh's normals are not used. */
+typedef struct PmrCageDesc {
+    uint64_t size;
+    const PmrMeshDesc* mesh;
+    int32_t scheme;
+    int32_t boundary;
+    const uint32_t* creases; /* 2 x creaseCount vertex indices */
+    const float* creaseSharpness;
+    uint64_t creaseCount;
+    const uint32_t* corners; /* cornerCount vertex indices */
+    const float* cornerSharpness;
+    uint64_t cornerCount;
+    const uint32_t* holes; /* holeCount face indices */
+    uint64_t holeCount;
+    uint32_t tessellationRate; /* segments along a regular face's edge, 1 to 64; 0 = 4 */
+    uint32_t reserved;
+} PmrCageDesc;
+
+/* An analytic sphere, one material slot. Its front is outside. */
+typedef struct PmrSphereDesc {
+    uint64_t size;
+    double centre[3]; /* object space */
+    double radius;    /* > 0, scene units */
+} PmrSphereDesc;
+
+/* ---- Textures and materials --------------------------------------------------------------- */
+
+#define PMR_WRAP_REPEAT 0
+#define PMR_WRAP_CLAMP 1
+#define PMR_WRAP_MIRROR 2
+#define PMR_WRAP_BLACK 3
+
+/* A picture by file name, its texels already in the rendering space (or data). Tiled, mip-mapped
+ * .tx files are much faster than others. value = base + gain * texel. */
+typedef struct PmrTextureDesc {
+    uint64_t size;
+    const char* fileName;
+    int32_t wrapS;
+    int32_t wrapT;
+    float uvScale[2]; /* 0 counts as 1 */
+    float uvOffset[2];
+    float gain; /* 0 counts as 1 */
+    float base;
+} PmrTextureDesc;
+
+#define PMR_MATERIAL_SURFACE 0    /* diffuse, plus a glossy lobe */
+#define PMR_MATERIAL_MIRROR 1     /* glossy colour as reflectance */
+#define PMR_MATERIAL_DIELECTRIC 2 /* smooth boundary of a medium of index ior; front = outside */
+
+/* A texture multiplies the number beside it. All reflectances in [0,1]. Materials are two-sided
+ * but for emission, which leaves the front. */
+typedef struct PmrMaterialDesc {
+    uint64_t size;
+    const char* name; /* for messages; may be null */
+    int32_t kind;
+    int32_t fresnel; /* mirrors: 1 = Schlick's Fresnel with the glossy colour at normal incidence */
+    float diffuse[3];     /* SURFACE: Lambertian reflectance */
+    float glossy[3];      /* SURFACE: reflectance of the Phong lobe at normal incidence; MIRROR */
+    float glossyExponent; /* SURFACE: exponent of the Phong lobe, >= 0; MIRROR: 0 = perfect */
+    float ior; /* DIELECTRIC: index of refraction inside relative to outside, > 0; 0 = 1.5 */
+    float transmission[3]; /* DIELECTRIC: tint at each transmission */
+    float emission[3];     /* radiance of the front, W m^-2 sr^-1 */
+    float transparency;    /* share of light that passes straight through (cut-outs); 0 = opaque */
+    float reserved;
+    PmrTexture diffuseTexture;
+    PmrTexture glossyTexture;
+    PmrTexture glossyExponentTexture;
+    PmrTexture transmissionTexture;
+    PmrTexture emissionTexture;
+    PmrTexture opacityTexture; /* opacity = (1 - transparency) * texel */
+} PmrMaterialDesc;
+
+/* ---- Scenes ------------------------------------------------------------------------------- */
+
+typedef struct PmrSceneDesc {
+    uint64_t size;
+    const char* renderingSpace; /* name, for the record; null = "linear Rec.709" */
+    double rgbToXyz[9];         /* row-major; all zero = linear Rec.709 (D65) */
+} PmrSceneDesc;
+
+typedef struct PmrInstanceDesc {
+    uint64_t size;
+    PmrMesh mesh;
+    const double* transforms;     /* 12 x transformCount; null = identity */
+    uint64_t transformCount;      /* time samples; 0 or 1 accepted in this version */
+    const PmrMaterial* materials; /* one for each slot of the mesh */
+    uint64_t materialCount;
+    const char* name; /* may be null */
+    uint32_t id;
+    uint32_t reserved;
+} PmrInstanceDesc;
+
+#define PMR_LIGHT_POINT 0 /* intensity, W/sr, in all directions */
+#define PMR_LIGHT_SPOT 1  /* intensity inside a cone along -z */
+#define PMR_LIGHT_DIRECTIONAL \
+    2 /* irradiance, W/m^2, on a surface that faces it; travels along -z */
+
+/* Lights without area. Area lights are instances whose material emits. */
+typedef struct PmrLightDesc {
+    uint64_t size;
+    int32_t kind;
+    uint32_t id;
+    const double* transforms; /* 12 x transformCount; null = identity */
+    uint64_t transformCount;
+    float emission[3];
+    float coneAngle;     /* spot: half angle of the whole cone */
+    float coneFalloff;   /* spot: angle inside it over which the light fades */
+    float angularRadius; /* directional: half angle of the disc */
+    const char* name;
+} PmrLightDesc;
+
+typedef struct PmrEnvironmentDesc {
+    uint64_t size;
+    float radiance[3];
+    float reserved;
+    PmrTexture texture;       /* latitude-longitude, may be null */
+    const double* transforms; /* rotation */
+    uint64_t transformCount;
+} PmrEnvironmentDesc;
+
+#define PMR_CAMERA_PERSPECTIVE 0
+#define PMR_CAMERA_ORTHOGRAPHIC 1
+#define PMR_CAMERA_PANORAMA 2
+
+/* Looks along -z of its transform, +y up, +x right. */
+typedef struct PmrCameraDesc {
+    uint64_t size;
+    int32_t kind;
+    int32_t reserved;
+    const double* transforms; /* 12 x transformCount */
+    uint64_t transformCount;
+    double fieldOfView; /* perspective: vertical, radians, in (0, pi) */
+    double height;      /* orthographic: scene units */
+    double lensRadius;  /* depth of field; 0 = pinhole */
+    double focusDistance;
+    double pixelAspect; /* 0 = 1 */
+} PmrCameraDesc;
+
+/* ---- Settings ------------------------------------------------------------------------------ */
+
+#define PMR_SETTING_INTEGER 0
+#define PMR_SETTING_NUMBER 1
+#define PMR_SETTING_CHOICE 2 /* one of `choices` */
+#define PMR_SETTING_TEXT 3
+
+/* What a host needs to make a panel or a manual. Texts belong to the library and live as long. */
+typedef struct PmrSettingInfo {
+    uint64_t size;
+    const char* name;
+    const char* unit;        /* "" = none */
+    const char* defaultText; /* as setSettingText takes it */
+    const char* choices;     /* CHOICE: separated by commas; else "" */
+    const char* help;        /* one line */
+    const char* cost;        /* one line: what it costs in time or memory */
+    double minimum;          /* INTEGER and NUMBER, both ends allowed */
+    double maximum;
+    int32_t type;
+    int32_t changesPixels; /* 1 when the picture depends on it */
+} PmrSettingInfo;
+
+/* ---- Layers (AOVs) ------------------------------------------------------------------------- */
+
+#define PMR_LAYER_COLOUR 0
+#define PMR_LAYER_DATA 1
+
+typedef struct PmrLayerInfo {
+    uint64_t size;
+    const char* name;     /* "beauty", "direct", "albedo", "N", ... */
+    const char* channels; /* full channel names for files, separated by commas: "N.X,N.Y,N.Z" */
+    const char* help;
+    uint32_t channelCount;
+    int32_t kind;      /* PMR_LAYER_COLOUR or PMR_LAYER_DATA */
+    int32_t isDefault; /* rendered without being asked for */
+    int32_t reserved;
+} PmrLayerInfo;
+
+/* ---- Renders ------------------------------------------------------------------------------- */
+
+typedef struct PmrRectangle {
+    int32_t x0, y0, x1, y1;
+} PmrRectangle;
+
+typedef struct PmrBucketInfo {
+    uint64_t size;
+    PmrRectangle rectangle;
+    uint32_t bucketIndex; /* in the order of rendering */
+    uint32_t bucketCount; /* of one pass */
+    uint32_t passIndex;   /* the pass that just came, from 0 */
+    uint32_t passCount;
+    uint64_t sampleCount; /* camera samples in this bucket and pass */
+} PmrBucketInfo;
+
+#define PMR_CALLBACKS_THREAD 0
+#define PMR_CALLBACKS_POLL 1
+
+#define PMR_RENDER_CREATED 0
+#define PMR_RENDER_RUNNING 1
+#define PMR_RENDER_FINISHED 2
+
+typedef void(PMR_CALL* PmrProgressFunction)(void* user, PmrRender render, double fraction,
+                                            double remainingSeconds); /* NaN: not known yet */
+typedef void(PMR_CALL* PmrBucketFunction)(void* user, PmrRender render,
+                                          const PmrBucketInfo* bucket);
+typedef void(PMR_CALL* PmrFinishedFunction)(void* user, PmrRender render, PmrStatus status);
+
+typedef struct PmrRenderDesc {
+    uint64_t size;
+    int32_t callbackMode;
+    int32_t reserved;
+    void* user;
+    PmrMessageFunction message; /* each may be null */
+    PmrProgressFunction progress;
+    PmrBucketFunction bucketStarted;
+    PmrBucketFunction bucketFinished;
+    PmrFinishedFunction finished;
+} PmrRenderDesc;
+
+/* ---- The table ------------------------------------------------------------------------------ */
+
+/* Functions are only ever appended. Texts that functions write to a buffer: `needed`, when not
+ * null, receives the bytes wanted, the closing 0 included; a buffer that is too small gets what
+ * fits, ended by 0, and PMR_ERROR_ARGUMENT is returned; buffer may be null to ask for the size. */
+typedef struct PmrApi {
+    uint64_t size;
+    uint32_t abiVersion;
+    uint32_t reserved;
+
+    const char*(PMR_CALL* versionText)(void); /* "0.1.0 (embree 3.13.5, ...)" */
+    const char*(PMR_CALL* statusText)(PmrStatus status);
+
+    /* Enumerations; need no context. */
+    uint32_t(PMR_CALL* settingCount)(void);
+    PmrStatus(PMR_CALL* settingInfo)(uint32_t index, PmrSettingInfo* info);
+    uint32_t(PMR_CALL* layerCount)(void);
+    PmrStatus(PMR_CALL* layerInfo)(uint32_t index, PmrLayerInfo* info);
+
+    /* Contexts. Releasing one that still has scenes or renders is fine: it lives until they end. */
+    PmrStatus(PMR_CALL* createContext)(const PmrContextDesc* desc, PmrContext* context);
+    PmrStatus(PMR_CALL* releaseContext)(PmrContext context);
+    /* The text of the last error of a call on this context or on anything made from it. */
+    PmrStatus(PMR_CALL* lastError)(PmrContext context, char* buffer, uint64_t capacity,
+                                   uint64_t* needed);
+
+    /* Reusable objects; each starts with one reference, which the host owns. */
+    PmrStatus(PMR_CALL* createMesh)(PmrContext context, const PmrMeshDesc* desc, PmrMesh* mesh);
+    PmrStatus(PMR_CALL* createCage)(PmrContext context, const PmrCageDesc* desc, PmrMesh* mesh);
+    PmrStatus(PMR_CALL* createSphere)(PmrContext context, const PmrSphereDesc* desc, PmrMesh* mesh);
+    PmrStatus(PMR_CALL* retainMesh)(PmrMesh mesh);
+    PmrStatus(PMR_CALL* releaseMesh)(PmrMesh mesh);
+    PmrStatus(PMR_CALL* createTexture)(PmrContext context, const PmrTextureDesc* desc,
+                                       PmrTexture* texture);
+    PmrStatus(PMR_CALL* retainTexture)(PmrTexture texture);
+    PmrStatus(PMR_CALL* releaseTexture)(PmrTexture texture);
+    PmrStatus(PMR_CALL* createMaterial)(PmrContext context, const PmrMaterialDesc* desc,
+                                        PmrMaterial* material);
+    PmrStatus(PMR_CALL* retainMaterial)(PmrMaterial material);
+    PmrStatus(PMR_CALL* releaseMaterial)(PmrMaterial material);
+
+    /* Scenes: built, committed, then immutable. An edit makes a new scene from the same handles. */
+    PmrStatus(PMR_CALL* createScene)(PmrContext context, const PmrSceneDesc* desc, PmrScene* scene);
+    PmrStatus(PMR_CALL* retainScene)(PmrScene scene);
+    PmrStatus(PMR_CALL* releaseScene)(PmrScene scene);
+    PmrStatus(PMR_CALL* addInstance)(PmrScene scene, const PmrInstanceDesc* desc);
+    PmrStatus(PMR_CALL* addLight)(PmrScene scene, const PmrLightDesc* desc);
+    PmrStatus(PMR_CALL* setEnvironment)(PmrScene scene, const PmrEnvironmentDesc* desc);
+    PmrStatus(PMR_CALL* setCamera)(PmrScene scene, const PmrCameraDesc* desc);
+    /* Checks, tessellates and builds the ray-tracing structure. */
+    PmrStatus(PMR_CALL* commitScene)(PmrScene scene);
+    /* bounds: min x, y, z, max x, y, z in world space; the scene must be committed. */
+    PmrStatus(PMR_CALL* sceneBounds)(PmrScene scene, double bounds[6]);
+
+    /* Renders. */
+    PmrStatus(PMR_CALL* createRender)(PmrScene scene, const PmrRenderDesc* desc, PmrRender* render);
+    PmrStatus(PMR_CALL* setSettingInteger)(PmrRender render, const char* name, int64_t value);
+    PmrStatus(PMR_CALL* setSettingNumber)(PmrRender render, const char* name, double value);
+    PmrStatus(PMR_CALL* setSettingText)(PmrRender render, const char* name, const char* value);
+    PmrStatus(PMR_CALL* settingText)(PmrRender render, const char* name, char* buffer,
+                                     uint64_t capacity, uint64_t* needed);
+    /* What the scene needs, one reason a line; allowed before startRender. */
+    PmrStatus(PMR_CALL* explainRender)(PmrRender render, char* buffer, uint64_t capacity,
+                                       uint64_t* needed);
+    PmrStatus(PMR_CALL* startRender)(PmrRender render);
+    /* Delivers callbacks (PMR_CALLBACKS_POLL) for up to timeoutSeconds; returns PMR_OK once
+     * something was delivered, PMR_ERROR_TIMEOUT when nothing came, PMR_ERROR_STATE when
+     * `finished` has been delivered before. */
+    PmrStatus(PMR_CALL* pollRender)(PmrRender render, double timeoutSeconds);
+    /* Waits for the end (PMR_CALLBACKS_THREAD: until `finished` has returned). Returns the status
+     * of the render, or PMR_ERROR_TIMEOUT. A negative timeout waits for ever. In the poll mode
+     * it waits for the workers only and delivers nothing. */
+    PmrStatus(PMR_CALL* waitRender)(PmrRender render, double timeoutSeconds);
+    PmrStatus(PMR_CALL* cancelRender)(PmrRender render); /* any thread, any time, any number */
+    PmrStatus(PMR_CALL* renderState)(PmrRender render, int32_t* state, PmrStatus* status);
+    PmrStatus(PMR_CALL* destroyRender)(PmrRender render);
+
+    /* The layers of this render, in the order of the pixels. */
+    PmrStatus(PMR_CALL* renderLayerCount)(PmrRender render, uint32_t* count);
+    PmrStatus(PMR_CALL* renderLayerInfo)(PmrRender render, uint32_t index, PmrLayerInfo* info);
+    /* Copies a rectangle of a layer, all its channels as floats side by side. Strides in bytes; the
+     * row stride may be negative (destination is where the rectangle's top row goes). Pixels that
+     * are not rendered yet, or outside the frame, are 0. */
+    PmrStatus(PMR_CALL* readPixels)(PmrRender render, const PmrRectangle* rectangle,
+                                    const char* layer, float* destination, int64_t pixelStrideBytes,
+                                    int64_t rowStrideBytes);
+    /* JSON, "schema": "pm-stats/1" (the library's part); at any time after startRender. */
+    PmrStatus(PMR_CALL* renderStatistics)(PmrRender render, char* buffer, uint64_t capacity,
+                                          uint64_t* needed);
+} PmrApi;
+
+/* The one symbol. Returns PMR_ERROR_ABI when that version is not offered. Any thread. */
+PMR_EXPORT PmrStatus PMR_CALL pmrGetApi(uint32_t abiVersion, const PmrApi** api);
+typedef PmrStatus(PMR_CALL* PmrGetApiFunction)(uint32_t abiVersion, const PmrApi** api);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif /* PM_PLUGIN_H */
