@@ -10,7 +10,8 @@ namespace pm {
 
 inline constexpr std::int32_t kNoTexture = -1;
 
-// Four channels of a texture at a point; missing colour channels repeat the first, missing alpha is 1.
+// Four channels of a texture at a point; missing colour channels repeat the first, missing alpha
+// is 1.
 struct Texel {
     float r{}, g{}, b{}, a{1.0f};
 };

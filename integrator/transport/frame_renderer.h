@@ -21,16 +21,16 @@ class Scene;
 
 // Where each layer stands in a pixel's floats. A layer that is not wanted has offset -1.
 struct ChannelLayout {
-    std::int32_t beauty = 0;    // 3: radiance, the sum of the four parts below
-    std::int32_t alpha = 3;     // 1: coverage
-    std::int32_t direct = 4;    // 3
-    std::int32_t indirect = 7;  // 3
-    std::int32_t caustic = 10;  // 3
-    std::int32_t emission = 13; // 3
-    std::int32_t albedo = -1;   // 3: premultiplied by coverage
-    std::int32_t normal = -1;   // 3: world, premultiplied by coverage
-    std::int32_t depth = -1;    // 1: along the view axis, scene units, premultiplied by coverage
-    std::int32_t count = 16;    // floats a pixel
+    std::int32_t beauty = 0;     // 3: radiance, the sum of the four parts below
+    std::int32_t alpha = 3;      // 1: coverage
+    std::int32_t direct = 4;     // 3
+    std::int32_t indirect = 7;   // 3
+    std::int32_t caustic = 10;   // 3
+    std::int32_t emission = 13;  // 3
+    std::int32_t albedo = -1;    // 3: premultiplied by coverage
+    std::int32_t normal = -1;    // 3: world, premultiplied by coverage
+    std::int32_t depth = -1;     // 1: along the view axis, scene units, premultiplied by coverage
+    std::int32_t count = 16;     // floats a pixel
 };
 
 ChannelLayout channelLayout(const RenderSettings& settings);

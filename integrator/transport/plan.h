@@ -17,13 +17,16 @@ class Scene;
 // not planned is not built, not traced, not allocated.
 struct Plan {
     bool tracePhotons = false;
-    bool globalMap = false;   // the scene has indirect diffuse light to gather
-    bool causticMap = false;  // light can reach a diffuse surface by way of a specular one
-    std::uint64_t globalPhotons = 0;   // emitted a pass for the global map (and the caustic one)
+    bool globalMap = false;            // the scene has indirect diffuse light to gather
+    bool causticMap = false;           // light can reach a diffuse surface by way of a specular one
+    std::uint64_t globalPhotons = 0;   // emitted a pass for the global map
+    std::uint64_t sitePhotons = 0;     // emitted a pass for the places where irradiance is kept
     std::uint64_t causticPhotons = 0;  // emitted a pass for the caustic map alone
     std::uint64_t mapBytes = 0;        // estimated peak of the maps
     std::vector<std::string> reasons;  // one line each: what and why
     std::vector<Notice> notices;
+
+    std::uint64_t photonsPerPass() const { return globalPhotons + sitePhotons + causticPhotons; }
 
     // The lines that --explain prints.
     std::string explain() const;

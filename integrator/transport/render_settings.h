@@ -12,7 +12,7 @@ enum class IntegratorKind { kPhoton, kPath };
 
 // Everything that a picture depends on beside the scene. Ranges are checked by whoever fills it.
 struct RenderSettings {
-    std::int32_t width = 640;   // pixels of the frame
+    std::int32_t width = 640;  // pixels of the frame
     std::int32_t height = 480;
     Rect window{0, 0, 640, 480};  // pixels to render; may exceed the frame
     IntegratorKind integrator = IntegratorKind::kPhoton;

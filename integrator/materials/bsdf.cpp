@@ -1,0 +1,238 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "integrator/materials/bsdf.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrator/sampling/warps.h"
+
+namespace pm {
+
+namespace {
+
+// The correction for shading normals grows without bound at grazing angles; beyond this it is cut.
+// Only photons that arrive within about 1/20 of the horizon can lose something by it.
+constexpr float kLargestCorrection = 20.0f;
+
+float mean(const Rgb& c) {
+    return (c.r + c.g + c.b) * (1.0f / 3.0f);
+}
+
+float clamp01(float v) {
+    return v > 0.0f ? std::min(v, 1.0f) : 0.0f;
+}
+
+Rgb clamp01(const Rgb& c) {
+    return {clamp01(c.r), clamp01(c.g), clamp01(c.b)};
+}
+
+Texel lookUp(const Scene& scene, std::int32_t texture, const Surface& surface) {
+    return texture == kNoTexture ? Texel{1.0f, 1.0f, 1.0f, 1.0f}
+                                 : scene.textures()->lookUp(texture, surface.uv, 0.0f);
+}
+
+Rgb textured(const Scene& scene, const Rgb& number, std::int32_t texture, const Surface& surface) {
+    if (texture == kNoTexture) return number;
+    const Texel t = lookUp(scene, texture, surface);
+    return number * Rgb(t.r, t.g, t.b);
+}
+
+Vec3f reflect(const Vec3f& out, const Vec3f& normal) {
+    return normalize(normal * (2.0f * dot(out, normal)) - out);
+}
+
+}  // namespace
+
+float fresnelDielectric(float cosine, float eta) {
+    const float sin2Inside = (1.0f - cosine * cosine) / (eta * eta);
+    if (sin2Inside >= 1.0f) return 1.0f;
+    const float cosineInside = std::sqrt(1.0f - sin2Inside);
+    const float parallel = (eta * cosine - cosineInside) / (eta * cosine + cosineInside);
+    const float perpendicular = (cosine - eta * cosineInside) / (cosine + eta * cosineInside);
+    return 0.5f * (parallel * parallel + perpendicular * perpendicular);
+}
+
+Bsdf::Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transport transport,
+           const Rgb& carried)
+    : m_material(scene.material(surface.material)),
+      m_out(out),
+      m_ng(surface.geometricNormal),
+      m_ns(surface.shadingNormal),
+      m_frontSide(dot(out, surface.geometricNormal) >= 0.0f),
+      m_transport(transport) {
+    if (!m_frontSide) {
+        m_ng = -m_ng;
+        m_ns = -m_ns;
+    }
+    // Seen from behind its shading normal a surface would have no front to reflect with.
+    if (dot(m_out, m_ns) <= 0.0f) m_ns = m_ng;
+    const float opacity = clamp01((1.0f - m_material.transparency) *
+                                  lookUp(scene, m_material.opacityTexture, surface).r);
+    switch (m_material.kind) {
+        case MaterialKind::kSurface:
+            setSurface(scene, surface, opacity);
+            break;
+        case MaterialKind::kMirror:
+            setMirror(scene, surface, opacity);
+            break;
+        case MaterialKind::kDielectric:
+            setDielectric(scene, surface, opacity);
+            break;
+    }
+    m_reflectance[index(Lobe::kStraight)] = Rgb(1.0f - opacity);
+    limitEnergy();
+    chooseProbabilities(carried);
+}
+
+void Bsdf::setSurface(const Scene& scene, const Surface& surface, float opacity) {
+    m_reflectance[index(Lobe::kDiffuse)] =
+        clamp01(textured(scene, m_material.diffuse, m_material.diffuseTexture, surface)) * opacity;
+    m_reflectance[index(Lobe::kGlossy)] =
+        clamp01(textured(scene, m_material.glossy, m_material.glossyTexture, surface)) * opacity;
+    m_exponent = std::max(0.0f, m_material.glossyExponent *
+                                    lookUp(scene, m_material.glossyExponentTexture, surface).r);
+}
+
+void Bsdf::setMirror(const Scene& scene, const Surface& surface, float opacity) {
+    Rgb colour = clamp01(textured(scene, m_material.glossy, m_material.glossyTexture, surface));
+    if (m_material.fresnelMirror) {
+        // Schlick 1994: the reflectance rises to 1 at grazing angles.
+        const float m = 1.0f - clamp01(dot(m_out, m_ns));
+        colour += (Rgb(1.0f) - colour) * (m * m * m * m * m);
+    }
+    const bool rough = m_material.glossyExponent > 0.0f;
+    m_exponent = m_material.glossyExponent;
+    m_reflectance[index(rough ? Lobe::kGlossy : Lobe::kReflection)] = colour * opacity;
+}
+
+void Bsdf::setDielectric(const Scene& scene, const Surface& surface, float opacity) {
+    m_eta = m_frontSide ? m_material.ior : 1.0f / m_material.ior;
+    const float reflected = fresnelDielectric(clamp01(dot(m_out, m_ns)), m_eta);
+    const Rgb tint =
+        clamp01(textured(scene, m_material.transmission, m_material.transmissionTexture, surface));
+    m_reflectance[index(Lobe::kReflection)] = Rgb(reflected * opacity);
+    m_reflectance[index(Lobe::kRefraction)] = tint * ((1.0f - reflected) * opacity);
+}
+
+void Bsdf::limitEnergy() {
+    const float largest = maxChannel(albedo());
+    if (!(largest > 1.0f)) return;
+    for (Rgb& reflectance : m_reflectance) reflectance *= 1.0f / largest;
+}
+
+void Bsdf::chooseProbabilities(const Rgb& carried) {
+    float sum = 0.0f;
+    for (std::size_t i = 0; i < kLobeCount; ++i) {
+        m_probability[i] = mean(carried * m_reflectance[i]);
+        sum += m_probability[i];
+    }
+    m_black = !(sum > 0.0f);
+    if (m_black) return;
+    // Photons die with what is left of their flux, so that the survivors keep its mean.
+    const float total = m_transport == Transport::kPhotons ? std::max(sum, mean(carried)) : sum;
+    for (float& p : m_probability) p /= total;
+}
+
+Rgb Bsdf::albedo() const {
+    Rgb sum;
+    for (const Rgb& reflectance : m_reflectance) sum += reflectance;
+    return sum;
+}
+
+bool Bsdf::isReflection(const Vec3f& in) const {
+    return dot(in, m_ng) > 0.0f && dot(in, m_ns) > 0.0f;
+}
+
+// [Veach 1997, eq. 5.19]: what turns the radiance's BSDF into the photons' where the shading normal
+// is not the geometric one.
+float Bsdf::adjointCorrection(const Vec3f& in) const {
+    if (m_transport == Transport::kRadiance) return 1.0f;
+    const float numerator = std::abs(dot(m_out, m_ns) * dot(in, m_ng));
+    const float denominator = std::abs(dot(m_out, m_ng) * dot(in, m_ns));
+    return numerator >= kLargestCorrection * denominator ? kLargestCorrection
+                                                         : numerator / denominator;
+}
+
+Rgb Bsdf::evaluate(Lobe lobe, const Vec3f& in) const {
+    if (!isReflection(in)) return {};
+    const float cosine = dot(in, m_ns);
+    if (lobe == Lobe::kDiffuse) return diffuse() * (kInvPi * cosine * adjointCorrection(in));
+    // Lafortune & Willems 1994: rho (n+2)/(2 pi) cos^n(alpha), reciprocal and never above rho.
+    const float cosAlpha = dot(in, reflect(m_out, m_ns));
+    if (!(cosAlpha > 0.0f)) return {};
+    const float lobeValue =
+        (m_exponent + 2.0f) * (0.5f * kInvPi) * pinnedPow(std::min(cosAlpha, 1.0f), m_exponent);
+    return m_reflectance[index(Lobe::kGlossy)] * (lobeValue * cosine * adjointCorrection(in));
+}
+
+float Bsdf::pdfSolidAngle(Lobe lobe, const Vec3f& in) const {
+    const float probability = m_probability[index(lobe)];
+    if (probability == 0.0f) return 0.0f;
+    if (lobe == Lobe::kDiffuse) return probability * std::max(0.0f, dot(in, m_ns)) * kInvPi;
+    const float cosAlpha = dot(in, reflect(m_out, m_ns));
+    if (!(cosAlpha > 0.0f)) return 0.0f;
+    return probability * (m_exponent + 1.0f) * (0.5f * kInvPi) *
+           pinnedPow(std::min(cosAlpha, 1.0f), m_exponent);
+}
+
+bool Bsdf::refract(Vec3f& direction) const {
+    // With the shading normal first, with the geometric one where that leads to the wrong side.
+    for (const Vec3f& n : {m_ns, m_ng}) {
+        const float cosine = dot(m_out, n);
+        const float sin2Inside = (1.0f - cosine * cosine) / (m_eta * m_eta);
+        if (sin2Inside >= 1.0f) continue;
+        const float cosineInside = std::sqrt(1.0f - sin2Inside);
+        direction = normalize(n * (cosine / m_eta - cosineInside) - m_out * (1.0f / m_eta));
+        if (dot(direction, m_ng) < 0.0f) return true;
+    }
+    return false;
+}
+
+bool Bsdf::sample(float uLobe, Vec2f u, BsdfSample& sample) const {
+    std::size_t i = 0;
+    while (i < kLobeCount && uLobe >= m_probability[i]) uLobe -= m_probability[i++];
+    if (i == kLobeCount) {
+        if (m_transport == Transport::kPhotons || m_black) return false;
+        // Rounding left a crumb of [0,1) after the last lobe.
+        i = static_cast<std::size_t>(std::max_element(m_probability.begin(), m_probability.end()) -
+                                     m_probability.begin());
+    }
+    const float probability = m_probability[i];
+    sample.lobe = static_cast<Lobe>(i);
+    sample.pdfSolidAngle = probability;
+    sample.weight = m_reflectance[i] / probability;
+    switch (sample.lobe) {
+        case Lobe::kDiffuse:
+            sample.direction = normalize(Frame(m_ns).toWorld(sampleCosineHemisphere(u)));
+            sample.pdfSolidAngle = pdfSolidAngle(sample.lobe, sample.direction);
+            sample.weight *= adjointCorrection(sample.direction);
+            return sample.pdfSolidAngle > 0.0f && isReflection(sample.direction);
+        case Lobe::kGlossy:
+            sample.direction =
+                normalize(Frame(reflect(m_out, m_ns)).toWorld(samplePhongLobe(u, m_exponent)));
+            sample.pdfSolidAngle = pdfSolidAngle(sample.lobe, sample.direction);
+            sample.weight *= (m_exponent + 2.0f) / (m_exponent + 1.0f) *
+                             dot(sample.direction, m_ns) * adjointCorrection(sample.direction);
+            return sample.pdfSolidAngle > 0.0f && isReflection(sample.direction);
+        case Lobe::kReflection:
+            sample.direction = reflect(m_out, m_ns);
+            if (dot(sample.direction, m_ng) <= 0.0f)
+                sample.direction = reflect(m_out, m_ng);
+            else
+                sample.weight *= adjointCorrection(sample.direction);
+            return true;
+        case Lobe::kRefraction:
+            if (!refract(sample.direction)) return false;
+            // Radiance is squeezed into a narrower cone of a denser medium; flux is not changed.
+            if (m_transport == Transport::kRadiance) sample.weight *= 1.0f / (m_eta * m_eta);
+            sample.weight *= adjointCorrection(sample.direction);
+            return true;
+        case Lobe::kStraight:
+            sample.direction = -m_out;
+            return true;
+    }
+    return false;
+}
+
+}  // namespace pm

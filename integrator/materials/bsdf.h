@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "integrator/scene/scene.h"
+#include "integrator/scene/surface.h"
+#include "integrator/values/rgb.h"
+#include "integrator/values/vec.h"
+
+namespace pm {
+
+// The parts a BSDF is made of. Each light path is told apart by the lobes it went through, so lobes
+// are sampled one at a time, never as a mixture.
+enum class Lobe : std::uint8_t {
+    kDiffuse,     // Lambertian reflection
+    kGlossy,      // Phong lobe around the mirror direction
+    kReflection,  // mirror, and the reflected part of a dielectric (delta)
+    kRefraction,  // delta
+    kStraight,    // transparency: passes as if nothing were there (delta)
+};
+inline constexpr std::size_t kLobeCount = 5;
+
+constexpr bool isDelta(Lobe lobe) {
+    return lobe == Lobe::kReflection || lobe == Lobe::kRefraction || lobe == Lobe::kStraight;
+}
+
+// What travels along the path: radiance from the camera backwards, or photons from a light. They
+// differ in the factor eta^2 of refraction and in the correction for shading normals.
+// Source: Veach 1997, sections 5.2 and 5.3.
+enum class Transport : std::uint8_t { kRadiance, kPhotons };
+
+struct BsdfSample {
+    Vec3f direction;             // unit, away from the surface
+    Rgb weight;                  // f |cos| / pdf, the lobe's choice included
+    float pdfSolidAngle = 0.0f;  // sr^-1, the lobe's choice included; of a delta lobe its
+                                 // choice's probability
+    Lobe lobe = Lobe::kDiffuse;
+};
+
+// How a surface scatters, at one point and for light that leaves along `out` (or, for photons, that
+// came from there). Reflection on both sides; textures looked up once. Energy is never made: where
+// the reflectances add to more than 1 in a channel, all are scaled down.
+class Bsdf {
+  public:
+    // out: unit, away from the surface. carried: throughput or flux so far; lobes are chosen in
+    // proportion to what they would carry on. Photons are absorbed with the rest of the
+    // probability, so that their mean flux stays the same; camera paths always go on.
+    Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transport transport,
+         const Rgb& carried);
+
+    bool has(Lobe lobe) const { return m_probability[index(lobe)] > 0.0f; }
+    // Mean over channels of what could be reflected or transmitted is 0.
+    bool isBlackBody() const { return m_black; }
+
+    // False: absorbed (photons), or the sampled direction has no value.
+    bool sample(float uLobe, Vec2f u, BsdfSample& sample) const;
+
+    // f |cos| of a lobe that is not delta, for light from `in` (unit, away from the surface).
+    Rgb evaluate(Lobe lobe, const Vec3f& in) const;
+    // Density with which sample() takes that lobe and that direction; sr^-1.
+    float pdfSolidAngle(Lobe lobe, const Vec3f& in) const;
+
+    // Lambertian reflectance; reflected radiance = diffuse() * irradiance / pi.
+    const Rgb& diffuse() const { return m_reflectance[index(Lobe::kDiffuse)]; }
+    // All that is reflected or transmitted, for the albedo layer.
+    Rgb albedo() const;
+
+    // Squared index on the far side over the one on this side.
+    float etaSquared() const { return m_eta * m_eta; }
+
+    // The normals turned to the side of `out`.
+    const Vec3f& facingGeometricNormal() const { return m_ng; }
+    const Vec3f& facingShadingNormal() const { return m_ns; }
+
+  private:
+    static constexpr std::size_t index(Lobe lobe) { return static_cast<std::size_t>(lobe); }
+    void setSurface(const Scene& scene, const Surface& surface, float opacity);
+    void setMirror(const Scene& scene, const Surface& surface, float opacity);
+    void setDielectric(const Scene& scene, const Surface& surface, float opacity);
+    void limitEnergy();
+    void chooseProbabilities(const Rgb& carried);
+    bool isReflection(const Vec3f& in) const;
+    bool refract(Vec3f& direction) const;
+    float adjointCorrection(const Vec3f& in) const;
+
+    const MaterialDescription& m_material;
+    Vec3f m_out, m_ng, m_ns;
+    bool m_frontSide;
+    bool m_black = false;
+    Transport m_transport;
+    float m_exponent = 0.0f;
+    float m_eta = 1.0f;  // index on the far side over the index on this side
+    std::array<Rgb, kLobeCount> m_reflectance{};
+    std::array<float, kLobeCount> m_probability{};
+};
+
+// Share of unpolarised light that a smooth boundary reflects. cosine: of the angle to the normal on
+// the side the light comes from, in [0,1]; eta: index on the far side over this side's.
+// Source: Fresnel's equations, averaged over both polarisations.
+float fresnelDielectric(float cosine, float eta);
+
+}  // namespace pm

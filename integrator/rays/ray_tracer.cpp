@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "integrator/rays/ray_tracer.h"
+
+#include <embree3/rtcore.h>
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <deque>
+
+#include "integrator/values/error.h"
+
+namespace pm {
+
+namespace {
+
+struct Sphere {
+    Vec3d centre;
+    double radius;
+};
+
+bool processorHas(const std::string& isa) {
+    if (isa == "sse2") return true;
+    if (isa == "sse4.2") return __builtin_cpu_supports("sse4.2");
+    if (isa == "avx") return __builtin_cpu_supports("avx");
+    if (isa == "avx2") return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+    return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
+           __builtin_cpu_supports("avx512cd");
+}
+
+std::string resolveIsa(const std::string& wanted) {
+    static constexpr std::array kKnown = {"avx512", "avx2", "avx", "sse4.2", "sse2"};
+    __builtin_cpu_init();
+    if (wanted.empty() || wanted == "best") {
+        for (const char* isa : kKnown)
+            if (processorHas(isa)) return isa;
+    }
+    for (const char* isa : kKnown) {
+        if (wanted != isa) continue;
+        if (!processorHas(wanted))
+            throw Error(
+                Status::kInvalidArgument,
+                "instruction set " + wanted + " is not offered by this processor; use best");
+        return wanted;
+    }
+    throw Error(
+        Status::kInvalidArgument,
+        "instruction set is '" + wanted + "'; it must be best, sse2, sse4.2, avx, avx2 or avx512");
+}
+
+void sphereBounds(const RTCBoundsFunctionArguments* args) {
+    const auto& sphere = *static_cast<const Sphere*>(args->geometryUserPtr);
+    // Rounded outwards: the box must hold the sphere in double.
+    const auto down = [](double v) {
+        return std::nextafter(static_cast<float>(v), -std::numeric_limits<float>::infinity());
+    };
+    const auto up = [](double v) {
+        return std::nextafter(static_cast<float>(v), std::numeric_limits<float>::infinity());
+    };
+    const double r = sphere.radius;
+    RTCBounds& b = *args->bounds_o;
+    b.lower_x = down(sphere.centre.x - r);
+    b.lower_y = down(sphere.centre.y - r);
+    b.lower_z = down(sphere.centre.z - r);
+    b.upper_x = up(sphere.centre.x + r);
+    b.upper_y = up(sphere.centre.y + r);
+    b.upper_z = up(sphere.centre.z + r);
+}
+
+double intersectRtcRay(const Sphere& sphere, const RTCRay& ray) {
+    return intersectSphere({ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z},
+                           static_cast<double>(ray.tfar), sphere.centre, sphere.radius);
+}
+
+// Rays are traced one by one, so N is 1 and the packet is a plain RTCRayHit.
+void sphereIntersect(const RTCIntersectFunctionNArguments* args) {
+    if (args->valid[0] != -1) return;
+    auto& rayHit = *reinterpret_cast<RTCRayHit*>(args->rayhit);
+    const double t =
+        intersectRtcRay(*static_cast<const Sphere*>(args->geometryUserPtr), rayHit.ray);
+    if (t < 0.0) return;
+    rayHit.ray.tfar = static_cast<float>(t);
+    rayHit.hit.geomID = args->geomID;
+    rayHit.hit.primID = args->primID;
+    rayHit.hit.instID[0] = args->context->instID[0];
+    rayHit.hit.u = rayHit.hit.v = 0.0f;
+    rayHit.hit.Ng_x = 1.0f;
+    rayHit.hit.Ng_y = rayHit.hit.Ng_z = 0.0f;
+}
+
+void sphereOccluded(const RTCOccludedFunctionNArguments* args) {
+    if (args->valid[0] != -1) return;
+    auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
+    if (intersectRtcRay(*static_cast<const Sphere*>(args->geometryUserPtr), ray) >= 0.0)
+        ray.tfar = -std::numeric_limits<float>::infinity();
+}
+
+bool usable(const Ray& ray) {
+    // NaN compares false, so that one test finds NaN, infinity and what is too far.
+    return maxAbsComponent(ray.origin) <= RayTracer::kLargestCoordinate && isFinite(ray.origin) &&
+           isFinite(ray.direction) &&
+           maxAbsComponent(ray.direction) <= RayTracer::kLargestCoordinate && ray.tMax >= 0.0f;
+}
+
+void fill(RTCRay& out, const Ray& ray) {
+    out.org_x = ray.origin.x;
+    out.org_y = ray.origin.y;
+    out.org_z = ray.origin.z;
+    out.tnear = 0.0f;
+    out.dir_x = ray.direction.x;
+    out.dir_y = ray.direction.y;
+    out.dir_z = ray.direction.z;
+    out.time = 0.0f;
+    out.tfar = ray.tMax;
+    out.mask = ~0u;
+    out.id = 0;
+    out.flags = 0;
+}
+
+}  // namespace
+
+double intersectSphere(const Vec3d& origin, const Vec3d& direction, double tMax,
+                       const Vec3d& centre, double radius) {
+    const Vec3d f = origin - centre;
+    const double a = lengthSquared(direction);
+    if (!(a > 0.0)) return -1.0;
+    const double b = -dot(f, direction);
+    // The squared distance of the ray's line from the centre, without cancellation for far spheres.
+    const Vec3d nearest = f + direction * (b / a);
+    const double discriminant = radius * radius - lengthSquared(nearest);
+    if (discriminant < 0.0) return -1.0;
+    const double q = b + std::copysign(std::sqrt(a * discriminant), b);
+    if (q == 0.0) return -1.0;  // the origin is on the sphere and the ray touches it
+    const double c = lengthSquared(f) - radius * radius;
+    double t0 = c / q, t1 = q / a;
+    if (t0 > t1) std::swap(t0, t1);
+    const double t = t0 > 0.0 ? t0 : t1;
+    return t > 0.0 && t <= tMax ? t : -1.0;
+}
+
+struct RayTracer::Impl {
+    RTCDevice device = nullptr;
+    RTCScene scene = nullptr;
+    std::string isa;
+    std::deque<Sphere> spheres;  // a deque: Embree keeps pointers to its elements
+    std::atomic<std::int64_t> bytes{0};
+
+    ~Impl() {
+        if (scene) rtcReleaseScene(scene);
+        if (device) rtcReleaseDevice(device);
+    }
+    void check(const char* doing) const {
+        const RTCError error = rtcGetDeviceError(device);
+        if (error == RTC_ERROR_NONE) return;
+        throw Error(error == RTC_ERROR_OUT_OF_MEMORY ? Status::kOutOfMemory : Status::kInternal,
+                    std::string("Embree failed ") + doing + ", error " + std::to_string(error));
+    }
+};
+
+RayTracer::RayTracer(const std::string& isa) : m_impl(std::make_unique<Impl>()) {
+    m_impl->isa = resolveIsa(isa);
+    // "threads=" is left out on purpose: it would set TBB's parallelism for the whole process.
+    const std::string config = "isa=" + m_impl->isa;
+    m_impl->device = rtcNewDevice(config.c_str());
+    if (!m_impl->device) throw Error(Status::kInternal, "Embree offers no device for " + config);
+    rtcSetDeviceMemoryMonitorFunction(
+        m_impl->device,
+        [](void* user, ssize_t bytes, bool) {
+            static_cast<Impl*>(user)->bytes += bytes;
+            return true;
+        },
+        m_impl.get());
+    m_impl->scene = rtcNewScene(m_impl->device);
+    rtcSetSceneFlags(m_impl->scene, RTC_SCENE_FLAG_ROBUST);
+    m_impl->check("creating a scene");
+}
+
+RayTracer::~RayTracer() = default;
+
+std::uint32_t RayTracer::addTriangles(std::span<const Vec3f> positions,
+                                      std::span<const std::array<std::uint32_t, 3>> triangles) {
+    RTCGeometry geometry = rtcNewGeometry(m_impl->device, RTC_GEOMETRY_TYPE_TRIANGLE);
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                               positions.data(), 0, sizeof(Vec3f), positions.size());
+    rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
+                               triangles.data(), 0, sizeof(triangles[0]), triangles.size());
+    rtcCommitGeometry(geometry);
+    const std::uint32_t id = rtcAttachGeometry(m_impl->scene, geometry);
+    rtcReleaseGeometry(geometry);
+    m_impl->check("adding triangles");
+    return id;
+}
+
+std::uint32_t RayTracer::addSphere(const Vec3d& centre, double radius) {
+    m_impl->spheres.push_back({centre, radius});
+    RTCGeometry geometry = rtcNewGeometry(m_impl->device, RTC_GEOMETRY_TYPE_USER);
+    rtcSetGeometryUserPrimitiveCount(geometry, 1);
+    rtcSetGeometryUserData(geometry, &m_impl->spheres.back());
+    rtcSetGeometryBoundsFunction(geometry, sphereBounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, sphereIntersect);
+    rtcSetGeometryOccludedFunction(geometry, sphereOccluded);
+    rtcCommitGeometry(geometry);
+    const std::uint32_t id = rtcAttachGeometry(m_impl->scene, geometry);
+    rtcReleaseGeometry(geometry);
+    m_impl->check("adding a sphere");
+    return id;
+}
+
+void RayTracer::commit() {
+    rtcCommitScene(m_impl->scene);
+    m_impl->check("building the ray-tracing structure");
+}
+
+bool RayTracer::intersect(const Ray& ray, RayHit& hit) const {
+    if (!usable(ray)) return false;
+    alignas(16) RTCRayHit rayHit;
+    fill(rayHit.ray, ray);
+    rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcIntersect1(m_impl->scene, &context, &rayHit);
+    if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
+    hit = {rayHit.hit.geomID, rayHit.hit.primID, rayHit.ray.tfar};
+    return true;
+}
+
+bool RayTracer::occluded(const Ray& ray) const {
+    if (!usable(ray)) return true;
+    alignas(16) RTCRay rtcRay;
+    fill(rtcRay, ray);
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    rtcOccluded1(m_impl->scene, &context, &rtcRay);
+    return rtcRay.tfar < 0.0f;
+}
+
+const std::string& RayTracer::isa() const {
+    return m_impl->isa;
+}
+
+std::uint64_t RayTracer::memoryBytes() const {
+    return static_cast<std::uint64_t>(std::max<std::int64_t>(0, m_impl->bytes.load()));
+}
+
+}  // namespace pm

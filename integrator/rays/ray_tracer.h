@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "integrator/values/vec.h"
+
+namespace pm {
+
+// A ray in the scene's own coordinates (its centre at the origin). The direction need not have unit
+// length; distances are in units of its length.
+struct Ray {
+    Vec3f origin;
+    Vec3f direction;
+    float tMax = std::numeric_limits<float>::infinity();
+};
+
+// The primitive that a ray meets first. Where exactly it is met is computed again from the
+// primitive.
+struct RayHit {
+    std::uint32_t shape = 0;      // in the order in which shapes were added
+    std::uint32_t primitive = 0;  // triangle of that shape; 0 for spheres
+    float t = 0.0f;
+};
+
+// Nearest hits and visibility among triangle meshes and spheres, by Embree in its robust mode.
+// Every ray is checked first for what would end the process inside Embree: NaN, infinity, distances
+// beyond kLargestCoordinate; such a ray meets nothing and is counted by the caller.
+class RayTracer {
+  public:
+    static constexpr float kLargestCoordinate = 1e18f;
+
+    // isa: "best" or one of sse2, sse4.2, avx, avx2, avx512. Throws Error(kInvalidArgument) for
+    // others and for one that this processor lacks, Error(kInternal) when Embree fails.
+    explicit RayTracer(const std::string& isa);
+    ~RayTracer();
+    RayTracer(const RayTracer&) = delete;
+    RayTracer& operator=(const RayTracer&) = delete;
+
+    // Shapes are copied (spheres) or referred to (meshes: positions must stay until destruction,
+    // and must be followed by at least 4 readable bytes, which a spare last element gives).
+    std::uint32_t addTriangles(std::span<const Vec3f> positions,
+                               std::span<const std::array<std::uint32_t, 3>> triangles);
+    std::uint32_t addSphere(const Vec3d& centre, double radius);
+
+    // Builds; in parallel in the calling TBB arena. Throws Error(kOutOfMemory, kInternal).
+    void commit();
+
+    // Threads: any, at once, after commit.
+    bool intersect(const Ray& ray, RayHit& hit) const;
+    bool occluded(const Ray& ray) const;
+
+    // What "best" came to; part of a render's identity.
+    const std::string& isa() const;
+    std::uint64_t memoryBytes() const;
+
+  private:
+    struct Impl;
+    std::unique_ptr<Impl> m_impl;
+};
+
+// Intersects a ray with a sphere in double precision. Returns the nearest root in (0, tMax], or a
+// negative number. Source: Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray
+// Tracing Gems, 2019 (the stable quadratic).
+double intersectSphere(const Vec3d& origin, const Vec3d& direction, double tMax,
+                       const Vec3d& centre, double radius);
+
+}  // namespace pm

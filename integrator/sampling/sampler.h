@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <cstdint>
+
+#include "integrator/values/vec.h"
+
+// Owen-scrambled Sobol points by hashing, "padded": every pair of dimensions is the (0,2)-sequence
+// of Sobol's first two dimensions with a scramble and a shuffle of its own. [1] Laine & Karras,
+// "Stratified Sampling for Stochastic Transparency", 2011. [2] Burley, "Practical Hash-based Owen
+// Scrambling", JCGT 9(4), 2020.
+namespace pm {
+
+// Bijection of 64 bits without visible structure (the finaliser of SplitMix64).
+constexpr std::uint64_t mixBits(std::uint64_t x) {
+    x ^= x >> 30;
+    x *= 0xbf58476d1ce4e5b9ull;
+    x ^= x >> 27;
+    x *= 0x94d049bb133111ebull;
+    x ^= x >> 31;
+    return x;
+}
+
+constexpr std::uint64_t combineBits(std::uint64_t a, std::uint64_t b) {
+    return mixBits(a + 0x9e3779b97f4a7c15ull + mixBits(b + 0x632be59bd9b4e019ull));
+}
+
+constexpr std::uint32_t reverseBits(std::uint32_t x) {
+    x = __builtin_bswap32(x);
+    x = ((x & 0x0f0f0f0fu) << 4) | ((x >> 4) & 0x0f0f0f0fu);
+    x = ((x & 0x33333333u) << 2) | ((x >> 2) & 0x33333333u);
+    return ((x & 0x55555555u) << 1) | ((x >> 1) & 0x55555555u);
+}
+
+// Owen scrambling of a number whose bits are reversed: each bit is flipped by a hash of the bits
+// below it only [1, 2].
+constexpr std::uint32_t owenScrambleReversed(std::uint32_t x, std::uint32_t seed) {
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1u;
+    x ^= x * 0x05526c56u;
+    x ^= x * 0x53a22864u;
+    return x;
+}
+
+// Sobol's second dimension of index i, bits reversed: Pascal's matrix modulo 2, applied in five
+// steps because it is a Kronecker power of [[1,1],[0,1]] (Lucas' theorem).
+constexpr std::uint32_t sobolSecondReversed(std::uint32_t i) {
+    i ^= (i >> 1) & 0x55555555u;
+    i ^= (i >> 2) & 0x33333333u;
+    i ^= (i >> 4) & 0x0f0f0f0fu;
+    i ^= (i >> 8) & 0x00ff00ffu;
+    i ^= (i >> 16) & 0x0000ffffu;
+    return i;
+}
+
+// In [0, 1): the upper 24 bits.
+constexpr float toUnitFloat(std::uint32_t x) {
+    return static_cast<float>(x >> 8) * 0x1p-24f;
+}
+
+// One sample's random numbers: a function of (seed, stream, sequence, index, dimension) alone.
+// `sequence` names a set of points that is stratified together (a pixel of one pass, or all photons
+// of a pass); `index` is the point's number in it; dimensions are drawn one after another.
+class Sampler {
+  public:
+    Sampler(std::uint64_t seed, std::uint64_t stream, std::uint64_t sequence, std::uint32_t index)
+        : m_key(combineBits(combineBits(seed, stream), sequence)),
+          m_reversedIndex(reverseBits(index)) {}
+
+    // Range: [0, 1).
+    float next1D() {
+        const std::uint64_t hash = nextHash();
+        const std::uint32_t shuffled = shuffle(hash);
+        return toUnitFloat(
+            reverseBits(owenScrambleReversed(shuffled, static_cast<std::uint32_t>(mixBits(hash)))));
+    }
+
+    // Range: [0, 1)^2.
+    Vec2f next2D() {
+        const std::uint64_t hash = nextHash();
+        const std::uint32_t shuffled = shuffle(hash);
+        const std::uint64_t seeds = mixBits(hash);
+        return {toUnitFloat(
+                    reverseBits(owenScrambleReversed(shuffled, static_cast<std::uint32_t>(seeds)))),
+                toUnitFloat(reverseBits(owenScrambleReversed(
+                    sobolSecondReversed(shuffled), static_cast<std::uint32_t>(seeds >> 32))))};
+    }
+
+  private:
+    std::uint64_t nextHash() { return mixBits(m_key + 0x9e3779b97f4a7c15ull * ++m_dimension); }
+    std::uint32_t shuffle(std::uint64_t hash) const {
+        return reverseBits(
+            owenScrambleReversed(m_reversedIndex, static_cast<std::uint32_t>(hash >> 32)));
+    }
+
+    std::uint64_t m_key;
+    std::uint32_t m_reversedIndex;
+    std::uint32_t m_dimension = 0;
+};
+
+}  // namespace pm

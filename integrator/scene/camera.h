@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <cstdint>
+
+#include "integrator/rays/ray_tracer.h"
+#include "integrator/values/vec.h"
+
+namespace pm {
+
+class Scene;
+
+// The pinhole camera of a scene and frame. Rays start where they enter the sphere around the scene,
+// computed in double: a camera a thousand radii away loses no digits of the scene to its distance.
+class Camera {
+  public:
+    // Throws Error(kInvalidScene) without a camera in the scene, or one with a field of view
+    // outside (0, pi) or a transform that is not finite.
+    Camera(const Scene& scene, std::int32_t width, std::int32_t height);
+
+    // A ray through frame coordinates (x, y), pixels, origin top left, y down. Unit direction.
+    Ray ray(double x, double y) const;
+
+    // Distance along the view axis of a point in the scene's own coordinates, scene units.
+    float depth(const Vec3f& position) const;
+
+  private:
+    Vec3d m_eye;  // scene's own coordinates
+    Vec3d m_right, m_up, m_forward;
+    double m_scale;                    // of a pixel on the plane at distance 1
+    double m_aspect;                   // width of a pixel over its height
+    double m_halfWidth, m_halfHeight;  // pixels
+    double m_sceneRadius;
+};
+
+}  // namespace pm

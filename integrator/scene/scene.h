@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "integrator/rays/ray_tracer.h"
+#include "integrator/scene/scene_description.h"
+#include "integrator/scene/surface.h"
+#include "integrator/values/notice.h"
+
+namespace pm {
+
+// One emitting primitive or point, in the scene's own coordinates.
+struct Light {
+    enum class Kind : std::uint8_t { kTriangle, kSphere, kPoint };
+    Kind kind = Kind::kPoint;
+    std::uint32_t shape = 0;
+    std::uint32_t primitive = 0;
+    std::uint32_t material = 0;
+    float area = 0.0f;     // scene units squared
+    Vec3d position;        // of a point light
+    Rgb intensity;         // of a point light, W/sr
+    double powerMean = 0;  // W, mean of the channels, textures taken as 1
+};
+
+// A scene as it is rendered: immutable, moved to its own centre, ray-tracing structure built. Its
+// own coordinates are world coordinates minus centre(), in float. Threads: all const functions from
+// any, at once.
+class Scene {
+  public:
+    // isa: see RayTracer. Builds in parallel in the calling TBB arena. Throws Error (kInvalidScene,
+    // kUnsupported, kOutOfMemory).
+    static std::shared_ptr<const Scene> build(SceneDescription description, const std::string& isa);
+    ~Scene();
+
+    bool intersect(const Ray& ray, Surface& surface) const;
+    bool occluded(const Ray& ray) const { return m_tracer.occluded(ray); }
+
+    // World space: min x, y, z, max x, y, z.
+    std::array<double, 6> bounds() const;
+    const Vec3d& centre() const { return m_centre; }
+    // Radius of a sphere around the origin of the scene's own coordinates that holds all shapes.
+    double radius() const { return m_radius; }
+
+    const SceneDescription& description() const { return m_description; }
+    const MaterialDescription& material(std::uint32_t index) const {
+        return m_description.materials[index];
+    }
+    const TextureSource* textures() const { return m_description.textures.get(); }
+    const std::vector<Light>& lights() const { return m_lights; }
+
+    // True when all triangles lie in one plane (to rounding), so that no light goes from one
+    // surface to another.
+    bool isFlat() const;
+
+    // A point on an area light's primitive, uniform over its area, as a Surface.
+    Surface pointOnLight(const Light& light, Vec2f u) const;
+    // The sphere of a sphere light (or of any sphere shape), scene's own coordinates.
+    SphereShape sphere(std::uint32_t shape) const;
+
+    const std::vector<Notice>& notices() const { return m_notices; }
+    const std::string& isa() const { return m_tracer.isa(); }
+    std::uint64_t memoryBytes() const;
+    std::uint64_t triangleCount() const { return m_triangleCount; }
+
+  private:
+    struct ShapeRecord;
+    class Builder;
+    Scene(SceneDescription description, const std::string& isa);
+
+    void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, double b1, double b2,
+                           Surface& surface) const;
+    void surfaceOnSphere(const ShapeRecord& shape, const Vec3d& direction, Surface& surface) const;
+
+    SceneDescription m_description;
+    std::vector<ShapeRecord> m_shapes;
+    std::vector<Light> m_lights;
+    std::vector<Notice> m_notices;
+    Vec3d m_centre;
+    Vec3d m_halfSize;
+    double m_radius = 0;
+    std::uint64_t m_triangleCount = 0;
+    RayTracer m_tracer;  // last: it refers to the shapes' arrays and is destroyed before them
+};
+
+}  // namespace pm

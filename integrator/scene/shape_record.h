@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "integrator/scene/scene.h"
+
+namespace pm {
+
+// One instance made ready: vertices in the scene's own coordinates.
+struct Scene::ShapeRecord {
+    std::shared_ptr<const TriangleMesh> mesh;  // null for a sphere
+    std::vector<Vec3f> positions;              // one spare element at the end, for Embree
+    std::vector<Vec3f> normals;                // transformed, unit
+    bool mirrored = false;                     // the transform turns the winding round
+    SphereShape sphere;
+    std::vector<std::uint32_t> materials;        // of each slot
+    std::vector<std::int32_t> lightOfPrimitive;  // empty when nothing here emits
+    std::uint32_t instanceId = 0;
+
+    std::uint32_t materialOf(std::uint32_t primitive) const {
+        return mesh ? materials[mesh->materials.empty() ? 0 : mesh->materials[primitive]]
+                    : materials[0];
+    }
+    std::int32_t lightOf(std::uint32_t primitive) const {
+        return lightOfPrimitive.empty() ? kNoLight : lightOfPrimitive[primitive];
+    }
+};
+
+}  // namespace pm

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Points on surfaces: of a hit only the primitive is taken; where it is met is computed again in
+// double and rounded once, so that the error is known (see surfaceOffset).
+#include "integrator/scene/surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrator/sampling/warps.h"
+#include "integrator/scene/scene.h"
+#include "integrator/scene/shape_record.h"
+
+namespace pm {
+
+namespace {
+
+// Barycentric coordinates of where a line meets a triangle's plane, clamped into the triangle.
+// Source: Moeller & Trumbore, 1997, in double.
+void barycentrics(const Ray& ray, const Vec3d& v0, const Vec3d& e1, const Vec3d& e2, double& b1,
+                  double& b2) {
+    const Vec3d direction(ray.direction);
+    const Vec3d p = cross(direction, e2);
+    const double determinant = dot(e1, p);
+    b1 = b2 = 1.0 / 3;
+    if (determinant == 0.0) return;  // seen exactly edge-on: any point of it serves
+    const Vec3d s = Vec3d(ray.origin) - v0;
+    b1 = std::clamp(dot(s, p) / determinant, 0.0, 1.0);
+    b2 = std::clamp(dot(direction, cross(s, e1)) / determinant, 0.0, 1.0 - b1);
+}
+
+Vec3f interpolateNormal(const Vec3f& n0, const Vec3f& n1, const Vec3f& n2, float b1, float b2,
+                        const Vec3f& geometricNormal) {
+    Vec3f n = n0 * (1.0f - b1 - b2) + n1 * b1 + n2 * b2;
+    const float l2 = lengthSquared(n);
+    if (!(l2 > 1e-12f)) return geometricNormal;
+    n = n / std::sqrt(l2);
+    // A normal beyond the horizon of its own triangle says nothing usable about its front.
+    return dot(n, geometricNormal) > 0.0f ? n : geometricNormal;
+}
+
+}  // namespace
+
+bool Scene::intersect(const Ray& ray, Surface& surface) const {
+    RayHit hit;
+    if (!m_tracer.intersect(ray, hit)) return false;
+    const ShapeRecord& record = m_shapes[hit.shape];
+    surface.shape = hit.shape;
+    if (record.mesh) {
+        const auto& triangle = record.mesh->triangles[hit.primitive];
+        const Vec3d v0(record.positions[triangle[0]]);
+        double b1, b2;
+        barycentrics(ray, v0, Vec3d(record.positions[triangle[1]]) - v0,
+                     Vec3d(record.positions[triangle[2]]) - v0, b1, b2);
+        surfaceOnTriangle(record, hit.primitive, b1, b2, surface);
+        return true;
+    }
+    const Vec3d origin(ray.origin), direction(ray.direction);
+    const double t = intersectSphere(origin, direction, static_cast<double>(ray.tMax),
+                                     record.sphere.centre, record.sphere.radius);
+    const Vec3d point = origin + direction * (t > 0 ? t : static_cast<double>(hit.t));
+    surfaceOnSphere(record, point - record.sphere.centre, surface);
+    return true;
+}
+
+void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive, double b1,
+                              double b2, Surface& surface) const {
+    const TriangleMesh& mesh = *record.mesh;
+    const auto& triangle = mesh.triangles[primitive];
+    const Vec3d v0(record.positions[triangle[0]]);
+    const Vec3d e1 = Vec3d(record.positions[triangle[1]]) - v0;
+    const Vec3d e2 = Vec3d(record.positions[triangle[2]]) - v0;
+    const Vec3d offsetFromV0 = e1 * b1 + e2 * b2;
+    surface.position = Vec3f(v0 + offsetFromV0);
+    const double farthest = std::max({lengthSquared(offsetFromV0), lengthSquared(offsetFromV0 - e1),
+                                      lengthSquared(offsetFromV0 - e2)});
+    surface.offset = surfaceOffset(surface.position, std::sqrt(static_cast<float>(farthest)));
+
+    Vec3d n = cross(e1, e2);
+    if (record.mirrored) n = -n;
+    const double nLength = length(n);
+    surface.geometricNormal = nLength > 0 ? Vec3f(n / nLength) : Vec3f{0.0f, 1.0f, 0.0f};
+    surface.shadingNormal = surface.geometricNormal;
+    const auto f1 = static_cast<float>(b1), f2 = static_cast<float>(b2);
+    if (!mesh.normals.empty()) {
+        const auto& corner = mesh.normalIndices[primitive];
+        surface.shadingNormal =
+            interpolateNormal(record.normals[corner[0]], record.normals[corner[1]],
+                              record.normals[corner[2]], f1, f2, surface.geometricNormal);
+    }
+    surface.uv = {};
+    if (!mesh.texcoords.empty()) {
+        const auto& corner = mesh.texcoordIndices[primitive];
+        const Vec2f t0 = mesh.texcoords[corner[0]], t1 = mesh.texcoords[corner[1]],
+                    t2 = mesh.texcoords[corner[2]];
+        const float f0 = 1.0f - f1 - f2;
+        surface.uv = {t0.x * f0 + t1.x * f1 + t2.x * f2, t0.y * f0 + t1.y * f1 + t2.y * f2};
+    }
+    surface.primitive = primitive;
+    surface.material = record.materialOf(primitive);
+    surface.light = record.lightOf(primitive);
+    surface.instanceId = record.instanceId;
+}
+
+void Scene::surfaceOnSphere(const ShapeRecord& record, const Vec3d& direction,
+                            Surface& surface) const {
+    const Vec3d n = normalize(direction);
+    surface.position = Vec3f(record.sphere.centre + n * record.sphere.radius);
+    // The sphere is intersected in double from a float origin, so that only roundings to float
+    // count.
+    surface.offset = 2.0f * surfaceOffset(surface.position, 0.0f);
+    surface.geometricNormal = surface.shadingNormal = Vec3f(n);
+    surface.uv = {};  // spheres carry no texture coordinates yet
+    surface.primitive = 0;
+    surface.material = record.materials[0];
+    surface.light = record.lightOf(0);
+    surface.instanceId = record.instanceId;
+}
+
+Surface Scene::pointOnLight(const Light& light, Vec2f u) const {
+    const ShapeRecord& record = m_shapes[light.shape];
+    Surface surface;
+    surface.shape = light.shape;
+    if (record.mesh) {
+        const Vec2f b = sampleTriangle(u);
+        surfaceOnTriangle(record, light.primitive, static_cast<double>(b.x),
+                          static_cast<double>(b.y), surface);
+    } else {
+        surfaceOnSphere(record, Vec3d(sampleUniformSphere(u)), surface);
+    }
+    return surface;
+}
+
+SphereShape Scene::sphere(std::uint32_t shape) const {
+    return m_shapes[shape].sphere;
+}
+
+}  // namespace pm

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+
+#include "integrator/rays/ray_tracer.h"
+#include "integrator/values/vec.h"
+
+namespace pm {
+
+inline constexpr std::int32_t kNoLight = -1;
+
+// A point on a surface of the scene, in the scene's own coordinates.
+struct Surface {
+    Vec3f position;
+    // How far a ray must start off the surface along the geometric normal so that it can't meet the
+    // surface it starts from: an error bound, scene units (see surfaceOffset).
+    float offset = 0.0f;
+    Vec3f geometricNormal;  // unit, out of the front
+    Vec3f shadingNormal;    // unit, in the hemisphere of the geometric normal
+    Vec2f uv;
+    std::uint32_t material = 0;
+    std::uint32_t shape = 0;
+    std::uint32_t primitive = 0;
+    std::uint32_t instanceId = 0;
+    std::int32_t light = kNoLight;  // the area light that this primitive is
+};
+
+// Bound on the distance between a computed point on a triangle and where Embree's robust
+// intersector may still see that triangle. u = 2^-24:
+//   the point is exact in double and rounded to float:       u |p|_1 along any unit normal,
+//   adding the offset rounds once more:                      u |p|_1,
+//   the intersector translates the vertices to the origin and forms t from sums of three products:
+//   about 5 roundings of terms as large as the farthest vertex's distance; 16 taken.
+inline float surfaceOffset(const Vec3f& position, float farthestVertexDistance) {
+    constexpr float u = 0x1p-24f;
+    return 2.0f * u * (std::abs(position.x) + std::abs(position.y) + std::abs(position.z)) +
+           16.0f * u * farthestVertexDistance;
+}
+
+// Where a ray that leaves `surface` along `direction` starts.
+inline Vec3f rayOrigin(const Surface& surface, const Vec3f& direction) {
+    const float side = dot(direction, surface.geometricNormal) >= 0.0f ? 1.0f : -1.0f;
+    return surface.position + surface.geometricNormal * (side * surface.offset);
+}
+
+inline Ray rayFrom(const Surface& surface, const Vec3f& direction) {
+    return {rayOrigin(surface, direction), direction};
+}
+
+}  // namespace pm

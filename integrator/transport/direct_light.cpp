@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "integrator/transport/direct_light.h"
+
+#include <algorithm>
+
+#include "integrator/sampling/warps.h"
+
+namespace pm {
+
+DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
+                              const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
+                              std::uint32_t& rays) {
+    DirectRadiance result;
+    // Drawn in any case: the dimensions that follow keep their numbers.
+    const float uLight = sampler.next1D();
+    const Vec2f uPoint = sampler.next2D();
+    LightSample light;
+    if (!lights.sample(surface, uLight, uPoint, light) || !(light.pdfSolidAngle > 0.0f))
+        return result;
+    const auto contribution = [&](Lobe lobe) {
+        if (!bsdf.has(lobe)) return Rgb{};
+        const Rgb value = bsdf.evaluate(lobe, light.direction);
+        if (isBlack(value)) return Rgb{};
+        const float weight =
+            light.isPoint
+                ? 1.0f
+                : powerHeuristic(light.pdfSolidAngle, bsdf.pdfSolidAngle(lobe, light.direction));
+        return value * light.radiance * (weight / light.pdfSolidAngle);
+    };
+    result.diffuse = contribution(Lobe::kDiffuse);
+    result.glossy = contribution(Lobe::kGlossy);
+    if (isBlack(result.diffuse) && isBlack(result.glossy)) return result;
+    ++rays;
+    if (scene.occluded(light.shadowRay)) return {};
+    return result;
+}
+
+Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const LastScatter& last) {
+    if (surface.light == kNoLight) return {};
+    const Rgb emitted = lights.emittedRadiance(surface, -last.direction);
+    if (isDelta(last.lobe) || isBlack(emitted)) return emitted;
+    return emitted * powerHeuristic(last.pdfSolidAngle,
+                                    lights.pdfSolidAngle(last.from, last.direction, surface));
+}
+
+void recordFirstHit(const Surface& surface, const Bsdf& bsdf, SampleRadiance& result) {
+    result.coverage = 1.0f;
+    result.albedo = bsdf.albedo();
+    result.normal = bsdf.facingShadingNormal();
+    result.firstPosition = surface.position;
+}
+
+bool survivesRoulette(int event, float etaScale, Rgb& throughput, Sampler& sampler) {
+    if (event < 4) return true;
+    const float survival = std::min(1.0f, maxChannel(throughput) * etaScale);
+    if (survival >= 1.0f) return true;
+    if (sampler.next1D() >= survival) return false;
+    throughput *= 1.0f / survival;
+    return true;
+}
+
+}  // namespace pm

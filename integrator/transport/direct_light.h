@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <cstdint>
+
+#include "integrator/materials/bsdf.h"
+#include "integrator/sampling/sampler.h"
+#include "integrator/scene/light_sampler.h"
+#include "integrator/scene/scene.h"
+#include "integrator/values/rgb.h"
+
+namespace pm {
+
+// Which part of the picture a light path belongs to. With D the diffuse lobe and S any other, read
+// from the eye: emission E S* L where every S is delta; direct E S* D L, and E S* L where a glossy
+// lobe takes part; caustic E S* D S+ L; indirect all with two D or more. Each path is in exactly
+// one.
+enum class PathClass : std::uint8_t { kEmission, kDirect, kCaustic, kIndirect };
+
+// How far a path from the camera has come.
+struct PathState {
+    std::uint32_t diffuseCount = 0;
+    bool specularSinceDiffuse = false;
+    bool anyGlossy = false;
+
+    void scatter(Lobe lobe) {
+        if (lobe == Lobe::kDiffuse) {
+            ++diffuseCount;
+            specularSinceDiffuse = false;
+        } else {
+            specularSinceDiffuse = true;
+            anyGlossy = anyGlossy || lobe == Lobe::kGlossy;
+        }
+    }
+    PathClass classify() const {
+        if (diffuseCount == 0) return anyGlossy ? PathClass::kDirect : PathClass::kEmission;
+        if (diffuseCount == 1)
+            return specularSinceDiffuse ? PathClass::kCaustic : PathClass::kDirect;
+        return PathClass::kIndirect;
+    }
+};
+
+// Radiance of one camera sample by class, and what its first hit looks like.
+struct SampleRadiance {
+    Rgb emission, direct, caustic, indirect;
+    float coverage = 0.0f;  // 1: something was hit
+    Rgb albedo;
+    Vec3f normal;
+    Vec3f firstPosition;
+    std::uint32_t rays = 0;
+
+    Rgb& of(PathClass c) {
+        switch (c) {
+            case PathClass::kEmission:
+                return emission;
+            case PathClass::kDirect:
+                return direct;
+            case PathClass::kCaustic:
+                return caustic;
+            default:
+                return indirect;
+        }
+    }
+};
+
+// Radiance reflected by each lobe that is not delta, from one light sample.
+struct DirectRadiance {
+    Rgb diffuse, glossy;
+};
+
+// Next-event estimation for both lobes with one shadow ray; weighted against finding the same light
+// by sampling the lobe. Counts its ray in `rays`.
+DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
+                              const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
+                              std::uint32_t& rays);
+
+// The sample that led from one surface to the next, as far as the weight of light found there
+// needs.
+struct LastScatter {
+    Surface from;
+    Vec3f direction;
+    Lobe lobe = Lobe::kStraight;
+    float pdfSolidAngle = 0.0f;
+};
+
+// Emission of `surface` towards the path that came by `last`, weighted against next-event
+// estimation where that could have found it.
+Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const LastScatter& last);
+
+// First-hit layers: albedo, normal, position.
+void recordFirstHit(const Surface& surface, const Bsdf& bsdf, SampleRadiance& result);
+
+// Russian roulette by throughput after the first events. False: the path ends. Otherwise the
+// throughput is divided by the probability of going on. etaScale undoes the factors eta^2 of
+// refraction, which say nothing about what the path will bring.
+bool survivesRoulette(int event, float etaScale, Rgb& throughput, Sampler& sampler);
+
+// No path is longer than this; only light caught between lossless surfaces is.
+inline constexpr int kMaxPathEvents = 1000;
+
+}  // namespace pm

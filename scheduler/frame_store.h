@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "integrator/values/rect.h"
+
+namespace pm {
+
+// The frame while it is rendered: over a window of pixels, the mean of every channel over the
+// passes made so far, and for three of them, the beauty, how much the passes differ.
+//
+// A pass gives a pixel the mean x_k of its w_k samples. The store holds, for each pixel, sums in
+// double that are updated pass by pass:
+//     W = sum w_k,   mean = sum w_k x_k / W,   M2 = sum w_k (x_k - mean)^2  (Welford's update [1]).
+// With n passes that had samples, and x_k of variance s^2 / w_k, M2 / (n - 1) estimates s^2 without
+// bias, and so M2 / ((n - 1) W) the variance of the mean. Where the passes are equally heavy this
+// needs no assumption on how variance depends on w_k, so it also holds what the samples of a pass
+// share, such as its photons.
+//
+// [1] Welford, "Note on a method for calculating corrected sums of squares and products",
+//     Technometrics 4(3), 1962; with weights as West, Communications of the ACM 22(9), 1979.
+//
+// A pixel's bits depend on its own passes and their order only; the caller's rounding and
+// flush-to-zero modes don't enter (FpEnvironment).
+// Threads: every member may be called from any thread at any time. Readers see each pixel between
+// two passes, never within one; two pixels may be seen after different passes. The passes of one
+// pixel must be added one after the other in pass order: the caller sees to that.
+class FrameStore {
+  public:
+    static constexpr std::int32_t kBeautyChannels = 3;
+
+    // window: pixels, coordinates within +-2^29; not empty. channels: floats a pixel, at least
+    // kBeautyChannels. beautyFirst: the first of the three channels whose deviations are kept.
+    // Errors: kInvalidArgument outside of that; kOutOfMemory.
+    FrameStore(const Rect& window, std::int32_t channels, std::int32_t beautyFirst);
+
+    const Rect& window() const { return m_window; }
+    std::int32_t channels() const { return m_channels; }
+
+    // Bytes that a store of this size takes.
+    static std::uint64_t memoryBytes(const Rect& window, std::int32_t channels);
+
+    // Adds one pass of the pixels of rect. pixels: for each pixel, row by row, the means of its
+    // samples in this pass, channels() floats side by side. weights: for each pixel its number of
+    // samples in this pass; 0 (or anything that is not above it, as NaN) where it had none, and its
+    // floats are then not looked at. A NaN or infinity in pixels stays in the pixel: whoever makes
+    // them replaces and counts bad values before.
+    // Errors: kInvalidArgument when rect is not within the window or a span has another size.
+    void addPass(const Rect& rect, std::span<const float> pixels, std::span<const float> weights);
+
+    // Copies the means of channelCount channels from firstChannel on; 0 for pixels outside the
+    // window and for those that have no sample yet. destination is where the first channel of pixel
+    // (rect.x0, rect.y0) goes; the next pixel of the row lies pixelStrideBytes further and the next
+    // row rowStrideBytes further. Either may be negative (a picture stored bottom up) and needs no
+    // alignment; bytes between the channels written are left alone.
+    // Errors: kInvalidArgument for channels that the store does not have.
+    void read(const Rect& rect, std::int32_t firstChannel, std::int32_t channelCount,
+              float* destination, std::int64_t pixelStrideBytes, std::int64_t rowStrideBytes) const;
+
+    // As read, but the standard error of the mean of the three beauty channels (their unit); 0
+    // where it is not known: fewer than two passes with samples.
+    void readStandardError(const Rect& rect, float* destination, std::int64_t pixelStrideBytes,
+                           std::int64_t rowStrideBytes) const;
+
+    // As read, but one float: the number of samples so far.
+    void readSampleCount(const Rect& rect, float* destination, std::int64_t pixelStrideBytes,
+                         std::int64_t rowStrideBytes) const;
+
+    // Samples so far (the sum of the weights); 0 outside the window.
+    double sampleCount(std::int32_t x, std::int32_t y) const;
+
+    // Standard error of the mean of the three beauty channels (their unit); nothing outside the
+    // window and where fewer than two passes had samples.
+    std::optional<std::array<float, 3>> standardError(std::int32_t x, std::int32_t y) const;
+
+    // An estimate of relMSE without a reference: the mean of (variance of the mean) /
+    // (mean^2 + 0.01) over the beauty channels of the pixels with at least two passes with
+    // samples, summed in pixel order; nothing where there is no such pixel. It knows noise only,
+    // not bias.
+    std::optional<double> estimatedRelMse() const;
+
+  private:
+    // Reads one pixel, index in the window, to floats; called under its band's lock.
+    template <typename ReadPixel>
+    void readRows(const Rect& rect, std::int32_t floatsPerPixel, float* destination,
+                  std::int64_t pixelStrideBytes, std::int64_t rowStrideBytes,
+                  ReadPixel readPixel) const;
+
+    void addPixel(std::size_t pixel, const float* values, double weight);
+    double mean(std::size_t pixel, std::int32_t channel) const;
+    double varianceOfMean(std::size_t pixel, std::int32_t beautyChannel) const;
+    std::size_t pixelIndex(std::int32_t x, std::int32_t y) const;
+    std::mutex& bandLock(std::int32_t y) const;
+
+    Rect m_window;
+    std::int32_t m_channels{};
+    std::int32_t m_beautyFirst{};
+
+    std::vector<double> m_sums;           // sum w_k x_k, for each pixel and channel
+    std::vector<double> m_weights;        // W, for each pixel
+    std::vector<double> m_deviations;     // M2, for each pixel and beauty channel
+    std::vector<std::uint32_t> m_passes;  // n, for each pixel
+
+    // One for each row of atoms on the frame's grid: buckets of one row of buckets share a few,
+    // which are held for microseconds; others share none.
+    std::unique_ptr<std::mutex[]> m_bandLocks;
+};
+
+}  // namespace pm

@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+
+// What is read out of the frame store, beside frame_store.cpp, which fills it.
+#include "scheduler/frame_store.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "integrator/values/error.h"
+#include "scheduler/fp_environment.h"
+
+namespace pm {
+namespace {
+
+// Neumaier's sum: keeps what plain addition rounds away, so that millions of pixels add up to the
+// last bits of a double.
+class CompensatedSum {
+  public:
+    void add(double value) {
+        const double sum = m_sum + value;
+        m_lost +=
+            std::abs(m_sum) >= std::abs(value) ? (m_sum - sum) + value : (value - sum) + m_sum;
+        m_sum = sum;
+    }
+    double value() const { return m_sum + m_lost; }
+
+  private:
+    double m_sum{}, m_lost{};
+};
+
+// The constant of relMSE = mean of (x - r)^2 / (r^2 + 0.01), which keeps black pixels finite.
+constexpr double kRelMseOffset = 0.01;
+
+}  // namespace
+
+double FrameStore::mean(std::size_t pixel, std::int32_t channel) const {
+    const double weight = m_weights[pixel];
+    const std::size_t at =
+        pixel * static_cast<std::size_t>(m_channels) + static_cast<std::size_t>(channel);
+    return weight > 0.0 ? m_sums[at] / weight : 0.0;
+}
+
+double FrameStore::varianceOfMean(std::size_t pixel, std::int32_t beautyChannel) const {
+    const double m2 =
+        m_deviations[pixel * kBeautyChannels + static_cast<std::size_t>(beautyChannel)];
+    // Rounding can leave a tiny negative sum where all passes agree; NaN is to stay NaN.
+    const double deviation = m2 < 0.0 ? 0.0 : m2;
+    return deviation / (static_cast<double>(m_passes[pixel] - 1) * m_weights[pixel]);
+}
+
+template <typename ReadPixel>
+void FrameStore::readRows(const Rect& rect, std::int32_t floatsPerPixel, float* destination,
+                          std::int64_t pixelStrideBytes, std::int64_t rowStrideBytes,
+                          ReadPixel readPixel) const {
+    if (rect.empty() || floatsPerPixel == 0) return;
+    const FpEnvironment guard;
+    const std::size_t bytes = static_cast<std::size_t>(floatsPerPixel) * sizeof(float);
+    std::vector<float> values(static_cast<std::size_t>(floatsPerPixel));
+    char* row = reinterpret_cast<char*>(destination);
+    for (std::int32_t y = rect.y0; y < rect.y1; ++y, row += rowStrideBytes) {
+        const bool rowInside = y >= m_window.y0 && y < m_window.y1;
+        std::unique_lock<std::mutex> lock;
+        if (rowInside) lock = std::unique_lock(bandLock(y));
+        char* at = row;
+        for (std::int32_t x = rect.x0; x < rect.x1; ++x, at += pixelStrideBytes) {
+            if (rowInside && x >= m_window.x0 && x < m_window.x1) {
+                readPixel(pixelIndex(x, y), values.data());
+            } else {
+                std::fill(values.begin(), values.end(), 0.0f);
+            }
+            std::memcpy(at, values.data(), bytes);
+        }
+    }
+}
+
+void FrameStore::read(const Rect& rect, std::int32_t firstChannel, std::int32_t channelCount,
+                      float* destination, std::int64_t pixelStrideBytes,
+                      std::int64_t rowStrideBytes) const {
+    if (firstChannel < 0 || channelCount < 0 || firstChannel > m_channels - channelCount) {
+        throw Error(Status::kInvalidArgument,
+                    fmt::format("reading {} channels from channel {} on; the frame has {}",
+                                channelCount, firstChannel, m_channels));
+    }
+    readRows(rect, channelCount, destination, pixelStrideBytes, rowStrideBytes,
+             [&](std::size_t pixel, float* values) {
+                 for (std::int32_t c = 0; c < channelCount; ++c) {
+                     values[c] = static_cast<float>(mean(pixel, firstChannel + c));
+                 }
+             });
+}
+
+void FrameStore::readStandardError(const Rect& rect, float* destination,
+                                   std::int64_t pixelStrideBytes,
+                                   std::int64_t rowStrideBytes) const {
+    readRows(rect, kBeautyChannels, destination, pixelStrideBytes, rowStrideBytes,
+             [&](std::size_t pixel, float* values) {
+                 for (std::int32_t i = 0; i < kBeautyChannels; ++i) {
+                     const bool known = m_passes[pixel] >= 2;
+                     values[i] =
+                         known ? static_cast<float>(std::sqrt(varianceOfMean(pixel, i))) : 0.0f;
+                 }
+             });
+}
+
+void FrameStore::readSampleCount(const Rect& rect, float* destination,
+                                 std::int64_t pixelStrideBytes, std::int64_t rowStrideBytes) const {
+    readRows(rect, 1, destination, pixelStrideBytes, rowStrideBytes,
+             [&](std::size_t pixel, float* values) {
+                 values[0] = static_cast<float>(m_weights[pixel]);
+             });
+}
+
+double FrameStore::sampleCount(std::int32_t x, std::int32_t y) const {
+    if (!m_window.contains(x, y)) return 0.0;
+    const std::lock_guard lock(bandLock(y));
+    return m_weights[pixelIndex(x, y)];
+}
+
+std::optional<std::array<float, 3>> FrameStore::standardError(std::int32_t x,
+                                                              std::int32_t y) const {
+    if (!m_window.contains(x, y)) return std::nullopt;
+    const FpEnvironment guard;
+    const std::lock_guard lock(bandLock(y));
+    const std::size_t pixel = pixelIndex(x, y);
+    if (m_passes[pixel] < 2) return std::nullopt;
+    std::array<float, 3> error{};
+    for (std::int32_t i = 0; i < kBeautyChannels; ++i) {
+        error[static_cast<std::size_t>(i)] =
+            static_cast<float>(std::sqrt(varianceOfMean(pixel, i)));
+    }
+    return error;
+}
+
+std::optional<double> FrameStore::estimatedRelMse() const {
+    const FpEnvironment guard;
+    CompensatedSum sum;
+    std::uint64_t terms = 0;
+    for (std::int32_t y = m_window.y0; y < m_window.y1; ++y) {
+        const std::lock_guard lock(bandLock(y));
+        for (std::int32_t x = m_window.x0; x < m_window.x1; ++x) {
+            const std::size_t pixel = pixelIndex(x, y);
+            if (m_passes[pixel] < 2) continue;
+            for (std::int32_t i = 0; i < kBeautyChannels; ++i) {
+                const double pixelMean = mean(pixel, m_beautyFirst + i);
+                sum.add(varianceOfMean(pixel, i) / (pixelMean * pixelMean + kRelMseOffset));
+            }
+            terms += kBeautyChannels;
+        }
+    }
+    if (terms == 0) return std::nullopt;
+    return sum.value() / static_cast<double>(terms);
+}
+
+}  // namespace pm

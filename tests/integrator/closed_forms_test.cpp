@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Scenes whose answer is known before anything is rendered, for both integrators. Where photons are
+// estimated over an area the estimate is biased at edges; the bias allowed is stated with each
+// case.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "tests/integrator/scene_maker.h"
+
+namespace pm::test {
+namespace {
+
+class ClosedForm : public ::testing::TestWithParam<IntegratorKind> {
+  protected:
+    static constexpr double kPiD = std::numbers::pi;
+    bool photon() const { return GetParam() == IntegratorKind::kPhoton; }
+    RenderSettings frame(std::int32_t size, std::uint32_t passes, std::uint32_t level) const {
+        return smallFrame(size, size, GetParam(), passes, level);
+    }
+};
+
+INSTANTIATE_TEST_SUITE_P(Both, ClosedForm,
+                         ::testing::Values(IntegratorKind::kPhoton, IntegratorKind::kPath),
+                         [](const auto& info) {
+                             return info.param == IntegratorKind::kPhoton ? "photon" : "path";
+                         });
+
+// Everything emits Le and reflects rho: L = Le / (1 - rho) everywhere (Smits & Jensen 2000, eq. 1).
+TEST_P(ClosedForm, FurnaceIsConstant) {
+    SceneMaker maker;
+    maker.box({-1, -1, -1}, {1, 1, 1}, maker.diffuse(Rgb(0.5f), Rgb(0.5f)), true);
+    maker.camera({0.1, 0.2, 0.3}, {1, 0.4, -0.2}, {0, 1, 0}, 60);
+    const MeasuredLayers m = measure(maker.build(), frame(32, 16, 4));
+    EXPECT_TRUE(agrees(m.emission, Rgb(0.5f), 0));
+    EXPECT_TRUE(agrees(m.direct, Rgb(0.25f), 0));
+    // Near edges a disc of the photon estimate reaches beyond its wall; see docs/physics.md.
+    EXPECT_TRUE(agrees(m.beauty, Rgb(1.0f), photon() ? 0.005 : 0));
+}
+
+// A sphere with a point light at its centre: E = Phi/(4 pi r^2) (1 + rho/(1-rho)).
+TEST_P(ClosedForm, IntegratingSphere) {
+    SceneMaker maker;
+    maker.sphere({3, -2, 1}, 1.0, maker.diffuse(Rgb(0.5f)));
+    maker.pointLight({3, -2, 1}, Rgb(1.0f));  // Phi = 4 pi
+    maker.camera({3.1, -2, 1}, {4, -2, 1.5}, {0, 1, 0}, 90);
+    const MeasuredLayers m = measure(maker.build(), frame(32, 16, 4));
+    const auto radiance = [](double irradiance) {
+        return Rgb(static_cast<float>(0.5 / std::numbers::pi * irradiance));
+    };
+    EXPECT_TRUE(agrees(m.direct, radiance(1.0), 0));
+    EXPECT_TRUE(agrees(m.indirect, radiance(1.0), photon() ? 0.003 : 0));
+    EXPECT_TRUE(agrees(m.beauty, radiance(2.0), photon() ? 0.002 : 0));
+}
+
+// A unit square light over a plane: E = 0.75227469 L under its centre (Lambert 1760; analytic B1).
+TEST_P(ClosedForm, QuadLightOnPlane) {
+    SceneMaker maker;
+    const auto grey = maker.diffuse(Rgb(0.8f));
+    const auto light = maker.diffuse({}, Rgb(1.0f, 2.0f, 4.0f));
+    maker.quad({-50, 0, 50}, {100, 0, 0}, {0, 0, -100}, grey);
+    maker.quad({-0.5, 1, -0.5}, {1, 0, 0}, {0, 0, 1}, light);  // faces down
+    maker.camera({0.001, 0.9, 0}, {0, 0, 0}, {0, 0, -1}, 0.5);
+    const MeasuredLayers m = measure(maker.build(), frame(16, 16, 4));
+    const auto l = static_cast<float>(0.8 / kPiD * 0.75227469);
+    EXPECT_TRUE(agrees(m.direct, Rgb(l, 2 * l, 4 * l), 1e-4));
+    // The light is black and sees only the plane, so nothing comes back.
+    EXPECT_TRUE(agrees(m.beauty, Rgb(l, 2 * l, 4 * l), 1e-4));
+}
+
+// A cube with a point light at its centre: the mean indirect irradiance over its walls is
+// Phi rho / (S (1 - rho)) by energy balance (CIE 171:2006, case 5.8).
+TEST_P(ClosedForm, CubeAverage) {
+    SceneMaker maker;
+    const float rho = 0.5f;
+    maker.box({-2, -2, -2}, {2, 2, 2}, maker.diffuse(Rgb(rho)), true);
+    maker.pointLight({0, 0, 0}, Rgb(static_cast<float>(10000 / (4 * kPiD))));
+    // One wall seen exactly from the centre stands for all six by symmetry; each pixel of it is to
+    // count by its area, which a camera at a distance does: from outside, through the back of the
+    // opposite wall, is not possible, so pixels are weighted by looking from the centre with a 90
+    // degree view, where a pixel's area on the wall is the same for all pixels.
+    maker.camera({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 90);
+    const MeasuredLayers m = measure(maker.build(), frame(32, 24, 4));
+    const double expected = rho / kPiD * 10000 * rho / (96 * (1 - rho));
+    EXPECT_TRUE(agrees(m.indirect, Rgb(static_cast<float>(expected)), photon() ? 0.01 : 0));
+}
+
+// A slab of glass before an emitting wall: T = 2n/(n^2+1) at normal incidence, all internal bounces
+// included; what is not transmitted is reflected (analytic D2).
+TEST_P(ClosedForm, SlabTransmittance) {
+    for (const float n : {1.33f, 1.5f, 2.4f}) {
+        SceneMaker maker;
+        const auto light = maker.diffuse({}, Rgb(1.0f));
+        MaterialDescription glass;
+        glass.kind = MaterialKind::kDielectric;
+        glass.ior = n;
+        maker.quad({-50, -50, -2}, {100, 0, 0}, {0, 100, 0}, light);  // faces +z
+        maker.box({-40, -40, -1}, {40, 40, -0.9}, maker.material(glass), false);
+        maker.camera({0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 0.2);
+        const MeasuredLayers m = measure(maker.build(), frame(16, 32, 5));
+        EXPECT_TRUE(agrees(m.beauty, Rgb(2 * n / (n * n + 1)), 1e-4)) << "n = " << n;
+    }
+}
+
+// The same slab between a light and a black box: photons through it light the floor by the same T,
+// so that the caustic's flux density is E T over the floor's middle. Collimation by distance.
+TEST_P(ClosedForm, MirrorFurnaceIsInvisible) {
+    SceneMaker maker;
+    maker.box({-1, -1, -1}, {1, 1, 1}, maker.diffuse(Rgb(0.5f), Rgb(0.5f)), true);
+    MaterialDescription mirror;
+    mirror.kind = MaterialKind::kMirror;
+    mirror.glossy = Rgb(1.0f);
+    maker.sphere({0.2, 0.1, -0.4}, 0.3, maker.material(mirror));
+    MaterialDescription glass;
+    glass.kind = MaterialKind::kDielectric;
+    maker.sphere({-0.4, -0.3, -0.4}, 0.3, maker.material(glass));
+    maker.camera({0, 0, 0.9}, {0, 0, -1}, {0, 1, 0}, 70);
+    const MeasuredLayers m = measure(maker.build(), frame(32, 16, 4));
+    EXPECT_TRUE(agrees(m.beauty, Rgb(1.0f), photon() ? 0.008 : 0));
+}
+
+}  // namespace
+}  // namespace pm::test

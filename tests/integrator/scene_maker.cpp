@@ -1,0 +1,228 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "tests/integrator/scene_maker.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "integrator/geometry/polygon_mesh.h"
+
+namespace pm::test {
+
+namespace {
+
+void addMesh(SceneDescription& description, TriangleMesh mesh, std::uint32_t material) {
+    mesh.materials.assign(mesh.triangles.size(), 0);
+    mesh.faces.resize(mesh.triangles.size());
+    InstanceDescription instance;
+    instance.shape = std::make_shared<const TriangleMesh>(std::move(mesh));
+    instance.materials = {material};
+    description.instances.push_back(std::move(instance));
+}
+
+}  // namespace
+
+std::uint32_t SceneMaker::material(const MaterialDescription& material) {
+    description.materials.push_back(material);
+    return static_cast<std::uint32_t>(description.materials.size() - 1);
+}
+
+std::uint32_t SceneMaker::diffuse(Rgb reflectance, Rgb emission) {
+    MaterialDescription m;
+    m.diffuse = reflectance;
+    m.emission = emission;
+    return material(m);
+}
+
+void SceneMaker::quad(Vec3d p, Vec3d e0, Vec3d e1, std::uint32_t material,
+                      std::uint32_t divisions) {
+    TriangleMesh mesh;
+    const std::uint32_t n = divisions;
+    for (std::uint32_t j = 0; j <= n; ++j)
+        for (std::uint32_t i = 0; i <= n; ++i)
+            mesh.positions.push_back(
+                Vec3f(p + e0 * (static_cast<double>(i) / n) + e1 * (static_cast<double>(j) / n)));
+    for (std::uint32_t j = 0; j < n; ++j)
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t a = j * (n + 1) + i, b = a + 1, c = b + n + 1, d = a + n + 1;
+            mesh.triangles.push_back({a, b, c});
+            mesh.triangles.push_back({a, c, d});
+        }
+    addMesh(description, std::move(mesh), material);
+}
+
+void SceneMaker::box(Vec3d lo, Vec3d hi, std::uint32_t material, bool inwards) {
+    const Vec3d size = hi - lo;
+    const Vec3d x{size.x, 0, 0}, y{0, size.y, 0}, z{0, 0, size.z};
+    const auto wall = [&](Vec3d p, Vec3d a, Vec3d b) {
+        inwards ? quad(p, a, b, material) : quad(p, b, a, material);
+    };
+    wall(lo, z, x);      // bottom, up
+    wall(lo + y, x, z);  // top, down
+    wall(lo, y, z);      // left, towards +x
+    wall(lo + x, z, y);  // right, towards -x
+    wall(lo, x, y);      // back, towards +z
+    wall(lo + z, y, x);  // front, towards -z
+}
+
+void SceneMaker::sphere(Vec3d centre, double radius, std::uint32_t material) {
+    InstanceDescription instance;
+    instance.shape = SphereShape{centre, radius};
+    instance.materials = {material};
+    description.instances.push_back(std::move(instance));
+}
+
+void SceneMaker::meshSphere(Vec3d centre, double radius, std::uint32_t material, bool inwards,
+                            int rings) {
+    TriangleMesh mesh;
+    const int segments = 2 * rings;
+    for (int j = 0; j <= rings; ++j)
+        for (int i = 0; i < segments; ++i) {
+            const double theta = std::numbers::pi * j / rings;
+            const double phi = 2 * std::numbers::pi * i / segments;
+            const Vec3d n{std::sin(theta) * std::cos(phi), std::cos(theta),
+                          std::sin(theta) * std::sin(phi)};
+            mesh.positions.push_back(Vec3f(centre + n * radius));
+            mesh.normals.push_back(Vec3f(inwards ? -n : n));
+        }
+    const auto at = [&](int j, int i) {
+        return static_cast<std::uint32_t>(j * segments + i % segments);
+    };
+    for (int j = 0; j < rings; ++j)
+        for (int i = 0; i < segments; ++i) {
+            TriangleMesh::Corners first{at(j, i), at(j, i + 1), at(j + 1, i + 1)};
+            TriangleMesh::Corners second{at(j, i), at(j + 1, i + 1), at(j + 1, i)};
+            if (inwards) {
+                std::swap(first[1], first[2]);
+                std::swap(second[1], second[2]);
+            }
+            if (j > 0) mesh.triangles.push_back(first);
+            if (j < rings - 1) mesh.triangles.push_back(second);
+        }
+    mesh.normalIndices = mesh.triangles;
+    addMesh(description, std::move(mesh), material);
+}
+
+void SceneMaker::pointLight(Vec3d position, Rgb intensity) {
+    description.pointLights.push_back({position, intensity, ""});
+}
+
+void SceneMaker::camera(Vec3d eye, Vec3d lookAt, Vec3d up, double verticalDegrees) {
+    const Vec3d back = normalize(eye - lookAt);
+    const Vec3d right = normalize(cross(up, back));
+    const Vec3d u = cross(back, right);
+    CameraDescription camera;
+    camera.cameraToWorld = {right.x, u.x,   back.x,  eye.x, right.y, u.y,
+                            back.y,  eye.y, right.z, u.z,   back.z,  eye.z};
+    camera.verticalFieldOfView = verticalDegrees * std::numbers::pi / 180;
+    description.camera = camera;
+}
+
+std::shared_ptr<const Scene> SceneMaker::build() const {
+    return Scene::build(description, "best");
+}
+
+namespace {
+
+// Sums of one layer over the region, pass by pass.
+struct PassMeans {
+    std::vector<std::array<double, 3>> means;
+
+    Measured summarise() const {
+        Measured m;
+        const auto n = static_cast<double>(means.size());
+        for (std::size_t c = 0; c < 3; ++c) {
+            for (const auto& pass : means) m.mean[c] += pass[c] / n;
+            double squares = 0;
+            for (const auto& pass : means) squares += (pass[c] - m.mean[c]) * (pass[c] - m.mean[c]);
+            m.standardError[c] = n > 1 ? std::sqrt(squares / (n * (n - 1))) : 0;
+        }
+        return m;
+    }
+};
+
+}  // namespace
+
+MeasuredLayers measure(const std::shared_ptr<const Scene>& scene, RenderSettings settings,
+                       Rect region) {
+    if (region.empty()) region = settings.window;
+    FrameRenderer renderer(scene, settings);
+    const ChannelLayout layout = renderer.layout();
+    const std::atomic<bool> cancelled{false};
+    std::array<PassMeans, 5> sums;
+    const std::array<std::int32_t, 5> offsets = {layout.beauty, layout.direct, layout.indirect,
+                                                 layout.caustic, layout.emission};
+    for (std::uint32_t pass = 0; pass < settings.passes; ++pass) {
+        renderer.beginPass(pass, cancelled, {});
+        const auto channels = static_cast<std::size_t>(layout.count);
+        const auto width = static_cast<std::size_t>(region.width());
+        std::vector<float> pixels(static_cast<std::size_t>(region.area()) * channels);
+        std::vector<float> weights(static_cast<std::size_t>(region.area()));
+        tbb::parallel_for(std::int32_t{0}, region.height(), [&](std::int32_t row) {
+            const auto first = static_cast<std::size_t>(row) * width;
+            const Rect line{region.x0, region.y0 + row, region.x1, region.y0 + row + 1};
+            renderer.renderRegion(line,
+                                  std::span(pixels).subspan(first * channels, width * channels),
+                                  std::span(weights).subspan(first, width), cancelled);
+        });
+        for (std::size_t l = 0; l < sums.size(); ++l) {
+            std::array<double, 3> mean{};
+            double weight = 0;
+            for (std::size_t i = 0; i < weights.size(); ++i) {
+                weight += static_cast<double>(weights[i]);
+                for (std::size_t c = 0; c < 3; ++c)
+                    mean[c] += static_cast<double>(weights[i]) *
+                               static_cast<double>(
+                                   pixels[i * channels + static_cast<std::size_t>(offsets[l]) + c]);
+            }
+            for (double& m : mean) m /= weight;
+            sums[l].means.push_back(mean);
+        }
+    }
+    return {sums[0].summarise(), sums[1].summarise(), sums[2].summarise(),
+            sums[3].summarise(), sums[4].summarise(), renderer.counters()};
+}
+
+RenderSettings smallFrame(std::int32_t width, std::int32_t height, IntegratorKind integrator,
+                          std::uint32_t passes, std::uint32_t aaLevel) {
+    RenderSettings settings;
+    settings.width = width;
+    settings.height = height;
+    settings.window = {0, 0, width, height};
+    settings.integrator = integrator;
+    settings.passes = passes;
+    settings.aaLevel = aaLevel;
+    return settings;
+}
+
+::testing::AssertionResult agrees(const Measured& measured, Rgb expected, double relativeBias,
+                                  double sigmas) {
+    for (int c = 0; c < 3; ++c) {
+        const auto i = static_cast<std::size_t>(c);
+        const double want = static_cast<double>(expected[c]);
+        // Sums in float along a path: a few units in the last place.
+        const double allowed = sigmas * measured.standardError[i] + (relativeBias + 1e-6) * want;
+        if (!(std::abs(measured.mean[i] - want) <= allowed))
+            return ::testing::AssertionFailure() << fmt::format(
+                       "channel {}: measured {} +- {}, expected {}, off by {:.3f} %, allowed {}", c,
+                       measured.mean[i], measured.standardError[i], want,
+                       100 * (measured.mean[i] / want - 1), allowed);
+    }
+    return ::testing::AssertionSuccess();
+}
+
+::testing::AssertionResult agree(const Measured& a, const Measured& b, double relativeBias,
+                                 double sigmas) {
+    Measured combined = a;
+    for (std::size_t c = 0; c < 3; ++c)
+        combined.standardError[c] = std::hypot(a.standardError[c], b.standardError[c]);
+    return agrees(combined,
+                  {static_cast<float>(b.mean[0]), static_cast<float>(b.mean[1]),
+                   static_cast<float>(b.mean[2])},
+                  relativeBias, sigmas);
+}
+
+}  // namespace pm::test
