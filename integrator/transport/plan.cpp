@@ -81,10 +81,12 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     plan.tracePhotons = plan.globalMap || plan.causticMap;
     if (plan.globalMap) {
         plan.globalPhotons = settings.photons > 0 ? settings.photons : kAutoGlobalPhotons;
+        plan.sitePhotons = std::max<std::uint64_t>(1, plan.globalPhotons / kPhotonsPerSite);
         plan.reasons.push_back(fmt::format(
-            "global map: {} photons a pass, for one final-gather ray a sample{}",
-            plan.globalPhotons,
-            settings.gatherRays > 1 ? fmt::format(" times {}", settings.gatherRays) : ""));
+            "global map: {} photons a pass, its irradiance kept where {} others land, for {} "
+            "final-gather ray{} a sample",
+            plan.globalPhotons, plan.sitePhotons, settings.gatherRays,
+            settings.gatherRays > 1 ? "s" : ""));
     } else {
         plan.reasons.push_back("no global map: all surfaces lie in one plane");
     }
