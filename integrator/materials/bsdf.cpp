@@ -66,7 +66,8 @@ Bsdf::Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transpo
         m_ns = -m_ns;
     }
     // Seen from behind its shading normal a surface would have no front to reflect with.
-    if (dot(m_out, m_ns) <= 0.0f) m_ns = m_ng;
+    const bool behindShading = dot(m_out, m_ns) <= 0.0f;
+    if (behindShading) m_ns = m_ng;
     const float opacity = clamp01((1.0f - m_material.transparency) *
                                   lookUp(scene, m_material.opacityTexture, surface).r);
     switch (m_material.kind) {
@@ -81,6 +82,9 @@ Bsdf::Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transpo
             break;
     }
     m_reflectance[index(Lobe::kStraight)] = Rgb(1.0f - opacity);
+    // A camera path finds no light there (see isReflection), so a photon from there brings none.
+    if (behindShading && transport == Transport::kPhotons)
+        m_reflectance[index(Lobe::kDiffuse)] = m_reflectance[index(Lobe::kGlossy)] = Rgb();
     limitEnergy();
     chooseProbabilities(carried);
 }

@@ -22,8 +22,10 @@ constexpr std::uint32_t kRimRays = 8;
 constexpr std::uint32_t kAreaRays = 32;
 // The share of the disc in the sharpest corner that is still told apart; a square one has 1/4.
 constexpr float kSmallestShare = 0.1f;
+// A site farther away than this, in radii, says too little about a point.
+constexpr float kSiteReach = 2.0f;
 // Cosine of how far the surface may turn away within the disc; as the map's photons.
-constexpr float kNormalCosine = 0.7f;
+constexpr float kNormalCosine = 0.9f;
 
 }  // namespace
 
@@ -84,7 +86,7 @@ Rgb IrradianceSites::estimate(const Vec3f& position, const Vec3f& normal,
 }
 
 Rgb IrradianceSites::at(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const {
-    m_sites.findNearest({position, normal, 1, 4.0f * m_radius}, scratch);
+    m_sites.findNearest({position, normal, 1, kSiteReach * m_radius}, scratch);
     if (scratch.found().empty())
         return m_map.fluxWithin(position, normal, m_radius) / (kPi * m_radius * m_radius);
     const std::uint32_t index = scratch.found().front().index;

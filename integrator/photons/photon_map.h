@@ -117,11 +117,11 @@ class PhotonMap {
         std::uint32_t axis;
     };
     struct Entry;
-    // A photon counts when its surface's normal is within 45 degrees of the query's ...
-    static constexpr float kNormalCosine = 0.7f;
+    // A photon counts when its surface's normal is within 25 degrees of the query's ...
+    static constexpr float kNormalCosine = 0.9f;
     // ... and it lies at most this far off the query's plane, relative to its distance: a ball
-    // becomes a disc, yet a curved surface (height d^2/2R at distance d) stays inside up to 0.6 R.
-    static constexpr float kFlatness = 0.3f;
+    // becomes a disc, yet a curved surface (height d^2/2R at distance d) stays inside up to 0.4 R.
+    static constexpr float kFlatness = 0.2f;
 
     void buildNode(std::vector<Entry>& entries, std::size_t node, std::size_t begin,
                    std::size_t end, std::uint32_t level);

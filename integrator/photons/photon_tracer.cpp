@@ -72,8 +72,7 @@ class PhotonWalk {
             }
             const Vec3f out = -ray.direction;
             const Bsdf bsdf(m_scene, surface, out, Transport::kPhotons, flux);
-            const bool wanted =
-                m_request.kind != PhotonKind::kCaustic || (onlySpecular && event > 0);
+            const bool wanted = !isCaustic(m_request.kind) || (onlySpecular && event > 0);
             if (wanted && bsdf.has(Lobe::kDiffuse)) store(surface, bsdf, out, flux, batch);
 
             BsdfSample sample;
@@ -84,7 +83,7 @@ class PhotonWalk {
                 return;
             }
             if (sample.lobe == Lobe::kDiffuse) onlySpecular = false;
-            if (m_request.kind == PhotonKind::kCaustic && !onlySpecular) {
+            if (isCaustic(m_request.kind) && !onlySpecular) {
                 balance.fluxAbsorbed += sum(flux);
                 return;
             }

@@ -24,10 +24,16 @@ struct PhotonBalance {
 };
 
 enum class PhotonKind : std::uint8_t {
-    kGlobal,   // every arrival at a diffuse surface
-    kSites,    // as kGlobal, with random numbers of their own: where irradiance is kept
+    kGlobal,       // every arrival at a diffuse surface
+    kSites,        // as kGlobal, with random numbers of their own: where irradiance is kept
+    kGlobalPilot,  // as kGlobal and kCaustic, with random numbers of their own: to find radii
+    kCausticPilot,
     kCaustic,  // the first arrival at a diffuse surface, and only by way of at least one other lobe
 };
+
+constexpr bool isCaustic(PhotonKind kind) {
+    return kind == PhotonKind::kCaustic || kind == PhotonKind::kCausticPilot;
+}
 
 struct PhotonTraceRequest {
     PhotonKind kind = PhotonKind::kGlobal;

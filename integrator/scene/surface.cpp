@@ -29,6 +29,17 @@ void barycentrics(const Ray& ray, const Vec3d& v0, const Vec3d& e1, const Vec3d&
     b2 = std::clamp(dot(direction, cross(s, e1)) / determinant, 0.0, 1.0 - b1);
 }
 
+// How much more than a well-shaped triangle's the normal that the intersector finds in float may be
+// off: it takes the cross product of the shortest edge and another, rounded by u times the product
+// of their lengths, so that the error relative to the area grows for slivers without a short edge.
+// Cut where the offset would be a thousandth of the triangle's size.
+double normalCondition(const Vec3d& e1, const Vec3d& e2, double twiceArea) {
+    constexpr double kLargest = 1000;
+    const double a = lengthSquared(e1), b = lengthSquared(e2), c = lengthSquared(e2 - e1);
+    const double product = std::sqrt(std::min({a, b, c}) * std::max({a, b, c}));
+    return product < kLargest * twiceArea ? std::max(1.0, product / twiceArea) : kLargest;
+}
+
 Vec3f interpolateNormal(const Vec3f& n0, const Vec3f& n1, const Vec3f& n2, float b1, float b2,
                         const Vec3f& geometricNormal) {
     Vec3f n = n0 * (1.0f - b1 - b2) + n1 * b1 + n2 * b2;
@@ -74,11 +85,12 @@ void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive
     surface.position = Vec3f(v0 + offsetFromV0);
     const double farthest = std::max({lengthSquared(offsetFromV0), lengthSquared(offsetFromV0 - e1),
                                       lengthSquared(offsetFromV0 - e2)});
-    surface.offset = surfaceOffset(surface.position, std::sqrt(static_cast<float>(farthest)));
-
     Vec3d n = cross(e1, e2);
     if (record.mirrored) n = -n;
     const double nLength = length(n);
+    surface.offset = surfaceOffset(
+        surface.position,
+        static_cast<float>(std::sqrt(farthest) * normalCondition(e1, e2, nLength)));
     surface.geometricNormal = nLength > 0 ? Vec3f(n / nLength) : Vec3f{0.0f, 1.0f, 0.0f};
     surface.shadingNormal = surface.geometricNormal;
     const auto f1 = static_cast<float>(b1), f2 = static_cast<float>(b2);

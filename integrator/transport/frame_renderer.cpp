@@ -9,6 +9,7 @@
 #include <mutex>
 #include <utility>
 
+#include "integrator/photons/caustic_map.h"
 #include "integrator/photons/irradiance_sites.h"
 #include "integrator/photons/photon_map.h"
 #include "integrator/photons/photon_tracer.h"
@@ -101,7 +102,6 @@ struct FrameRenderer::Impl {
     };
     void count(PhotonKind kind, const PhotonBalance& balance);
     std::vector<Photon> trace(PhotonKind kind, std::uint64_t photons, const PassControl& control);
-    std::unique_ptr<PhotonMap> buildMap(std::vector<Photon> photons, float& radius);
     void buildMaps(const PassControl& control);
     void findRadii(const PassControl& control);
     void dropMaps();
@@ -114,11 +114,14 @@ struct FrameRenderer::Impl {
     Camera camera;
     LightSampler lights;
     std::uint32_t pass = 0;
-    std::unique_ptr<PhotonMap> globalMap, causticMap;
-    std::unique_ptr<IrradianceSites> sites;  // refers to globalMap
-    // Of pass 0; later passes shrink them. Set by the first pass that is begun.
-    float globalRadius = 0.0f, causticRadius = 0.0f;
+    // Found once a render, by pilots.
     bool haveRadii = false;
+    float globalRadius = 0.0f;
+    std::unique_ptr<CausticRadius> causticRadius;
+    // Of this pass.
+    std::unique_ptr<PhotonMap> globalMap;
+    std::unique_ptr<IrradianceSites> sites;  // refers to globalMap
+    std::unique_ptr<CausticMap> causticMap;  // refers to causticRadius
     bool badValuesReported = false;
     mutable std::mutex mutex;  // of what follows
     mutable RenderCounters counters;
@@ -134,9 +137,7 @@ SampleRadiance FrameRenderer::Impl::sample(std::int32_t x, std::int32_t y, std::
         camera.ray(x + static_cast<double>(jitter.x), y + static_cast<double>(jitter.y));
     if (settings.integrator == IntegratorKind::kPath)
         return PathIntegrator(*scene, lights).sample(ray, sampler);
-    return PhotonIntegrator(*scene, lights,
-                            {sites.get(), causticMap.get(), causticRadius * radiusFactor(pass)},
-                            settings.gatherRays)
+    return PhotonIntegrator(*scene, lights, {sites.get(), causticMap.get()}, settings.gatherRays)
         .sample(ray, sampler, scratch);
 }
 
@@ -192,25 +193,27 @@ void FrameRenderer::Impl::count(PhotonKind kind, const PhotonBalance& balance) {
     counters.rays += balance.rays;
     counters.photonsEmitted += balance.emitted;
     counters.photonsLost += balance.lost;
-    counters.fluxEmitted += balance.fluxEmitted;
-    counters.fluxAbsorbed += balance.fluxAbsorbed;
-    counters.fluxEscaped += balance.fluxEscaped;
-    counters.fluxLost += balance.fluxLost;
-    if (kind == PhotonKind::kGlobal) counters.photonsStoredGlobal += balance.stored;
+    if (kind == PhotonKind::kGlobal) {
+        counters.fluxEmitted += balance.fluxEmitted;
+        counters.fluxAbsorbed += balance.fluxAbsorbed;
+        counters.fluxEscaped += balance.fluxEscaped;
+        counters.fluxLost += balance.fluxLost;
+        counters.photonsStoredGlobal += balance.stored;
+    }
     if (kind == PhotonKind::kCaustic) counters.photonsStoredCaustic += balance.stored;
-    if (pass > 0) return;  // notices come once a render, not once a pass
-    if (balance.stored == 0 && kind == PhotonKind::kGlobal)
+    // Notices come once a render, from its pilots, not once a pass.
+    if (balance.stored == 0 && kind == PhotonKind::kGlobalPilot)
         notices.push_back({NoticeCode::kNoPhotons,
                            "0 photons reached a diffuse surface, so there is no indirect light"});
-    if (balance.stored == 0 && kind == PhotonKind::kCaustic)
+    if (balance.stored == 0 && kind == PhotonKind::kCausticPilot)
         notices.push_back({NoticeCode::kNoCausticPhotons,
                            "0 photons reached a diffuse surface by way of another, so there is no "
                            "caustic light"});
-    if (balance.lost > 0)
+    if (balance.lost > 0 && (kind == PhotonKind::kGlobalPilot || kind == PhotonKind::kCausticPilot))
         notices.push_back({NoticeCode::kLostPhotons,
-                           std::to_string(balance.lost) +
-                               " photons of the first pass were lost: caught between lossless "
-                               "surfaces or spoiled by rounding"});
+                           std::to_string(balance.lost) + " of " + std::to_string(balance.emitted) +
+                               " pilot photons were lost: caught between lossless surfaces or "
+                               "spoiled by rounding"});
 }
 
 std::vector<Photon> FrameRenderer::Impl::trace(PhotonKind kind, std::uint64_t photons,
@@ -218,9 +221,9 @@ std::vector<Photon> FrameRenderer::Impl::trace(PhotonKind kind, std::uint64_t ph
     const auto start = std::chrono::steady_clock::now();
     const auto part = [&](double fraction) {
         if (control.progress)
-            control.progress((static_cast<double>(control.photonsBefore) +
-                              fraction * static_cast<double>(photons)) /
-                             static_cast<double>(plan.photonsPerPass()));
+            control.progress(std::min(1.0, (static_cast<double>(control.photonsBefore) +
+                                            fraction * static_cast<double>(photons)) /
+                                               static_cast<double>(plan.photonsPerPass())));
     };
     PhotonTraceResult result =
         tracePhotons(*scene, lights, {kind, photons, settings.seed, pass}, control.cancelled, part);
@@ -231,40 +234,51 @@ std::vector<Photon> FrameRenderer::Impl::trace(PhotonKind kind, std::uint64_t ph
     return std::move(result.photons);
 }
 
-std::unique_ptr<PhotonMap> FrameRenderer::Impl::buildMap(std::vector<Photon> photons,
-                                                         float& radius) {
-    if (photons.empty()) return nullptr;
-    const auto start = std::chrono::steady_clock::now();
-    auto map = std::make_unique<PhotonMap>(std::move(photons));
-    if (radius == 0.0f) radius = map->typicalRadius(settings.estimatePhotons);
-    const std::lock_guard lock(mutex);
-    counters.mapSeconds += secondsSince(start);
-    counters.peakMapBytes = std::max(
-        counters.peakMapBytes, map->memoryBytes() + (globalMap ? globalMap->memoryBytes() : 0) +
-                                   (sites ? sites->memoryBytes() : 0));
-    return map;
+void FrameRenderer::Impl::findRadii(const PassControl& control) {
+    const std::uint32_t wanted = std::exchange(pass, 0);
+    if (plan.globalMap) {
+        const PhotonMap pilot(trace(PhotonKind::kGlobalPilot, plan.globalPilotPhotons(), control));
+        globalRadius = pilot.typicalRadius(
+            std::max(4u, settings.estimatePhotons / CausticRadius::kPilotShare));
+    }
+    if (plan.causticMap)
+        causticRadius = std::make_unique<CausticRadius>(
+            trace(PhotonKind::kCausticPilot, plan.causticPilotPhotons(), control),
+            settings.estimatePhotons);
+    pass = wanted;
+    haveRadii = true;
+    control.photonsBefore = 0;
 }
 
 void FrameRenderer::Impl::buildMaps(const PassControl& control) {
+    const float factor = radiusFactor(pass);
+    double seconds = 0;
+    const auto timed = [&](const auto& build) {
+        const auto start = std::chrono::steady_clock::now();
+        build();
+        seconds += secondsSince(start);
+    };
     if (plan.globalMap) {
-        globalMap = buildMap(trace(PhotonKind::kGlobal, plan.globalPhotons, control), globalRadius);
+        std::vector<Photon> photons = trace(PhotonKind::kGlobal, plan.globalPhotons, control);
         std::vector<Photon> places = trace(PhotonKind::kSites, plan.sitePhotons, control);
-        if (globalMap)
+        timed([&] {
+            globalMap = std::make_unique<PhotonMap>(std::move(photons));
             sites = std::make_unique<IrradianceSites>(*scene, *globalMap, std::move(places),
-                                                      globalRadius * radiusFactor(pass));
+                                                      globalRadius * factor);
+        });
     }
-    if (plan.causticMap)
-        causticMap =
-            buildMap(trace(PhotonKind::kCaustic, plan.causticPhotons, control), causticRadius);
-}
-
-// The first pass that is begun must be pass 0, or its photons are traced for the radii alone.
-void FrameRenderer::Impl::findRadii(const PassControl& control) {
-    const std::uint32_t wanted = std::exchange(pass, 0);
-    buildMaps(control);
-    dropMaps();
-    pass = wanted;
-    control.photonsBefore = 0;
+    if (plan.causticMap) {
+        std::vector<Photon> photons = trace(PhotonKind::kCaustic, plan.causticPhotons, control);
+        timed([&] {
+            causticMap = std::make_unique<CausticMap>(std::move(photons), *causticRadius, factor);
+        });
+    }
+    const std::uint64_t bytes = (globalMap ? globalMap->memoryBytes() + sites->memoryBytes() : 0) +
+                                (causticMap ? causticMap->memoryBytes() : 0) +
+                                (causticRadius ? causticRadius->memoryBytes() : 0);
+    const std::lock_guard lock(mutex);
+    counters.mapSeconds += seconds;
+    counters.peakMapBytes = std::max(counters.peakMapBytes, bytes);
 }
 
 void FrameRenderer::Impl::dropMaps() {
@@ -292,9 +306,8 @@ void FrameRenderer::beginPass(std::uint32_t pass, const std::atomic<bool>& cance
     m_impl->dropMaps();
     if (!m_impl->plan.tracePhotons) return;
     const Impl::PassControl control{cancelled, progress};
-    if (pass > 0 && !m_impl->haveRadii) m_impl->findRadii(control);
+    if (!m_impl->haveRadii) m_impl->findRadii(control);
     m_impl->buildMaps(control);
-    m_impl->haveRadii = true;
 }
 
 void FrameRenderer::renderRegion(const Rect& region, std::span<float> pixels,

@@ -30,16 +30,16 @@ SampleRadiance PhotonIntegrator::sample(Ray ray, Sampler& sampler, NearestPhoton
             result.direct += throughput * (direct.diffuse + direct.glossy);
         }
         if (diffuse && m_maps.caustic)
-            result.caustic +=
-                throughput * bsdf.diffuse() *
-                m_maps.caustic->fluxWithin(surface.position, bsdf.facingGeometricNormal(),
-                                           m_maps.causticRadius) *
-                (kInvPi * kInvPi / (m_maps.causticRadius * m_maps.causticRadius));
+            result.caustic += throughput * bsdf.diffuse() *
+                              m_maps.caustic->irradiance(surface.position,
+                                                         bsdf.facingGeometricNormal(), scratch) *
+                              kInvPi;
         BsdfSample sample;
         const float uLobe = sampler.next1D();
         Vec2f u = sampler.next2D();
         bool valid = bsdf.sample(uLobe, u, sample);
-        if (valid && sample.lobe == Lobe::kDiffuse) {
+        // Also where the first ray has no value: the others may have.
+        if (sample.lobe == Lobe::kDiffuse) {
             const Rgb share = throughput / static_cast<float>(m_gatherRays);
             for (std::uint32_t i = 0; i < m_gatherRays; ++i) {
                 if (i > 0) valid = bsdf.sample(uLobe, sampler.next2D(), sample);

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include "integrator/photons/caustic_map.h"
 #include "integrator/photons/irradiance_sites.h"
-#include "integrator/photons/photon_map.h"
 #include "integrator/rays/ray_tracer.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/light_sampler.h"
@@ -15,8 +15,7 @@ namespace pm {
 // The maps of one pass; null where the plan has none.
 struct PhotonMaps {
     const IrradianceSites* global = nullptr;
-    const PhotonMap* caustic = nullptr;
-    float causticRadius = 0.0f;  // scene units
+    const CausticMap* caustic = nullptr;
 };
 
 // Radiance from photon maps: direct light by next-event estimation and by the gather rays that meet

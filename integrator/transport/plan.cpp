@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "integrator/photons/photon_map.h"
+#include "integrator/photons/caustic_map.h"
 #include "integrator/scene/scene.h"
 
 namespace pm {
@@ -16,7 +16,7 @@ namespace {
 // Photons a pass where nothing else is asked for: at 50 to an estimate the Cornell box is then
 // resolved to a hundredth of its width. Measured figures are in docs/benchmarks.md.
 constexpr std::uint64_t kAutoGlobalPhotons = 200'000;
-constexpr std::uint64_t kAutoCausticPhotons = 400'000;
+constexpr std::uint64_t kAutoCausticPhotons = 1'000'000;
 // Irradiance is kept at one place for so many photons of the global map.
 constexpr std::uint64_t kPhotonsPerSite = 4;
 // Arrivals a photon: 1/(1 - albedo) for an albedo of 0.75.
@@ -102,6 +102,14 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
         ((plan.globalPhotons + plan.sitePhotons) * kExpectedArrivals + plan.causticPhotons) *
         PhotonMap::kBytesPerPhoton;
     return plan;
+}
+
+std::uint64_t Plan::globalPilotPhotons() const {
+    return globalPhotons / CausticRadius::kPilotShare + 1;
+}
+
+std::uint64_t Plan::causticPilotPhotons() const {
+    return causticPhotons / CausticRadius::kPilotShare + 1;
 }
 
 std::string Plan::explain() const {

@@ -28,6 +28,10 @@ struct Plan {
 
     std::uint64_t photonsPerPass() const { return globalPhotons + sitePhotons + causticPhotons; }
 
+    // Emitted once a render, to find the radii of the estimates.
+    std::uint64_t globalPilotPhotons() const;
+    std::uint64_t causticPilotPhotons() const;
+
     // The lines that --explain prints.
     std::string explain() const;
 };

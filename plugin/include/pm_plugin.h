@@ -37,7 +37,14 @@
  *   CREATED --startRender--> RUNNING --(done, failed, cancelled)--> FINISHED
  *   Settings change only in CREATED. `finished` is called exactly once and last of all callbacks.
  *   destroyRender is allowed in every state; it cancels, waits for the workers, and drops events
- *   that were not delivered yet, except `finished`, which it delivers.
+ *   that were not delivered yet, except `finished`, which it delivers. A render that was never
+ *   started calls nothing back. A startRender that refuses (memory limit, no camera) leaves the
+ *   render CREATED, so settings can be put right. cancelRender holds in any state: before
+ *   startRender it makes the render end at once.
+ *
+ * Slow hosts
+ *   What waits to be delivered is bounded: progress and what comes again for one bucket are merged
+ *   into the latest, and a bucketStarted is left out while an earlier event of its bucket waits.
  */
 #ifndef PM_PLUGIN_H
 #define PM_PLUGIN_H
@@ -246,7 +253,7 @@ typedef struct PmrInstanceDesc {
     uint64_t size;
     PmrMesh mesh;
     const double* transforms;     /* 12 x transformCount; null = identity */
-    uint64_t transformCount;      /* time samples; 0 or 1 accepted in this version */
+    uint64_t transformCount;      /* time samples: 1 in this version, 0 when it is null */
     const PmrMaterial* materials; /* one for each slot of the mesh */
     uint64_t materialCount;
     const char* name; /* may be null */
@@ -446,7 +453,7 @@ typedef struct PmrApi {
     PmrStatus(PMR_CALL* startRender)(PmrRender render);
     /* Delivers callbacks (PMR_CALLBACKS_POLL) for up to timeoutSeconds; returns PMR_OK once
      * something was delivered, PMR_ERROR_TIMEOUT when nothing came, PMR_ERROR_STATE when
-     * `finished` has been delivered before. */
+     * `finished` has been delivered before. A negative timeout waits for ever. */
     PmrStatus(PMR_CALL* pollRender)(PmrRender render, double timeoutSeconds);
     /* Waits for the end (PMR_CALLBACKS_THREAD: until `finished` has returned). Returns the status
      * of the render, or PMR_ERROR_TIMEOUT. A negative timeout waits for ever. In the poll mode
@@ -460,7 +467,8 @@ typedef struct PmrApi {
     PmrStatus(PMR_CALL* renderLayerCount)(PmrRender render, uint32_t* count);
     PmrStatus(PMR_CALL* renderLayerInfo)(PmrRender render, uint32_t index, PmrLayerInfo* info);
     /* Copies a rectangle of a layer, all its channels as floats side by side. Strides in bytes; the
-     * row stride may be negative (destination is where the rectangle's top row goes). Pixels that
+     * row stride may be negative (destination is where the rectangle's top row goes); 0 means side
+     * by side without a gap. Pixels that
      * are not rendered yet, or outside the frame, are 0. */
     PmrStatus(PMR_CALL* readPixels)(PmrRender render, const PmrRectangle* rectangle,
                                     const char* layer, float* destination, int64_t pixelStrideBytes,

@@ -36,7 +36,7 @@ Kd 0.14 0.45 0.091
 newmtl lamp
 illum 1
 Kd 0 0 0
-Ke 40 40 40
+Ke 100 100 100
 newmtl mirror
 illum 3
 Kd 0 0 0

@@ -106,6 +106,14 @@ void SceneMaker::meshSphere(Vec3d centre, double radius, std::uint32_t material,
     addMesh(description, std::move(mesh), material);
 }
 
+void SceneMaker::bendNormals(Vec3d normal) {
+    auto& shape = description.instances.back().shape;
+    TriangleMesh mesh = *std::get<std::shared_ptr<const TriangleMesh>>(shape);
+    mesh.normals = {Vec3f(normalize(normal))};
+    mesh.normalIndices.assign(mesh.triangles.size(), {0, 0, 0});
+    shape = std::make_shared<const TriangleMesh>(std::move(mesh));
+}
+
 void SceneMaker::pointLight(Vec3d position, Rgb intensity) {
     description.pointLights.push_back({position, intensity, ""});
 }
@@ -144,46 +152,73 @@ struct PassMeans {
     }
 };
 
-}  // namespace
+// One pass of a rectangle of the frame.
+struct RenderedPass {
+    Rect area;
+    std::size_t channels;
+    std::vector<float> pixels, weights;
 
-MeasuredLayers measure(const std::shared_ptr<const Scene>& scene, RenderSettings settings,
-                       Rect region) {
-    if (region.empty()) region = settings.window;
-    FrameRenderer renderer(scene, settings);
-    const ChannelLayout layout = renderer.layout();
-    const std::atomic<bool> cancelled{false};
-    std::array<PassMeans, 5> sums;
-    const std::array<std::int32_t, 5> offsets = {layout.beauty, layout.direct, layout.indirect,
-                                                 layout.caustic, layout.emission};
-    for (std::uint32_t pass = 0; pass < settings.passes; ++pass) {
-        renderer.beginPass(pass, cancelled, {});
-        const auto channels = static_cast<std::size_t>(layout.count);
-        const auto width = static_cast<std::size_t>(region.width());
-        std::vector<float> pixels(static_cast<std::size_t>(region.area()) * channels);
-        std::vector<float> weights(static_cast<std::size_t>(region.area()));
-        tbb::parallel_for(std::int32_t{0}, region.height(), [&](std::int32_t row) {
+    RenderedPass(const FrameRenderer& renderer, const Rect& area_)
+        : area(area_), channels(static_cast<std::size_t>(renderer.layout().count)) {
+        const std::atomic<bool> cancelled{false};
+        const auto width = static_cast<std::size_t>(area.width());
+        pixels.resize(static_cast<std::size_t>(area.area()) * channels);
+        weights.resize(static_cast<std::size_t>(area.area()));
+        tbb::parallel_for(std::int32_t{0}, area.height(), [&](std::int32_t row) {
             const auto first = static_cast<std::size_t>(row) * width;
-            const Rect line{region.x0, region.y0 + row, region.x1, region.y0 + row + 1};
+            const Rect line{area.x0, area.y0 + row, area.x1, area.y0 + row + 1};
             renderer.renderRegion(line,
                                   std::span(pixels).subspan(first * channels, width * channels),
                                   std::span(weights).subspan(first, width), cancelled);
         });
-        for (std::size_t l = 0; l < sums.size(); ++l) {
-            std::array<double, 3> mean{};
-            double weight = 0;
-            for (std::size_t i = 0; i < weights.size(); ++i) {
+    }
+
+    std::array<double, 3> mean(const Rect& region, std::int32_t offset) const {
+        std::array<double, 3> mean{};
+        double weight = 0;
+        for (std::int32_t y = region.y0; y < region.y1; ++y)
+            for (std::int32_t x = region.x0; x < region.x1; ++x) {
+                const auto i =
+                    static_cast<std::size_t>((y - area.y0) * area.width() + x - area.x0);
                 weight += static_cast<double>(weights[i]);
                 for (std::size_t c = 0; c < 3; ++c)
                     mean[c] += static_cast<double>(weights[i]) *
                                static_cast<double>(
-                                   pixels[i * channels + static_cast<std::size_t>(offsets[l]) + c]);
+                                   pixels[i * channels + static_cast<std::size_t>(offset) + c]);
             }
-            for (double& m : mean) m /= weight;
-            sums[l].means.push_back(mean);
-        }
+        for (double& m : mean) m /= weight;
+        return mean;
     }
-    return {sums[0].summarise(), sums[1].summarise(), sums[2].summarise(),
-            sums[3].summarise(), sums[4].summarise(), renderer.counters()};
+};
+
+}  // namespace
+
+std::vector<MeasuredLayers> measureRegions(const std::shared_ptr<const Scene>& scene,
+                                           const RenderSettings& settings, const Rect& area,
+                                           const std::vector<Rect>& regions) {
+    FrameRenderer renderer(scene, settings);
+    const ChannelLayout layout = renderer.layout();
+    const std::array<std::int32_t, 5> offsets = {layout.beauty, layout.direct, layout.indirect,
+                                                 layout.caustic, layout.emission};
+    std::vector<std::array<PassMeans, 5>> sums(regions.size());
+    for (std::uint32_t pass = 0; pass < settings.passes; ++pass) {
+        renderer.beginPass(pass, std::atomic<bool>{false}, {});
+        const RenderedPass rendered(renderer, area);
+        for (std::size_t r = 0; r < regions.size(); ++r)
+            for (std::size_t l = 0; l < offsets.size(); ++l)
+                sums[r][l].means.push_back(rendered.mean(regions[r], offsets[l]));
+    }
+    std::vector<MeasuredLayers> measured;
+    for (const auto& s : sums)
+        measured.push_back({s[0].summarise(), s[1].summarise(), s[2].summarise(), s[3].summarise(),
+                            s[4].summarise(), renderer.counters()});
+    return measured;
+}
+
+MeasuredLayers measure(const std::shared_ptr<const Scene>& scene, RenderSettings settings,
+                       Rect region) {
+    if (region.empty()) region = settings.window;
+    return measureRegions(scene, settings, region, {region}).front();
 }
 
 RenderSettings smallFrame(std::int32_t width, std::int32_t height, IntegratorKind integrator,

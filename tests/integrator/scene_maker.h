@@ -27,6 +27,8 @@ class SceneMaker {
     void sphere(Vec3d centre, double radius, std::uint32_t material);
     // A tessellated sphere with smooth normals; rings x 2*rings quads.
     void meshSphere(Vec3d centre, double radius, std::uint32_t material, bool inwards, int rings);
+    // Bends the shading normals of what was added last: one normal for all of it, object space.
+    void bendNormals(Vec3d normal);
     void pointLight(Vec3d position, Rgb intensity);
     void camera(Vec3d eye, Vec3d lookAt, Vec3d up, double verticalDegrees);
 
@@ -49,6 +51,11 @@ struct MeasuredLayers {
 // Renders all passes on this machine's threads and averages each layer over `region` (empty: all).
 MeasuredLayers measure(const std::shared_ptr<const Scene>& scene, RenderSettings settings,
                        Rect region = {});
+
+// The same for several regions of `area` at once, each at the cost of none.
+std::vector<MeasuredLayers> measureRegions(const std::shared_ptr<const Scene>& scene,
+                                           const RenderSettings& settings, const Rect& area,
+                                           const std::vector<Rect>& regions);
 
 RenderSettings smallFrame(std::int32_t width, std::int32_t height, IntegratorKind integrator,
                           std::uint32_t passes, std::uint32_t aaLevel);

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/app/guarded.h"
+
+#include "host_shim/app/interrupt.h"
+#include "host_shim/pictures/host_error.h"
+
+#include <exception>
+#include <new>
+
+namespace pm::host {
+
+int guarded(Log& log, const std::function<int()>& work, std::string* errorText) {
+    constexpr int kOutOfMemory = 5;
+    std::string text;
+    int code = static_cast<int>(ExitCode::kInternal);
+    try {
+        return work();
+    } catch (const HostError& error) {
+        code = error.exitCode();
+        text = error.what();
+    } catch (const Interrupted& interrupted) {
+        code = interrupted.exitCode;
+        text = interrupted.what();
+    } catch (const std::bad_alloc&) {
+        code = kOutOfMemory;
+        text = "out of memory";
+    } catch (const std::exception& error) {
+        text = std::string("internal error: ") + error.what();
+    } catch (...) {
+        text = "internal error";
+    }
+    log.message(Level::kError, text);
+    if (errorText != nullptr) *errorText = text;
+    return code;
+}
+
+}  // namespace pm::host

@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/app/listings.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+
+namespace pm::host {
+namespace {
+
+std::optional<PmrSettingInfo> findSetting(const PmrApi& api, const std::string& name) {
+    for (uint32_t i = 0; i < api.settingCount(); ++i) {
+        auto info = PMR_INIT(PmrSettingInfo);
+        if (api.settingInfo(i, &info) == PMR_OK && name == info.name) return info;
+    }
+    return std::nullopt;
+}
+
+std::string rangeText(const PmrSettingInfo& info) {
+    if (info.type == PMR_SETTING_CHOICE) return info.choices;
+    if (info.type == PMR_SETTING_TEXT) return "text";
+    return fmt::format("{} to {}", info.minimum, info.maximum);
+}
+
+}  // namespace
+
+std::string listViews(const ColourPipeline& colour) {
+    std::string text;
+    for (const ViewEntry& entry : colour.listViews()) {
+        text += fmt::format("{}: {}{}\n", entry.display, entry.view,
+                            entry.isDefault ? " (default)" : "");
+    }
+    return text;
+}
+
+std::string listSpaces(const ColourPipeline& colour) {
+    std::string text;
+    for (const SpaceEntry& entry : colour.listSpaces()) {
+        text += entry.name;
+        for (const std::string& alias : entry.aliases) text += ", " + alias;
+        if (entry.isData) text += " (data)";
+        if (entry.isRenderingSpace) text += " (rendering space)";
+        if (!entry.isRenderingSpace && entry.canRender) text += " (can be the rendering space)";
+        if (entry.isBuiltIn) text += " (built in)";
+        text += "\n";
+    }
+    return text;
+}
+
+std::string listLayers(const PmrApi& api) {
+    std::string text;
+    for (uint32_t i = 0; i < api.layerCount(); ++i) {
+        auto info = PMR_INIT(PmrLayerInfo);
+        if (api.layerInfo(i, &info) != PMR_OK) continue;
+        text += fmt::format("{}: {}{} [{}]\n", info.name, info.help,
+                            info.isDefault != 0 ? " (always written)" : "", info.channels);
+    }
+    return text;
+}
+
+std::string listSettings(const PmrApi& api) {
+    std::string text;
+    for (uint32_t i = 0; i < api.settingCount(); ++i) {
+        auto info = PMR_INIT(PmrSettingInfo);
+        if (api.settingInfo(i, &info) != PMR_OK) continue;
+        const std::string unit = *info.unit != '\0' ? fmt::format(" {}", info.unit) : "";
+        text +=
+            fmt::format("{}: {} [{}{}; default {}] {}\n", info.name, info.help, rangeText(info),
+                        unit, *info.defaultText != '\0' ? info.defaultText : "empty", info.cost);
+    }
+    return text;
+}
+
+std::string listOrders(const PmrApi& api) {
+    const auto info = findSetting(api, "bucketOrder");
+    std::string text = info ? info->choices : "";
+    std::ranges::replace(text, ',', '\n');
+    return text + "\n";
+}
+
+std::string settingHelp(const PmrApi& api, const std::string& name) {
+    const auto info = findSetting(api, name);
+    if (!info) return {};
+    const std::string choices =
+        info->type == PMR_SETTING_CHOICE ? fmt::format(" One of {}.", info->choices) : "";
+    return fmt::format("{}{} ({}) {}", info->help, choices, info->defaultText, info->cost);
+}
+
+}  // namespace pm::host

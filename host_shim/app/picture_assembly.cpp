@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/app/picture_assembly.h"
+
+#include <fmt/format.h>
+
+#include <cstddef>
+#include <string_view>
+
+namespace pm::host {
+namespace {
+
+std::vector<std::string> channelNames(std::string_view list) {
+    std::vector<std::string> names;
+    while (true) {
+        const auto end = list.find(',');
+        names.emplace_back(list.substr(0, end));
+        if (end == std::string_view::npos) return names;
+        list.remove_prefix(end + 1);
+    }
+}
+
+void addLayer(const RenderRun& run, const PmrLayerInfo& info, Picture& picture) {
+    const PixelRect& window = picture.dataWindow;
+    const PmrRectangle rectangle{window.x0, window.y0, window.x1, window.y1};
+    const std::size_t stride = info.channelCount;
+    const auto pixels = static_cast<std::size_t>(window.area());
+    std::vector<float> values(pixels * stride);
+    const auto pixelBytes = static_cast<int64_t>(stride * sizeof(float));
+    run.context().check(run.api().readPixels(run.handle(), &rectangle, info.name, values.data(),
+                                             pixelBytes, pixelBytes * window.width()),
+                        fmt::format("layer {}", info.name));
+    const auto names = channelNames(info.channels);
+    for (std::size_t c = 0; c < names.size() && c < stride; ++c) {
+        Channel& channel = picture.channels.emplace_back();
+        channel.name = names[c];
+        channel.isColour = info.kind == PMR_LAYER_COLOUR;
+        channel.values.resize(pixels);
+        for (std::size_t i = 0; i < pixels; ++i) channel.values[i] = values[i * stride + c];
+    }
+}
+
+// Settings that change no pixel are left out: the same picture gives the same bytes.
+void addSettings(const RenderRun& run, Picture& picture) {
+    for (uint32_t i = 0; i < run.api().settingCount(); ++i) {
+        auto info = PMR_INIT(PmrSettingInfo);
+        if (run.api().settingInfo(i, &info) != PMR_OK || info.changesPixels == 0) continue;
+        picture.attributes[fmt::format("pm:{}", info.name)] = run.settingText(info.name);
+    }
+}
+
+}  // namespace
+
+Picture assemblePicture(const RenderRun& run, const Options& options, const ColourPipeline& colour,
+                        bool complete) {
+    Picture picture;
+    picture.width = options.width;
+    picture.height = options.height;
+    picture.dataWindow = options.crop.value_or(PixelRect{0, 0, options.width, options.height});
+    uint32_t count = 0;
+    run.context().check(run.api().renderLayerCount(run.handle(), &count), "layers");
+    for (uint32_t i = 0; i < count; ++i) {
+        auto info = PMR_INIT(PmrLayerInfo);
+        run.context().check(run.api().renderLayerInfo(run.handle(), i, &info), "layers");
+        addLayer(run, info, picture);
+    }
+    if (const auto chromaticities = colour.chromaticities()) {
+        picture.attributes["chromaticities"] =
+            std::vector<float>(chromaticities->begin(), chromaticities->end());
+    }
+    if (!colour.colorInteropId().empty()) {
+        picture.attributes["colorInteropID"] = colour.colorInteropId();
+    }
+    addSettings(run, picture);
+    picture.attributes["pm:complete"] = std::int32_t{complete ? 1 : 0};
+    picture.attributes["pm:version"] = std::string(run.api().versionText());
+    picture.attributes["pm:renderingSpace"] = colour.renderingSpace();
+    picture.attributes["pm:ocioCacheId"] = colour.cacheId();
+    return picture;
+}
+
+}  // namespace pm::host

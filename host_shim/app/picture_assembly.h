@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/app/render_run.h"
+#include "host_shim/colour/colour_pipeline.h"
+#include "host_shim/pictures/picture.h"
+
+namespace pm::host {
+
+// All layers of a render as one picture, with the attributes that an EXR of ours carries.
+// complete: every pixel is done; recorded as pm:complete. Errors: those of the plugin.
+Picture assemblePicture(const RenderRun& run, const Options& options, const ColourPipeline& colour,
+                        bool complete);
+
+}  // namespace pm::host

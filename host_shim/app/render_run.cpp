@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/app/render_run.h"
+
+#include "host_shim/app/interrupt.h"
+
+#include <fmt/format.h>
+
+namespace pm::host {
+
+void PMR_CALL logPluginMessage(void* user, PmrRender, int32_t level, int32_t code,
+                               const char* text) {
+    Log& log = *static_cast<Log*>(user);
+    if (level == PMR_LEVEL_WARNING) {
+        log.warning(code, text);
+    } else {
+        // The plugin's errors reach the user as exceptions, once.
+        log.message(level == PMR_LEVEL_INFO ? Level::kInfo : Level::kDebug, text);
+    }
+}
+
+void RenderRun::onMessage(void* user, PmrRender render, int32_t level, int32_t code,
+                          const char* text) {
+    logPluginMessage(&static_cast<RenderRun*>(user)->m_log, render, level, code, text);
+}
+
+void RenderRun::onProgress(void* user, PmrRender, double fraction, double remainingSeconds) {
+    static_cast<RenderRun*>(user)->m_progress.update(fraction, remainingSeconds);
+}
+
+void RenderRun::onFinished(void* user, PmrRender, PmrStatus status) {
+    auto* run = static_cast<RenderRun*>(user);
+    run->m_finished = true;
+    run->m_status = status;
+}
+
+RenderRun::RenderRun(const PluginScene& scene, const Options& options, Log& log, Progress& progress)
+    : m_context(scene.context()), m_log(log), m_progress(progress) {
+    auto desc = PMR_INIT(PmrRenderDesc);
+    desc.callbackMode = PMR_CALLBACKS_POLL;
+    desc.user = this;
+    desc.message = onMessage;
+    desc.progress = onProgress;
+    desc.finished = onFinished;
+    m_context.check(api().createRender(scene.handle(), &desc, &m_handle), "render");
+    try {
+        apply({"--size", "width", std::to_string(options.width)});
+        apply({"--size", "height", std::to_string(options.height)});
+        if (options.crop) {
+            const PixelRect& c = *options.crop;
+            apply({"--crop", "crop", fmt::format("{},{},{},{}", c.x0, c.y0, c.x1, c.y1)});
+        }
+        if (!options.layers.empty()) apply({"--aov", "layers", options.layers});
+        for (const GivenSetting& setting : options.settings) apply(setting);
+    } catch (...) {
+        api().destroyRender(m_handle);
+        throw;
+    }
+}
+
+RenderRun::~RenderRun() {
+    api().destroyRender(m_handle);
+}
+
+void RenderRun::apply(const GivenSetting& setting) {
+    if (api().setSettingText(m_handle, setting.name.c_str(), setting.value.c_str()) == PMR_OK) {
+        return;
+    }
+    throw HostError(ExitCode::kUsage, fmt::format("{}: {}", setting.option, m_context.lastError()));
+}
+
+std::string RenderRun::settingText(const std::string& name) const {
+    return pluginText([&](char* buffer, uint64_t capacity, uint64_t* needed) {
+        return api().settingText(m_handle, name.c_str(), buffer, capacity, needed);
+    });
+}
+
+std::string RenderRun::explain() const {
+    return pluginText([this](char* buffer, uint64_t capacity, uint64_t* needed) {
+        return api().explainRender(m_handle, buffer, capacity, needed);
+    });
+}
+
+std::string RenderRun::statistics() const {
+    return pluginText([this](char* buffer, uint64_t capacity, uint64_t* needed) {
+        return api().renderStatistics(m_handle, buffer, capacity, needed);
+    });
+}
+
+PmrStatus RenderRun::run() {
+    constexpr double kPollSeconds = 0.05;
+    m_context.check(api().startRender(m_handle), "render");
+    while (!m_finished) {
+        if (interruptSignal() != 0) api().cancelRender(m_handle);
+        const PmrStatus status = api().pollRender(m_handle, kPollSeconds);
+        if (status != PMR_OK && status != PMR_ERROR_TIMEOUT) m_context.check(status, "render");
+    }
+    if (m_status != PMR_ERROR_CANCELLED) m_context.check(m_status, "render");
+    return m_status;
+}
+
+}  // namespace pm::host

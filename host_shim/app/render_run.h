@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/app/log.h"
+#include "host_shim/app/progress.h"
+#include "host_shim/app/scene_builder.h"
+#include "host_shim/cli/options.h"
+
+#include <string>
+
+namespace pm::host {
+
+// One render of a scene: settings, the run itself, and what it left.
+class RenderRun {
+  public:
+    // Settings are given here. Errors: kUsage for a setting that the plugin refuses.
+    RenderRun(const PluginScene& scene, const Options& options, Log& log, Progress& progress);
+    ~RenderRun();
+    RenderRun(const RenderRun&) = delete;
+    RenderRun& operator=(const RenderRun&) = delete;
+
+    std::string explain() const;
+    // Renders; a signal cancels. Returns PMR_OK or PMR_ERROR_CANCELLED. Errors: those of the
+    // plugin.
+    PmrStatus run();
+
+    PmrRender handle() const { return m_handle; }
+    const PmrApi& api() const { return m_context.api(); }
+    const PluginContext& context() const { return m_context; }
+    std::string settingText(const std::string& name) const;
+    std::string statistics() const;  // JSON
+
+  private:
+    void apply(const GivenSetting& setting);
+    static void onMessage(void* user, PmrRender, int32_t level, int32_t code, const char* text);
+    static void onProgress(void* user, PmrRender, double fraction, double remainingSeconds);
+    static void onFinished(void* user, PmrRender, PmrStatus status);
+
+    const PluginContext& m_context;
+    Log& m_log;
+    Progress& m_progress;
+    PmrRender m_handle{};
+    bool m_finished{};
+    PmrStatus m_status{PMR_OK};
+};
+
+// A message of the plugin, to the log. Also the message function of contexts, with a Log as user.
+void PMR_CALL logPluginMessage(void* log, PmrRender, int32_t level, int32_t code, const char* text);
+
+}  // namespace pm::host

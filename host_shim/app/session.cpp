@@ -1,0 +1,284 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/app/session.h"
+
+#include "host_shim/app/guarded.h"
+#include "host_shim/app/interrupt.h"
+#include "host_shim/app/outputs.h"
+#include "host_shim/app/picture_assembly.h"
+#include "host_shim/app/scene_builder.h"
+#include "host_shim/colour/display_picture.h"
+#include "host_shim/ingest/obj_reader.h"
+#include "host_shim/pictures/compare.h"
+#include "host_shim/pictures/picture_io.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
+namespace pm::host {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kErrorLimitPassed = 6;
+
+std::vector<fs::path> inputsOf(const Options& options, const SceneData* scene) {
+    std::vector<fs::path> inputs{options.scene};
+    if (!options.reference.empty()) inputs.push_back(options.reference);
+    if (!options.colour.ocioFile.empty()) inputs.emplace_back(options.colour.ocioFile);
+    if (scene == nullptr) return inputs;
+    for (const std::string& file : scene->materialFiles) inputs.emplace_back(file);
+    for (const MaterialData& material : scene->materials) {
+        for (const auto* use :
+             {&material.diffuseTexture, &material.glossyTexture, &material.glossyExponentTexture,
+              &material.transmissionTexture, &material.emissionTexture, &material.opacityTexture}) {
+            if (*use) inputs.emplace_back((*use)->file);
+        }
+    }
+    return inputs;
+}
+
+std::vector<fs::path> textOutputs(const Options& options) {
+    std::vector<fs::path> files;
+    if (!options.statistics.empty() && options.statistics != "-") {
+        files.emplace_back(options.statistics);
+    }
+    if (!options.log.empty()) files.push_back(options.log);
+    return files;
+}
+
+std::vector<fs::path> allOutputs(const Options& options) {
+    std::vector<fs::path> files = options.outputs;
+    for (fs::path& file : textOutputs(options)) files.push_back(std::move(file));
+    return files;
+}
+
+}  // namespace
+
+Session::Session(const Options& options, Log& log) : m_options(options), m_log(log) {
+    m_statistics.commandLine = options.commandLine;
+    m_statistics.commandLine.insert(m_statistics.commandLine.begin(), "pm_host");
+    m_statistics.scene = options.scene.string();
+    if (m_options.onlyPixel) {
+        const auto [x, y] = *m_options.onlyPixel;
+        m_options.crop = PixelRect{x, y, x + 1, y + 1};
+    }
+}
+
+void Session::warn(Warning code, const std::string& text) {
+    m_log.warning(static_cast<int>(code), text);
+}
+
+void Session::phase(const std::string& name, const std::function<void()>& work) {
+    throwIfInterrupted();
+    const auto start = std::chrono::steady_clock::now();
+    work();
+    m_statistics.phaseSeconds[name] +=
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+int Session::run() {
+    m_statistics.exitCode = guarded(
+        m_log, [this] { return render(); }, &m_statistics.error);
+    if (m_statistics.exitCode == 130) m_statistics.stopReason = "interrupted";
+    if (m_statistics.exitCode == 143) m_statistics.stopReason = "terminated";
+    m_log.reportHiddenWarnings();
+    const bool toFile = m_options.statistics != "-";
+    if (m_options.statistics.empty() || (toFile && !m_mayWriteStatistics)) {
+        return m_statistics.exitCode;
+    }
+    const int written = guarded(m_log, [this] {
+        writeStatistics();
+        return 0;
+    });
+    return m_statistics.exitCode != 0 ? m_statistics.exitCode : written;
+}
+
+int Session::render() {
+    checkBeforeReading();
+    const ColourPipeline colour(m_options.colour);
+    m_statistics.colourConfig = colour.configName();
+    m_statistics.renderingSpace = colour.renderingSpace();
+    for (const std::string& text : colour.warnings()) warn(Warning::kOutput, text);
+    const Plugin plugin(m_options.plugin);
+    m_statistics.pluginFile = plugin.file().string();
+    m_statistics.pluginVersion = plugin.api().versionText();
+    auto desc = PMR_INIT(PmrContextDesc);
+    desc.message = logPluginMessage;
+    desc.user = &m_log;
+    desc.isa = m_options.isa.empty() ? nullptr : m_options.isa.c_str();
+    desc.threads = m_options.threads;
+    const PluginContext context(plugin, desc);
+    return renderScene(colour, context);
+}
+
+void Session::checkBeforeReading() {
+    // Of a fault in the scene and one in the outputs, people look for the first.
+    const fs::path& scene = m_options.scene;
+    checkNotInputs(allOutputs(m_options), inputsOf(m_options, nullptr));
+    checkOutputs({}, textOutputs(m_options), m_options.makeOutputPath);
+    m_mayWriteStatistics = true;
+    checkSceneFile(scene);
+    if (scene.extension() != ".obj" && scene.extension() != ".OBJ") {
+        throw HostError(ExitCode::kBadInput,
+                        fmt::format("{}: '{}' is no scene format that can be read; allowed is .obj",
+                                    scene.string(), scene.extension().string()));
+    }
+    checkOutputs(m_options.explain ? std::vector<fs::path>{} : m_options.outputs,
+                 textOutputs(m_options), m_options.makeOutputPath);
+    if (!m_options.log.empty()) m_log.openFile(m_options.log);
+    if (!m_options.reference.empty()) readReference();
+}
+
+void Session::readReference() {
+    m_reference = readExr(m_options.reference);
+    for (const char* channel : {"R", "G", "B"}) {
+        if (m_reference->find(channel) == nullptr) {
+            throw HostError(
+                ExitCode::kBadInput,
+                fmt::format("{}: the reference has no channel {}; R, G and B are wanted",
+                            m_options.reference.string(), channel));
+        }
+    }
+    if (m_reference->width != m_options.width || m_reference->height != m_options.height) {
+        throw HostError(ExitCode::kBadInput,
+                        fmt::format("{}: the reference is {}x{}, the picture {}x{} (--size)",
+                                    m_options.reference.string(), m_reference->width,
+                                    m_reference->height, m_options.width, m_options.height));
+    }
+}
+
+int Session::renderScene(const ColourPipeline& colour, const PluginContext& context) {
+    const WarningSink sink = [this](Warning code, const std::string& text) { warn(code, text); };
+    std::optional<DisplayTransform> display;
+    const bool wantsDisplay = std::ranges::any_of(m_options.outputs, [](const fs::path& file) {
+        return isDisplayReferred(pictureFormat(file));
+    });
+    if (wantsDisplay) display = colour.displayTransform();
+    TemporaryFolder folder;
+    MaterialBuilder materials(context, colour, folder, sink);
+    PluginScene scene(context);
+    {
+        SceneData data;
+        phase("readSceneSeconds", [&] { data = readObjFile(m_options.scene, sink); });
+        m_mayWriteStatistics = false;
+        checkNotInputs(allOutputs(m_options), inputsOf(m_options, &data));
+        m_mayWriteStatistics = true;
+        CameraOptions cameraOptions = m_options.camera;
+        cameraOptions.fromNegativeZ = opensTowardsNegativeZ(data);
+        const CameraPose camera = frameCamera(
+            cameraOptions, data.bounds, static_cast<double>(m_options.width) / m_options.height);
+        if (camera.upWasReplaced) {
+            warn(Warning::kCamera, "--up is parallel to the view; another direction is taken");
+        }
+        phase("buildSceneSeconds", [&] {
+            scene.build(data, m_options.scene.string(), m_options.subdivide, camera, colour,
+                        materials, sink);
+        });
+    }
+    Progress progress(m_options.progress, m_options.quiet, m_log);
+    RenderRun run(scene, m_options, m_log, progress);
+    if (m_options.explain) {
+        std::fputs(run.explain().c_str(), stdout);
+        m_statistics.stopReason = "finished";
+        return 0;
+    }
+    PmrStatus status = PMR_OK;
+    phase("renderCallSeconds", [&] { status = run.run(); });
+    m_statistics.library = run.statistics();
+    return finish(run, status, colour, display);
+}
+
+int Session::finish(RenderRun& run, PmrStatus status, const ColourPipeline& colour,
+                    const std::optional<DisplayTransform>& display) {
+    const bool complete = status == PMR_OK;
+    const auto start = m_log.elapsedSeconds();
+    const Picture picture = assemblePicture(run, m_options, colour, complete);
+    writeOutputs(picture, complete, display);
+    m_statistics.phaseSeconds["writePicturesSeconds"] = m_log.elapsedSeconds() - start;
+    if (!complete) {
+        throwIfInterrupted();
+        throw HostError(static_cast<ExitCode>(exitCodeOf(status)), "the render was cancelled");
+    }
+    m_statistics.stopReason = "finished";
+    if (m_options.onlyPixel) printPixel(picture);
+    return m_reference ? compareWithReference(picture) : 0;
+}
+
+void Session::writeOutputs(const Picture& picture, bool complete,
+                           const std::optional<DisplayTransform>& display) {
+    const auto estimate = m_statistics.estimatedRelMse();
+    const std::string error =
+        estimate ? fmt::format(
+                       ", estimated relMSE {:.2e} (variance between passes; bias not "
+                       "included)",
+                       *estimate)
+                 : "";
+    for (const fs::path& output : m_options.outputs) {
+        const fs::path file = complete ? output : partialName(output);
+        writeOutput(file, picture, display);
+        m_statistics.outputs.push_back(file.string());
+        m_log.info(fmt::format("wrote {}{}", file.string(), error));
+    }
+}
+
+void Session::writeOutput(const fs::path& file, const Picture& picture,
+                          const std::optional<DisplayTransform>& display) {
+    if (!isDisplayReferred(pictureFormat(file))) {
+        const ExrReport report = writeExr(file, picture, {m_options.exrHalf});
+        if (report.clampedToHalf > 0) {
+            warn(Warning::kOutput, fmt::format("{}: {} values are beyond half's 65504 and clamped",
+                                               file.string(), report.clampedToHalf));
+        }
+        return;
+    }
+    const DisplayResult result = makeDisplayPicture(picture, display.value());
+    const auto bad = result.cleaning.nanCount + result.cleaning.infiniteCount;
+    if (bad > 0) {
+        warn(Warning::kOutput, fmt::format("{}: {} values were not finite", file.string(), bad));
+    }
+    writeDisplayPicture(file, result.picture);
+}
+
+int Session::compareWithReference(const Picture& picture) {
+    const ErrorReport report = compareRelMse(*m_reference, picture);
+    if (!report.relMse) {
+        std::fputs("relMSE nan\n", stdout);
+        warn(Warning::kOutput,
+             fmt::format("{} values of the picture and {} of the reference are not finite",
+                         report.badInPicture, report.badInReference));
+    } else {
+        std::fputs(fmt::format("relMSE {}\n", *report.relMse).c_str(), stdout);
+        m_statistics.referenceRelMse = report.relMse;
+    }
+    if (!m_options.errorLimit) return 0;
+    if (report.relMse && *report.relMse <= *m_options.errorLimit) return 0;
+    m_statistics.stopReason = "error limit";
+    m_statistics.error = report.relMse ? fmt::format("relMSE {} is above the limit {}",
+                                                     *report.relMse, *m_options.errorLimit)
+                                       : "a value is not finite";
+    m_log.message(Level::kError, m_statistics.error);
+    return kErrorLimitPassed;
+}
+
+void Session::printPixel(const Picture& picture) const {
+    for (const Channel& channel : picture.channels) {
+        std::fputs(fmt::format("{} {}\n", channel.name, channel.values.at(0)).c_str(), stdout);
+    }
+    std::fflush(stdout);
+}
+
+void Session::writeStatistics() {
+    const std::string text = m_statistics.toJson(m_log);
+    if (m_options.statistics == "-") {
+        std::fwrite(text.data(), 1, text.size(), stdout);
+        std::fflush(stdout);
+    } else {
+        writeFinishedFile(m_options.statistics, text);
+    }
+}
+
+}  // namespace pm::host

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/app/log.h"
+#include "host_shim/app/render_run.h"
+#include "host_shim/app/statistics.h"
+#include "host_shim/cli/options.h"
+#include "host_shim/colour/colour_pipeline.h"
+#include "host_shim/pictures/picture.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+
+namespace pm::host {
+
+// One rendering from files to files.
+class Session {
+  public:
+    Session(const Options& options, Log& log);
+
+    // Renders and writes; returns the exit code. Statistics are written on failure too.
+    int run();
+
+  private:
+    int render();
+    void checkBeforeReading();
+    void readReference();
+    int renderScene(const ColourPipeline& colour, const PluginContext& context);
+    int finish(RenderRun& run, PmrStatus status, const ColourPipeline& colour,
+               const std::optional<DisplayTransform>& display);
+    void writeOutputs(const Picture& picture, bool complete,
+                      const std::optional<DisplayTransform>& display);
+    void writeOutput(const std::filesystem::path& file, const Picture& picture,
+                     const std::optional<DisplayTransform>& display);
+    int compareWithReference(const Picture& picture);
+    void printPixel(const Picture& picture) const;
+    void writeStatistics();
+    // Runs work and notes how long it took.
+    void phase(const std::string& name, const std::function<void()>& work);
+    void warn(Warning code, const std::string& text);
+
+    Options m_options;
+    Log& m_log;
+    Statistics m_statistics;
+    std::optional<Picture> m_reference;
+    bool m_mayWriteStatistics{};  // not before it is known that they overwrite no input
+};
+
+}  // namespace pm::host

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/app/statistics.h"
+
+#include <unistd.h>
+#include <nlohmann/json.hpp>
+
+#include <array>
+
+namespace pm::host {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json parsed(const std::string& text) {
+    Json json = Json::parse(text, nullptr, false);
+    return json.is_object() ? json : Json::object();
+}
+
+std::string hostName() {
+    std::array<char, 256> name{};
+    return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "";
+}
+
+constexpr int kFirstHostCode = 1000;
+
+// Adds what the host knows to what the plugin said; objects are joined, lists appended to.
+void join(const Json& more, Json& json) {
+    for (const auto& [key, value] : more.items()) {
+        if (json.contains(key) && json[key].is_object() && value.is_object()) {
+            join(value, json[key]);
+        } else if (json.contains(key) && json[key].is_array() && value.is_array()) {
+            json[key].insert(json[key].end(), value.begin(), value.end());
+        } else {
+            json[key] = value;
+        }
+    }
+}
+
+// The plugin's warnings as it counted them, and the host's own; without a render all that were
+// heard.
+Json warningList(const Log& log, const Json& library) {
+    const auto counted = library.find("warnings");
+    const bool hasLibrary = counted != library.end() && counted->is_array();
+    Json list = hasLibrary ? *counted : Json::array();
+    for (const auto& [code, warning] : log.warnings()) {
+        if (hasLibrary && code < kFirstHostCode) continue;
+        list.push_back({{"code", code}, {"count", warning.count}, {"texts", {warning.firstText}}});
+    }
+    return list;
+}
+
+}  // namespace
+
+std::optional<double> Statistics::estimatedRelMse() const {
+    const Json json = parsed(library);
+    const auto found = json.find("relMseEstimate");
+    if (found == json.end() || !found->is_number()) return std::nullopt;
+    return found->get<double>();
+}
+
+std::string Statistics::toJson(const Log& log) const {
+    Json all = parsed(library);
+    Json mine;
+    mine["schema"] = "pm-stats/1";
+    mine["commandLine"] = commandLine;
+    mine["machine"] = hostName();
+    mine["versions"] = {{"pm_host", PM_VERSION}, {"plugin", pluginVersion}};
+    mine["pluginFile"] = pluginFile;
+    mine["colour"] = {{"config", colourConfig}, {"renderingSpace", renderingSpace}};
+    mine["scene"] = scene;
+    mine["outputs"] = outputs;
+    mine["phases"] = phaseSeconds;
+    mine["phases"]["elapsedSeconds"] = log.elapsedSeconds();
+    mine["stopReason"] = stopReason;
+    mine["error"] = error;
+    if (referenceRelMse) mine["relMseReference"] = *referenceRelMse;
+    mine["exitCode"] = exitCode;
+    const Json warnings = warningList(log, all);
+    join(mine, all);
+    all["warnings"] = warnings;
+    return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace pm::host

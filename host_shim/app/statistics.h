@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/app/log.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pm::host {
+
+// What is written as --stats: one JSON object, "schema": "pm-stats/1". Units stand in the key
+// names; keys are only ever added.
+struct Statistics {
+    std::vector<std::string> commandLine;
+    std::string scene;
+    std::string pluginFile;
+    std::string pluginVersion;
+    std::string colourConfig;
+    std::string renderingSpace;
+    std::vector<std::string> outputs;            // that were written
+    std::map<std::string, double> phaseSeconds;  // readSceneSeconds, ...
+    std::string stopReason{"failed"};  // finished, error limit, interrupted, terminated, failed
+    std::string error;
+    std::optional<double> referenceRelMse;
+    std::string library;  // the plugin's own statistics, JSON, empty when there was no render
+    int exitCode{1};
+
+    // Estimated relMSE of the picture, from the plugin's statistics.
+    std::optional<double> estimatedRelMse() const;
+    std::string toJson(const Log& log) const;
+};
+
+}  // namespace pm::host

@@ -1,0 +1,299 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/cli/command_line.h"
+
+#include "host_shim/cli/not_available.h"
+#include "host_shim/cli/option_values.h"
+
+#include <fmt/format.h>
+#include <CLI/CLI.hpp>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <optional>
+#include <ranges>
+
+namespace pm::host {
+namespace {
+
+// Options as they were typed; what they mean is found afterwards, by option_values, since CLI11
+// reads numbers through the locale.
+struct Typed {
+    std::string scene, frame, size, eye, lookAt, up, fov, crop, aa, seed, subdivide, onlyPixel,
+        errorLimit, progress;
+    std::vector<std::string> outputs, context, layers;
+    std::map<std::string, std::string> settings;  // option -> text
+};
+
+// Options that are settings of the library, by another name.
+struct SettingOption {
+    const char* option;
+    const char* setting;
+    const char* placeholder;
+};
+constexpr std::array<SettingOption, 11> kSettingOptions{{
+    {"--threads", "threads", "N"},
+    {"--bucket-size", "bucketSize", "N"},
+    {"--bucket-order", "bucketOrder", "NAME"},
+    {"--aa", "aaLevel", "N|N:N"},
+    {"--integrator", "integrator", "photon|path"},
+    {"--photons", "photons", "N|auto"},
+    {"--estimate-photons", "estimatePhotons", "K"},
+    {"--gather-rays", "gatherRays", "N"},
+    {"--passes", "passes", "N"},
+    {"--seed", "seed", "N|frame"},
+    {"--memory-limit", "memoryLimitGib", "GIB"},
+}};
+
+void addText(CLI::App& app, const std::string& name, std::string& target,
+             const std::string& placeholder, const std::string& help) {
+    app.add_option(name, target, help)->type_name(placeholder)->take_last();
+}
+
+void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
+    addText(app, "SCENE", typed.scene, "FILE", "the scene, an .obj");
+    app.add_option("-o,--output", typed.outputs,
+                   "picture to write, may be repeated: .exr is scene-linear, .png .jpg .tif go "
+                   "through display and view (SCENE.exr in the working folder)")
+        ->type_name("FILE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    addText(app, "--frame", typed.frame, "N", "fills #### and %04d in SCENE and outputs");
+    addText(app, "--size", typed.size, "WxH", "pixels (640x480)");
+    addText(app, "--eye", typed.eye, "x,y,z", "where the camera stands (framed from the bounds)");
+    addText(app, "--look-at", typed.lookAt, "x,y,z", "what it looks at (centre of the bounds)");
+    addText(app, "--up", typed.up, "x,y,z", "up in the picture (0,1,0)");
+    addText(app, "--fov", typed.fov, "DEG", "vertical field of view, above 0 and below 180 (40)");
+    addText(app, "--crop", typed.crop, "x0,y0,x1,y1", "half-open pixels; may exceed the frame");
+    addText(app, "--subdivide", typed.subdivide, "all|tagged|none",
+            "which groups become Catmull-Clark limit surfaces (tagged)");
+    app.add_flag("--make-output-path", options.makeOutputPath, "make missing output folders");
+    app.add_flag("--exr-half", options.exrHalf, "store colour as half; data stays float");
+    app.add_option("--aov", typed.layers, "extra channels in the EXR, see --list aovs")
+        ->type_name("NAME[,NAME]")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void addRenderOptions(CLI::App& app, Typed& typed, Options& options, const SettingHelp& help) {
+    for (const SettingOption& setting : kSettingOptions) {
+        addText(app, setting.option, typed.settings[setting.option], setting.placeholder,
+                help ? help(setting.setting) : "");
+    }
+    addText(app, "--isa", options.isa, "NAME",
+            "instruction set, for the same bits on unlike machines: best, sse2, sse4.2, avx, avx2, "
+            "avx512 (best)");
+}
+
+void addColourOptions(CLI::App& app, Typed& typed, Options& options) {
+    ColourOptions& colour = options.colour;
+    addText(app, "--ocio", colour.ocioFile, "FILE", "colour config (else $OCIO, else built in)");
+    addText(app, "--rendering-space", colour.renderingSpace, "NAME", "(the config's scene_linear)");
+    addText(app, "--material-space", colour.materialSpace, "NAME",
+            "space of the numbers of materials (linear Rec.709)");
+    addText(app, "--texture-space", colour.textureSpace, "NAME", "space of colour textures");
+    addText(app, "--display", colour.display, "NAME", "see --list views (the config's own)");
+    addText(app, "--view", colour.view, "NAME", "see --list views (the display's own)");
+    addText(app, "--look", colour.look, "NAME", "look to apply before the view");
+    app.add_option("--context", typed.context, "variable of the config, may be repeated")
+        ->type_name("KEY=VALUE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void addReportOptions(CLI::App& app, Typed& typed, Options& options) {
+    std::string help;
+    app.add_option("--reference", options.reference, "EXR to report relMSE against")
+        ->type_name("FILE");
+    addText(app, "--error-limit", typed.errorLimit, "X",
+            "exit 6 when the relMSE against --reference is above, or a value is not finite");
+    addText(app, "--stats", options.statistics, "FILE", "statistics as JSON; - = standard output");
+    app.add_option("--log", options.log, "all messages, also to a file")->type_name("FILE");
+    app.add_flag("--explain", options.explain, "print what the scene needs, and stop");
+    addText(app, "--list", options.list, "views|spaces|aovs|orders|settings", "print and stop");
+    app.add_flag("--version", options.version, "print and stop");
+    app.add_flag("-h,--help", options.help, "print and stop");
+    addText(app, "--progress", typed.progress, "auto|bar|plain|json|alf|none",
+            "how progress is shown (auto)");
+    app.add_flag("-q,--quiet", options.quiet, "only warnings and errors");
+    app.add_flag("-v,--verbose", options.verbose, "more messages");
+    addText(app, "--only-pixel", typed.onlyPixel, "X,Y", "render and print that one");
+    app.add_option("--plugin", options.plugin,
+                   "the library (else $PM_PLUGIN_PATH, else beside pm_host)")
+        ->type_name("FILE");
+}
+
+void addAll(CLI::App& app, Typed& typed, Options& options, const SettingHelp& help) {
+    app.set_help_flag();
+    app.option_defaults()->always_capture_default(false);
+    addSceneOptions(app, typed, options);
+    addRenderOptions(app, typed, options, help);
+    addColourOptions(app, typed, options);
+    addReportOptions(app, typed, options);
+}
+
+template <typename Value>
+Value chosen(const std::string& option, const std::string& text, Value standard,
+             const std::vector<std::pair<std::string, Value>>& choices) {
+    if (text.empty()) return standard;
+    std::string allowed;
+    for (const auto& [name, value] : choices) {
+        if (name == text) return value;
+        allowed += (allowed.empty() ? "" : ", ") + name;
+    }
+    throw HostError(ExitCode::kUsage,
+                    fmt::format("{} '{}': allowed are {}", option, text, allowed));
+}
+
+void readCamera(const Typed& typed, Options& options) {
+    if (!typed.size.empty()) {
+        const auto size = sizeValue("--size", typed.size);
+        options.width = size[0];
+        options.height = size[1];
+    }
+    CameraOptions& camera = options.camera;
+    if (!typed.eye.empty()) camera.eye = pointValue("--eye", typed.eye);
+    if (!typed.lookAt.empty()) camera.lookAt = pointValue("--look-at", typed.lookAt);
+    if (!typed.up.empty()) camera.up = pointValue("--up", typed.up);
+    if (camera.up && *camera.up == std::array<double, 3>{}) {
+        throw HostError(ExitCode::kUsage, "--up 0,0,0 has no direction");
+    }
+    if (!typed.fov.empty()) {
+        camera.verticalFovDegrees = numberValue("--fov", typed.fov, 1e-6, 179.999999);
+    }
+    if (!typed.onlyPixel.empty()) options.onlyPixel = pixelValue("--only-pixel", typed.onlyPixel);
+    if (!typed.crop.empty()) options.crop = cropValue("--crop", typed.crop);
+}
+
+// A N:N pair means one fixed level; levels that refine between two are to come, as is level 0.
+std::string antiAliasingLevel(const std::string& text) {
+    const auto colon = text.find(':');
+    const auto low = integerValue("--aa", text.substr(0, colon), 0, 6);
+    const auto high =
+        colon == std::string::npos ? low : integerValue("--aa", text.substr(colon + 1), 0, 6);
+    if (low > high) {
+        throw HostError(ExitCode::kUsage, fmt::format("--aa '{}': MIN is above MAX", text));
+    }
+    if (low != high || low == 0) {
+        throw HostError(ExitCode::kUsage,
+                        fmt::format("--aa {}: not available yet; a level from 1 to 6 is", text));
+    }
+    return std::to_string(low);
+}
+
+std::string settingValue(const std::string& option, const std::string& text,
+                         std::optional<std::int64_t> frame) {
+    if (option == "--aa") return antiAliasingLevel(text);
+    if (option == "--photons" && text == "auto") return "0";
+    if (option == "--bucket-size") refuseValueNotAvailableYet(option, text, {"auto"});
+    if (option == "--bucket-order") {
+        refuseValueNotAvailableYet(option, text,
+                                   {"column", "diagonal", "spiral", "random", "correlated"});
+    }
+    if (option == "--seed" && text == "frame") {
+        if (!frame) throw HostError(ExitCode::kUsage, "--seed frame needs --frame N");
+        return std::to_string(*frame);
+    }
+    return text;
+}
+
+void readSettings(const Typed& typed, std::optional<std::int64_t> frame, Options& options) {
+    for (const SettingOption& setting : kSettingOptions) {
+        const std::string& text = typed.settings.at(setting.option);
+        if (text.empty()) continue;
+        options.settings.push_back(
+            {setting.option, setting.setting, settingValue(setting.option, text, frame)});
+        if (std::string_view(setting.setting) == "threads") {
+            options.threads =
+                static_cast<std::uint32_t>(integerValue(setting.option, text, 0, 65536));
+        }
+    }
+}
+
+void readFiles(const Typed& typed, std::optional<std::int64_t> frame, Options& options) {
+    options.scene = withFrame("SCENE", typed.scene, frame);
+    for (const std::string& output : typed.outputs) {
+        if (output.empty()) throw HostError(ExitCode::kUsage, "-o '': a file name is wanted");
+        options.outputs.emplace_back(withFrame("-o", output, frame));
+    }
+    options.statistics = withFrame("--stats", options.statistics, frame);
+    options.log = withFrame("--log", options.log.string(), frame);
+    if (options.outputs.empty() && !options.onlyPixel && !options.scene.empty()) {
+        options.outputs.push_back(options.scene.stem().string() + ".exr");
+    }
+}
+
+void readChoices(const Typed& typed, Options& options) {
+    options.subdivide = chosen<Subdivide>(
+        "--subdivide", typed.subdivide, Subdivide::kTagged,
+        {{"all", Subdivide::kAll}, {"tagged", Subdivide::kTagged}, {"none", Subdivide::kNone}});
+    options.progress = chosen<ProgressStyle>("--progress", typed.progress, ProgressStyle::kAuto,
+                                             {{"auto", ProgressStyle::kAuto},
+                                              {"bar", ProgressStyle::kBar},
+                                              {"plain", ProgressStyle::kPlain},
+                                              {"json", ProgressStyle::kJson},
+                                              {"alf", ProgressStyle::kAlf},
+                                              {"none", ProgressStyle::kNone}});
+    chosen<int>("--list", options.list, 0,
+                {{"views", 0}, {"spaces", 0}, {"aovs", 0}, {"orders", 0}, {"settings", 0}});
+    for (const std::string& layers : typed.layers) {
+        options.layers += (options.layers.empty() ? "" : ",") + layers;
+    }
+    for (const std::string& variable : typed.context) {
+        options.colour.context.push_back(parseContextVariable(variable));
+    }
+    if (!typed.errorLimit.empty()) {
+        options.errorLimit =
+            numberValue("--error-limit", typed.errorLimit, 0, std::numeric_limits<double>::max());
+        if (options.reference.empty()) {
+            throw HostError(ExitCode::kUsage, "--error-limit needs --reference FILE");
+        }
+    }
+}
+
+std::string oneLine(std::string text) {
+    std::ranges::replace(text, '\n', ' ');
+    return text;
+}
+
+}  // namespace
+
+Options parseCommandLine(const std::vector<std::string>& arguments) {
+    refuseWhatIsNotAvailableYet(arguments);
+    Options options;
+    Typed typed;
+    CLI::App app("", "pm_host");
+    addAll(app, typed, options, nullptr);
+    try {
+        // CLI11 takes them from the end.
+        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+    } catch (const CLI::ParseError& error) {
+        throw HostError(ExitCode::kUsage, oneLine(error.what()) + " (see pm_host -h)");
+    }
+    if (options.help || options.version) return options;
+    std::optional<std::int64_t> frame;
+    if (!typed.frame.empty()) {
+        frame = integerValue("--frame", typed.frame, 0, std::numeric_limits<std::int32_t>::max());
+    }
+    readCamera(typed, options);
+    readSettings(typed, frame, options);
+    readFiles(typed, frame, options);
+    readChoices(typed, options);
+    if (options.scene.empty() && options.list.empty()) {
+        throw HostError(ExitCode::kUsage,
+                        "no SCENE given; usage: pm_host SCENE [options], see "
+                        "pm_host -h");
+    }
+    return options;
+}
+
+std::string helpText(const SettingHelp& settingHelp) {
+    Options options;
+    Typed typed;
+    CLI::App app("pm: a photon-mapping bucket renderer", "pm_host");
+    addAll(app, typed, options, settingHelp);
+    return app.help();
+}
+
+}  // namespace pm::host

@@ -1,0 +1,24 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/cli/options.h"
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace pm::host {
+
+// Reads the command line; arguments are those after the program's name.
+// Errors: kUsage for an unknown option, a bad value, and an option that later work will bring ("not
+// available yet").
+Options parseCommandLine(const std::vector<std::string>& arguments);
+
+// One line of help for a setting of the library; empty when it has none.
+using SettingHelp = std::function<std::string(const std::string& setting)>;
+
+// The text of -h. Settings of the library are described by the library itself, when it is there.
+std::string helpText(const SettingHelp& settingHelp);
+
+}  // namespace pm::host

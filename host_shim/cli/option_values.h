@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/pictures/picture.h"
+
+#include <array>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace pm::host {
+
+// Values of options. Every error is kUsage and says option, value and what is allowed. Numbers have
+// a dot in any locale.
+
+double numberValue(const std::string& option, std::string_view text, double low, double high);
+std::int64_t integerValue(const std::string& option, std::string_view text, std::int64_t low,
+                          std::int64_t high);
+std::array<double, 3> pointValue(const std::string& option, std::string_view text);        // x,y,z
+std::array<std::int32_t, 2> sizeValue(const std::string& option, std::string_view text);   // WxH
+std::array<std::int32_t, 2> pixelValue(const std::string& option, std::string_view text);  // X,Y
+PixelRect cropValue(const std::string& option, std::string_view text);  // x0,y0,x1,y1
+
+// Fills #### (padded to as many digits as there are) and %d, %04d in a file name. Errors: kUsage
+// for a pattern when no frame is given.
+std::string withFrame(const std::string& option, const std::string& name,
+                      std::optional<std::int64_t> frame);
+
+}  // namespace pm::host

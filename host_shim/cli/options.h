@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/colour/colour_pipeline.h"
+#include "host_shim/ingest/framing.h"
+#include "host_shim/pictures/picture.h"
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pm::host {
+
+enum class Subdivide { kAll, kTagged, kNone };
+enum class ProgressStyle { kAuto, kBar, kPlain, kJson, kAlf, kNone };
+
+// A setting of the library that the command line gave a value to.
+struct GivenSetting {
+    std::string option;  // as it was typed, for messages
+    std::string name;    // of the library
+    std::string value;
+};
+
+// What the command line says, checked as far as it can be without files.
+struct Options {
+    std::vector<std::string> commandLine;
+    std::filesystem::path scene;
+    std::vector<std::filesystem::path> outputs;
+    std::int32_t width{640};
+    std::int32_t height{480};
+    CameraOptions camera;
+    std::optional<PixelRect> crop;
+    std::vector<GivenSetting> settings;
+    std::string isa;
+    std::uint32_t threads{0};  // 0 = all allowed
+    Subdivide subdivide{Subdivide::kTagged};
+    std::string layers;  // separated by commas
+    ColourOptions colour;
+    std::filesystem::path reference;
+    std::optional<double> errorLimit;
+    std::string statistics;  // file, "-" = standard output, empty = none
+    std::filesystem::path log;
+    bool explain{};
+    std::string list;  // empty, views, spaces, aovs, orders or settings
+    bool version{};
+    bool help{};
+    ProgressStyle progress{ProgressStyle::kAuto};
+    bool quiet{};
+    bool verbose{};
+    std::optional<std::array<std::int32_t, 2>> onlyPixel;
+    std::filesystem::path plugin;
+    bool makeOutputPath{};
+    bool exrHalf{};
+};
+
+}  // namespace pm::host

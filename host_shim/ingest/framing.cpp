@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/ingest/framing.h"
+
+#include "host_shim/pictures/host_error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace pm::host {
+namespace {
+
+using Point = std::array<double, 3>;
+
+constexpr double kDefaultFovDegrees = 40.0;
+constexpr double kMargin = 1.05;
+
+Point minus(const Point& a, const Point& b) {
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
+}
+double dot(const Point& a, const Point& b) {
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+Point cross(const Point& a, const Point& b) {
+    return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
+}
+Point unit(const Point& a) {
+    const double length = std::sqrt(dot(a, a));
+    return {a[0] / length, a[1] / length, a[2] / length};
+}
+
+// The nearest face of the bounds is the widest to be seen, so when it fits, all of them does.
+Point defaultEye(const Bounds& bounds, double fov, double aspect, bool fromNegativeZ) {
+    const Point centre = bounds.centre();
+    const Point size = minus(bounds.high, bounds.low);
+    const double tangent = std::tan(fov / 2);
+    double distance = std::max(size[1] / 2 / tangent, size[0] / 2 / (tangent * aspect)) * kMargin;
+    if (!(distance > 0)) distance = size[2] > 0 ? size[2] : 1.0;
+    return {centre[0], centre[1],
+            fromNegativeZ ? bounds.low[2] - distance : bounds.high[2] + distance};
+}
+
+// Twice the area times the normal of a face, by Newell's sums.
+Point newellVector(const MeshData& mesh, std::size_t first, std::size_t size) {
+    Point sum{};
+    const auto corner = [&](std::size_t i) {
+        const std::size_t at = 3 * std::size_t{mesh.indices[first + i % size]};
+        return Point{static_cast<double>(mesh.positions[at]),
+                     static_cast<double>(mesh.positions[at + 1]),
+                     static_cast<double>(mesh.positions[at + 2])};
+    };
+    for (std::size_t i = 0; i < size; ++i) {
+        const Point c = cross(corner(i), corner(i + 1));
+        for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += c[axis];
+    }
+    return sum;
+}
+
+}  // namespace
+
+bool opensTowardsNegativeZ(const SceneData& scene) {
+    constexpr double kNoticeable = 0.05;
+    double towardsZ = 0, area = 0;
+    for (const MeshData& mesh : scene.meshes) {
+        std::size_t first = 0;
+        for (const std::uint32_t size : mesh.faceSizes) {
+            const Point n = newellVector(mesh, first, size);
+            towardsZ += n[2];
+            area += std::sqrt(dot(n, n));
+            first += size;
+        }
+    }
+    return towardsZ < -kNoticeable * area;
+}
+
+CameraPose frameCamera(const CameraOptions& options, const Bounds& bounds, double aspect) {
+    CameraPose pose;
+    pose.verticalFov =
+        options.verticalFovDegrees.value_or(kDefaultFovDegrees) * std::numbers::pi / 180;
+    pose.lookAt = options.lookAt.value_or(bounds.centre());
+    pose.eye = options.eye ? *options.eye
+                           : defaultEye(bounds, pose.verticalFov, aspect, options.fromNegativeZ);
+    const Point backward = minus(pose.eye, pose.lookAt);
+    if (!(dot(backward, backward) > 0)) {
+        throw HostError(ExitCode::kUsage,
+                        fmt::format("--eye and --look-at are both {},{},{}; they must differ",
+                                    pose.eye[0], pose.eye[1], pose.eye[2]));
+    }
+    const Point z = unit(backward);
+    Point up = options.up.value_or(Point{0, 1, 0});
+    constexpr double kParallel = 1e-9;
+    Point x = cross(up, z);
+    if (!(dot(x, x) > kParallel * kParallel * dot(up, up))) {
+        pose.upWasReplaced = true;
+        up = std::abs(z[2]) < 0.9 ? Point{0, 0, 1} : Point{0, 1, 0};
+        x = cross(up, z);
+    }
+    x = unit(x);
+    const Point y = cross(z, x);
+    for (std::size_t row = 0; row < 3; ++row) {
+        pose.transform[row * 4 + 0] = x[row];
+        pose.transform[row * 4 + 1] = y[row];
+        pose.transform[row * 4 + 2] = z[row];
+        pose.transform[row * 4 + 3] = pose.eye[row];
+    }
+    return pose;
+}
+
+}  // namespace pm::host

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/ingest/scene_data.h"
+
+#include <array>
+#include <optional>
+
+namespace pm::host {
+
+// What the command line says about the camera; what it leaves out is found from the bounds.
+struct CameraOptions {
+    std::optional<std::array<double, 3>> eye, lookAt, up;
+    std::optional<double> verticalFovDegrees;  // in (0,180)
+    bool fromNegativeZ{};  // where the default eye stands; see opensTowardsNegativeZ
+};
+
+struct CameraPose {
+    std::array<double, 3> eye{};
+    std::array<double, 3> lookAt{};
+    double verticalFov{};                // radians
+    std::array<double, 12> transform{};  // camera to world, 3 x 4 row-major; looks along -z, +y up
+    bool upWasReplaced{};                // up was parallel to the view
+};
+
+// Whether more of the scene's fronts are seen from the -z side than from +z, as of a room without
+// its wall there: the sum of area times normal, which is 0 for closed shapes, then points to -z by
+// more than 1/20 of all area.
+bool opensTowardsNegativeZ(const SceneData& scene);
+
+// A perspective camera. By default it stands on the +z side (or -z, as the options say) of the
+// bounds and looks along -z at their centre, fov 40 degrees, just far enough that the front face of
+// the bounds fits with a margin of 5 %: for a box that is open to the front, the usual picture.
+// aspect is width / height, > 0. Errors: kUsage when eye and look-at are the same point.
+CameraPose frameCamera(const CameraOptions& options, const Bounds& bounds, double aspect);
+
+}  // namespace pm::host

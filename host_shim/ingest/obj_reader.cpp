@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/ingest/obj_reader.h"
+
+#include "host_shim/ingest/cage_tags.h"
+#include "host_shim/ingest/material_library.h"
+#include "host_shim/ingest/mesh_assembly.h"
+#include "host_shim/ingest/obj_text.h"
+#include "host_shim/pictures/host_error.h"
+
+#include <fmt/format.h>
+#include <tiny_obj_loader.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+namespace pm::host {
+namespace {
+
+namespace fs = std::filesystem;
+
+static_assert(sizeof(tinyobj::real_t) == sizeof(double), "the double-precision library is wanted");
+
+// Materials are read by us; the parser only hands their numbers through.
+class NumberedMaterials : public tinyobj::MaterialReader {
+  public:
+    explicit NumberedMaterials(std::size_t count) : m_count(count) {}
+    bool operator()(const std::string&, std::vector<tinyobj::material_t>*,
+                    std::map<std::string, int>* names, std::string*, std::string*) override {
+        for (std::size_t i = 0; i < m_count; ++i) {
+            names->emplace(std::to_string(i), static_cast<int>(i));
+        }
+        return true;
+    }
+
+  private:
+    std::size_t m_count;
+};
+
+struct Parsed {
+    tinyobj::attrib_t attributes;
+    std::vector<tinyobj::shape_t> shapes;
+};
+
+Parsed parse(ObjText& text, const std::string& fileName) {
+    Parsed parsed;
+    std::vector<tinyobj::material_t> materials;
+    NumberedMaterials reader(text.materialNames.size());
+    std::istringstream stream(std::move(text.cleaned));
+    std::string warning, error;
+    const bool good = tinyobj::LoadObj(&parsed.attributes, &parsed.shapes, &materials, &warning,
+                                       &error, &stream, &reader, false, false);
+    if (!good) {
+        std::ranges::replace(error, '\n', ' ');
+        throw HostError(ExitCode::kBadInput, fmt::format("{}: {}", fileName, error));
+    }
+    return parsed;
+}
+
+// The text was checked; this holds the parser to it, since a bad index would be read out of bounds.
+void checkParsed(const Parsed& parsed, const ObjText& text, const std::string& fileName) {
+    const std::array<std::size_t, 3> counts{parsed.attributes.vertices.size() / 3,
+                                            parsed.attributes.texcoords.size() / 2,
+                                            parsed.attributes.normals.size() / 3};
+    std::size_t face = 0, corner = 0;
+    for (const tinyobj::shape_t& shape : parsed.shapes) {
+        for (const tinyobj::index_t& index : shape.mesh.indices) {
+            const std::array<int, 3> indices{index.vertex_index, index.texcoord_index,
+                                             index.normal_index};
+            for (std::size_t kind = 0; kind < 3; ++kind) {
+                const bool missing = kind > 0 && indices[kind] == -1;
+                if (missing || (indices[kind] >= 0 &&
+                                static_cast<std::size_t>(indices[kind]) < counts[kind])) {
+                    continue;
+                }
+                throw HostError(ExitCode::kBadInput,
+                                fmt::format("{}:{}: face refers to index {} of {}", fileName,
+                                            text.faceLines[face], indices[kind], counts[kind]));
+            }
+            if (++corner == text.faceSizes[face]) {
+                corner = 0;
+                ++face;
+            }
+        }
+    }
+    if (face != text.faceSizes.size() || corner != 0) {
+        throw HostError(ExitCode::kInternal, fmt::format("{}: {} of {} faces were parsed", fileName,
+                                                         face, text.faceSizes.size()));
+    }
+}
+
+std::vector<SubdivisionTag> tagsOfGroup(const ObjText& text, std::size_t group) {
+    std::vector<SubdivisionTag> tags;
+    std::ranges::copy_if(text.tags, std::back_inserter(tags),
+                         [group](const SubdivisionTag& tag) { return tag.group == group; });
+    return tags;
+}
+
+std::ifstream openFile(const fs::path& file) {
+    errno = 0;
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) {
+        throw HostError(ExitCode::kFile,
+                        fmt::format("{}: can't be read: {}", file.string(), std::strerror(errno)));
+    }
+    return stream;
+}
+
+}  // namespace
+
+bool SceneData::hasLight() const {
+    return std::ranges::any_of(meshes, [this](const MeshData& mesh) {
+        return std::ranges::any_of(mesh.slotMaterials, [this](std::uint32_t material) {
+            return materials[material].emits();
+        });
+    });
+}
+
+SceneData readObj(std::string_view text, const std::string& fileName, const fs::path& folder,
+                  const WarningSink& warn) {
+    ObjText objText = readObjText(text, fileName, warn);
+    const Parsed parsed = parse(objText, fileName);
+    checkParsed(parsed, objText, fileName);
+    SceneData scene;
+    MaterialLibrary library = loadMaterials(objText, fileName, folder, warn);
+    scene.materials = std::move(library.materials);
+    scene.materialFiles = std::move(library.files);
+    scene.bounds = boundsOfFaces(parsed.attributes, parsed.shapes);
+    scene.centre = scene.bounds.centre();
+    MeshAssembly assembly(parsed.attributes, scene.centre);
+    const auto defaultMaterial = static_cast<std::uint32_t>(scene.materials.size() - 1);
+    for (const tinyobj::shape_t& shape : parsed.shapes) {
+        const std::size_t faces = shape.mesh.num_face_vertices.size();
+        if (faces == 0) continue;
+        MeshData& mesh = scene.meshes.emplace_back(assembly.assemble(
+            shape, objText.faceSizes.data() + scene.faceCount, faces, defaultMaterial));
+        const auto tags = tagsOfGroup(objText, scene.meshes.size() - 1);
+        if (!tags.empty()) {
+            mesh.tags = readCageTags(tags, assembly, {scene.faceCount, faces}, fileName, warn);
+        }
+        scene.faceCount += faces;
+    }
+    return scene;
+}
+
+SceneData readObjFile(const fs::path& file, const WarningSink& warn) {
+    checkSceneFile(file);
+    return readObj(readWholeFile(file), file.string(), file.parent_path(), warn);
+}
+
+void checkSceneFile(const fs::path& file) {
+    std::error_code ignored;
+    if (fs::is_directory(file, ignored)) {
+        throw HostError(
+            ExitCode::kBadInput,
+            fmt::format("{}: no geometry: this is a folder; an OBJ file is wanted", file.string()));
+    }
+    openFile(file);
+}
+
+std::string readWholeFile(const fs::path& file) {
+    std::ifstream stream = openFile(file);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    if (stream.bad() || (text.fail() && !text.str().empty())) {
+        throw HostError(ExitCode::kFile, fmt::format("{}: can't be read", file.string()));
+    }
+    return std::move(text).str();
+}
+
+}  // namespace pm::host

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <functional>
+#include <string>
+
+namespace pm::host {
+
+// Codes of the host's own warnings; the library's are below 1000. Texts may change, codes don't.
+enum class Warning : int {
+    kMaterialFile = 1001,   // a material library is missing
+    kMaterialName = 1002,   // usemtl of a name that no library has
+    kMaterialValue = 1003,  // a value was clamped, scaled or not understood
+    kMaterialPart = 1004,   // a part of a material that is not rendered yet
+    kTexture = 1005,        // a picture can't be read, or an option of it is not rendered
+    kGeometry = 1006,       // statements of the scene that were left out
+    kSubdivision = 1007,    // a subdivision tag that is not obeyed
+    kDefaultLight = 1008,   // the scene has no light: one was added
+    kCamera = 1009,         // the camera was changed
+    kOutput = 1010,         // something of an output could not be had
+};
+
+using WarningSink = std::function<void(Warning code, const std::string& text)>;
+
+}  // namespace pm::host

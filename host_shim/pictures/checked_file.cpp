@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/pictures/checked_file.h"
+
+#include "host_shim/pictures/host_error.h"
+
+#include <fmt/format.h>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+#include <cerrno>
+#include <cstring>
+
+namespace pm::host {
+
+CheckedFile::CheckedFile(const std::filesystem::path& path, const std::filesystem::path& shownPath)
+    : IOProxy(path.string(), Write) {
+    m_file = ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
+    if (m_file < 0) {
+        throw HostError(ExitCode::kFile, fmt::format("{}: can't be written: {}", shownPath.string(),
+                                                     std::strerror(errno)));
+    }
+}
+
+CheckedFile::~CheckedFile() {
+    finish();
+}
+
+int CheckedFile::finish() {
+    if (m_file >= 0 && ::close(m_file) != 0 && m_error == 0) m_error = errno;
+    m_file = -1;
+    m_mode = Closed;
+    return m_error;
+}
+
+std::size_t CheckedFile::write(const void* buffer, std::size_t size) {
+    const std::size_t written = pwrite(buffer, size, m_pos);
+    m_pos += static_cast<std::int64_t>(written);
+    return written;
+}
+
+std::size_t CheckedFile::pwrite(const void* buffer, std::size_t size, std::int64_t offset) {
+    const char* bytes = static_cast<const char*>(buffer);
+    std::size_t done = 0;
+    while (done < size) {
+        const ssize_t written =
+            ::pwrite(m_file, bytes + done, size - done, offset + static_cast<off_t>(done));
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) {
+            int none = 0;
+            m_error.compare_exchange_strong(none, written < 0 ? errno : ENOSPC);
+            break;
+        }
+        done += static_cast<std::size_t>(written);
+    }
+    return done;
+}
+
+std::size_t CheckedFile::read(void* buffer, std::size_t size) {
+    const std::size_t got = pread(buffer, size, m_pos);
+    m_pos += static_cast<std::int64_t>(got);
+    return got;
+}
+
+std::size_t CheckedFile::pread(void* buffer, std::size_t size, std::int64_t offset) {
+    const ssize_t got = ::pread(m_file, buffer, size, offset);
+    return got < 0 ? 0 : static_cast<std::size_t>(got);
+}
+
+std::size_t CheckedFile::size() const {
+    struct stat status {};
+    return ::fstat(m_file, &status) == 0 ? static_cast<std::size_t>(status.st_size) : 0;
+}
+
+}  // namespace pm::host

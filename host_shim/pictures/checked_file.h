@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <OpenImageIO/filesystem.h>
+
+#include <atomic>
+#include <filesystem>
+
+namespace pm::host {
+
+// The file that a picture writer of OpenImageIO writes into, with every failure remembered: the
+// writers themselves return true for a JPEG, a PNG or the end of an EXR on a full disk.
+class CheckedFile final : public OIIO::Filesystem::IOProxy {
+  public:
+    // Creates or truncates. Errors: HostError kFile, naming shownPath.
+    CheckedFile(const std::filesystem::path& path, const std::filesystem::path& shownPath);
+    ~CheckedFile() override;
+    CheckedFile(const CheckedFile&) = delete;
+    CheckedFile& operator=(const CheckedFile&) = delete;
+
+    // 0, or the errno of the first failure.
+    int firstError() const { return m_error; }
+    // Closes and returns firstError().
+    int finish();
+
+    const char* proxytype() const override { return "pm_checked_file"; }
+    std::size_t write(const void* buffer, std::size_t size) override;
+    std::size_t pwrite(const void* buffer, std::size_t size, std::int64_t offset) override;
+    std::size_t read(void* buffer, std::size_t size) override;
+    std::size_t pread(void* buffer, std::size_t size, std::int64_t offset) override;
+    std::size_t size() const override;
+
+  private:
+    int m_file{-1};
+    std::atomic<int> m_error{0};
+};
+
+}  // namespace pm::host

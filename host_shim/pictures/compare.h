@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/pictures/host_error.h"
+#include "host_shim/pictures/picture.h"
+
+#include <cstdint>
+#include <optional>
+
+namespace pm::host {
+
+struct ErrorReport {
+    // Values of R, G, B that are NaN or infinite; looked for before anything is compared.
+    std::int64_t badInPicture{};
+    std::int64_t badInReference{};
+    // None when a bad value was met.
+    std::optional<double> relMse;
+};
+
+// relMSE = mean over the pixels of the picture's data window and the channels R, G, B of
+// (x - r)^2 / (r^2 + 0.01), r the reference, in scene-linear values. A picture of a crop is held
+// against the same pixels of the whole.
+// Errors: kBadInput when the display windows differ, the picture's data window is empty or leaves
+// the reference's, or either lacks R, G or B; the text names both sizes or the channel.
+ErrorReport compareRelMse(const Picture& reference, const Picture& picture);
+
+}  // namespace pm::host

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/pictures/finished_file.h"
+#include "host_shim/pictures/host_error.h"
+#include "host_shim/pictures/picture.h"
+
+#include <cstdint>
+#include <filesystem>
+
+namespace pm::host {
+
+enum class PictureFormat { kExr, kPng, kJpeg, kTiff };
+
+// By the extension, in any case: .exr .png .jpg .jpeg .tif .tiff.
+// Errors: kUsage with the extensions allowed.
+PictureFormat pictureFormat(const std::filesystem::path& path);
+// Scene-linear (.exr) or through display and view.
+inline bool isDisplayReferred(PictureFormat format) {
+    return format != PictureFormat::kExr;
+}
+
+// Before the first ray: the format is known (else kUsage) and a file can be made there and take the
+// name (else kFile): the folder exists, a temporary file can be created in it, and the name is not
+// that of a folder, a device or a file that may not be written.
+void checkWritable(const std::filesystem::path& path);
+
+struct ExrOptions {
+    bool halfColour{};  // --exr-half: channels with isColour as half, data stays float
+};
+struct ExrReport {
+    std::int64_t clampedToHalf{};  // finite values beyond +-65504, written as that
+};
+
+// One part, scanline, ZIP. Writes the same bytes for the same picture. The file appears under its
+// name only when it is whole. NaN and infinity are written as they are: counting them is for the
+// one who rendered them.
+// Errors: kFile when it can't be written; kInternal when a channel does not fill the data window or
+// a name occurs twice.
+ExrReport writeExr(const std::filesystem::path& path, const Picture& picture,
+                   const ExrOptions& options = {});
+
+struct DisplayWriteOptions {
+    int bitDepth{8};      // 8 or 16; 16 for .png and .tif
+    int jpegQuality{95};  // 1..100
+};
+
+// .png, .jpg or .tif. Code = floor(value * (2^bitDepth - 1) + 0.5), values clamped to [0,1] and NaN
+// as 0. Alpha is straight; .jpg has none, so there the colours are multiplied by it (over black).
+// Errors: kFile when it can't be written, kUsage for a depth that the format has not.
+void writeDisplayPicture(const std::filesystem::path& path, const DisplayPicture& picture,
+                         const DisplayWriteOptions& options = {});
+
+// The first part of an EXR file with all its channels as floats, its windows and its attributes.
+// Errors: kFile when it can't be opened; kBadInput when it is no EXR, broken or truncated, or its
+// display window does not begin at 0,0.
+Picture readExr(const std::filesystem::path& path);
+
+}  // namespace pm::host

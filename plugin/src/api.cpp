@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/src/api_functions.h"
+
+namespace pm::plugin {
+
+namespace {
+
+constexpr PmrApi kApi = {
+    .size = sizeof(PmrApi),
+    .abiVersion = PMR_ABI_VERSION,
+    .reserved = 0,
+    .versionText = api::versionText,
+    .statusText = api::statusText,
+    .settingCount = api::settingCount,
+    .settingInfo = api::settingInfo,
+    .layerCount = api::layerCount,
+    .layerInfo = api::layerInfo,
+    .createContext = api::createContext,
+    .releaseContext = api::releaseContext,
+    .lastError = api::lastError,
+    .createMesh = api::createMesh,
+    .createCage = api::createCage,
+    .createSphere = api::createSphere,
+    .retainMesh = api::retainMesh,
+    .releaseMesh = api::releaseMesh,
+    .createTexture = api::createTexture,
+    .retainTexture = api::retainTexture,
+    .releaseTexture = api::releaseTexture,
+    .createMaterial = api::createMaterial,
+    .retainMaterial = api::retainMaterial,
+    .releaseMaterial = api::releaseMaterial,
+    .createScene = api::createScene,
+    .retainScene = api::retainScene,
+    .releaseScene = api::releaseScene,
+    .addInstance = api::addInstance,
+    .addLight = api::addLight,
+    .setEnvironment = api::setEnvironment,
+    .setCamera = api::setCamera,
+    .commitScene = api::commitScene,
+    .sceneBounds = api::sceneBounds,
+    .createRender = api::createRender,
+    .setSettingInteger = api::setSettingInteger,
+    .setSettingNumber = api::setSettingNumber,
+    .setSettingText = api::setSettingText,
+    .settingText = api::settingText,
+    .explainRender = api::explainRender,
+    .startRender = api::startRender,
+    .pollRender = api::pollRender,
+    .waitRender = api::waitRender,
+    .cancelRender = api::cancelRender,
+    .renderState = api::renderState,
+    .destroyRender = api::destroyRender,
+    .renderLayerCount = api::renderLayerCount,
+    .renderLayerInfo = api::renderLayerInfo,
+    .readPixels = api::readPixels,
+    .renderStatistics = api::renderStatistics,
+};
+
+}  // namespace
+
+}  // namespace pm::plugin
+
+extern "C" PmrStatus PMR_CALL pmrGetApi(uint32_t abiVersion, const PmrApi** api) {
+    if (api == nullptr) return PMR_ERROR_ARGUMENT;
+    *api = nullptr;
+    if (abiVersion != PMR_ABI_VERSION) return PMR_ERROR_ABI;
+    *api = &pm::plugin::kApi;
+    return PMR_OK;
+}

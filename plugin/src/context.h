@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "integrator/values/notice.h"
+#include "plugin/include/pm_plugin.h"
+#include "plugin/src/handle_table.h"
+#include "plugin/src/texture_system.h"
+
+namespace pm::plugin {
+
+// What everything that a host makes hangs on: its message function, the text of the last error, the
+// textures. Lives until the last object made from it ends.
+class Context {
+  public:
+    static constexpr ObjectKind kKind = ObjectKind::kContext;
+
+    // Throws CallError(ARGUMENT) for a name or number that is not allowed.
+    explicit Context(const PmrContextDesc& desc);
+
+    const std::string& isa() const { return m_isa; }
+    int threads() const { return m_threads; }
+    TextureSystem& textures() { return m_textures; }
+
+    // Passes a message to the host, on the calling thread. Threads: any.
+    void sendMessage(std::int32_t level, std::int32_t code, const std::string& text) const;
+    void sendNotice(const Notice& notice) const;
+
+    // Threads: any. Out of memory keeps the text before.
+    void setLastError(const char* text) noexcept;
+    std::string lastError() const;
+
+  private:
+    PmrMessageFunction m_message;
+    void* m_user;
+    std::string m_isa;
+    int m_threads;
+    TextureSystem m_textures;
+
+    mutable std::mutex m_errorMutex;
+    std::string m_lastError;
+};
+
+}  // namespace pm::plugin

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// What stands around every function of the interface: nothing throws through it, the host's
+// floating-point modes don't reach our arithmetic and come back, every failure leaves its text.
+#pragma once
+
+#include <cstdint>
+#include <exception>
+#include <memory>
+#include <new>
+#include <string>
+#include <utility>
+
+#include "integrator/values/error.h"
+#include "plugin/src/call_error.h"
+#include "plugin/src/context.h"
+#include "plugin/src/handle_table.h"
+#include "scheduler/fp_environment.h"
+
+namespace pm::plugin {
+
+// The status of the interface for one of the inner parts.
+PmrStatus toPmrStatus(Status status) noexcept;
+
+// Turns the exception being handled into a status and its text. Call it inside a catch block.
+PmrStatus translateException(std::string& text) noexcept;
+// The text becomes the last error of `context` (may be null).
+PmrStatus translateException(Context* context) noexcept;
+
+template <typename Object, typename Handle>
+std::shared_ptr<Object> findObject(Handle handle) {
+    return std::static_pointer_cast<Object>(
+        handleTable().find(reinterpret_cast<std::uintptr_t>(handle), Object::kKind));
+}
+
+inline Context* contextOf(Context& context) {
+    return &context;
+}
+template <typename Object>
+Context* contextOf(Object& object) {
+    return object.context().get();
+}
+
+// Calls body(shared_ptr<Object>) for the object of a handle. body returns nothing (PMR_OK) or a
+// status.
+template <typename Object, typename Handle, typename Body>
+PmrStatus onObject(Handle handle, Body&& body) noexcept {
+    const FpEnvironment environment;
+    std::shared_ptr<Object> object;
+    try {
+        object = findObject<Object>(handle);
+        if (!object) return PMR_ERROR_HANDLE;
+        if constexpr (std::is_void_v<decltype(body(object))>) {
+            body(object);
+            return PMR_OK;
+        } else {
+            return body(object);
+        }
+    } catch (...) {
+        return translateException(object ? contextOf(*object) : nullptr);
+    }
+}
+
+// The same for a call without an object.
+template <typename Body>
+PmrStatus onNothing(Body&& body) noexcept {
+    const FpEnvironment environment;
+    try {
+        body();
+        return PMR_OK;
+    } catch (...) {
+        return translateException(nullptr);
+    }
+}
+
+// Where a new handle goes: must not be null, and is null until there is one.
+template <typename Handle>
+void clearResult(Handle* result, const char* name) {
+    if (result == nullptr)
+        throw argumentError(std::string(name) + ": the pointer for the result is null");
+    *result = nullptr;
+}
+
+template <typename Handle, typename Object>
+Handle publish(std::shared_ptr<Object> object) {
+    return reinterpret_cast<Handle>(handleTable().insert(Object::kKind, std::move(object)));
+}
+
+template <typename Object, typename Handle>
+PmrStatus retainHandle(Handle handle) noexcept {
+    const bool live = handleTable().retain(reinterpret_cast<std::uintptr_t>(handle), Object::kKind);
+    return live ? PMR_OK : PMR_ERROR_HANDLE;
+}
+
+template <typename Object, typename Handle>
+PmrStatus releaseHandle(Handle handle) noexcept {
+    const FpEnvironment environment;
+    std::shared_ptr<void> last;
+    const bool live =
+        handleTable().release(reinterpret_cast<std::uintptr_t>(handle), Object::kKind, last);
+    return live ? PMR_OK : PMR_ERROR_HANDLE;
+}
+
+// Writes a text by the interface's rule for buffers; throws CallError(ARGUMENT) when it did not
+// fit.
+void writeText(const std::string& text, char* buffer, std::uint64_t capacity,
+               std::uint64_t* needed);
+
+}  // namespace pm::plugin

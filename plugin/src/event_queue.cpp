@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/src/event_queue.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "plugin/src/callback_scope.h"
+
+namespace pm::plugin {
+
+Deadline deadlineAfter(double seconds) {
+    constexpr double kForEver = 1e9;
+    if (seconds < 0.0 || seconds > kForEver) return std::nullopt;
+    return std::chrono::steady_clock::now() +
+           std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+               std::chrono::duration<double>(seconds));
+}
+
+void EventQueue::open(PmrRender render, std::uint32_t bucketCount) {
+    const std::lock_guard lock(m_mutex);
+    m_render = render;
+    if (m_sinks.bucketStarted != nullptr || m_sinks.bucketFinished != nullptr)
+        m_buckets.resize(bucketCount);
+}
+
+void EventQueue::push(Kind kind, std::uint32_t bucket) {
+    m_events.push_back({kind, bucket});
+    m_changed.notify_all();
+}
+
+void EventQueue::message(std::int32_t level, std::int32_t code, std::string text) {
+    const std::lock_guard lock(m_mutex);
+    if (m_sinks.message == nullptr || m_dropping || m_messages.size() >= kMaxWaitingMessages)
+        return;
+    m_messages.push_back({level, code, std::move(text)});
+    push(Kind::kMessage);
+}
+
+void EventQueue::progress(double fraction, double remainingSeconds) {
+    const std::lock_guard lock(m_mutex);
+    if (m_sinks.progress == nullptr || m_dropping) return;
+    m_fraction = std::max(m_fraction, fraction);
+    m_remainingSeconds = remainingSeconds;
+    if (!std::exchange(m_progressWaits, true)) push(Kind::kProgress);
+}
+
+void EventQueue::bucketStarted(const PmrBucketInfo& bucket) {
+    const std::lock_guard lock(m_mutex);
+    if (m_sinks.bucketStarted == nullptr || m_dropping) return;
+    Bucket& waiting = m_buckets[bucket.bucketIndex];
+    if (waiting.startedWaits || waiting.finishedWaits) return;
+    waiting.started = bucket;
+    waiting.startedWaits = true;
+    push(Kind::kStarted, bucket.bucketIndex);
+}
+
+void EventQueue::bucketFinished(const PmrBucketInfo& bucket) {
+    const std::lock_guard lock(m_mutex);
+    if (m_sinks.bucketFinished == nullptr || m_dropping) return;
+    Bucket& waiting = m_buckets[bucket.bucketIndex];
+    waiting.finished = bucket;
+    if (!std::exchange(waiting.finishedWaits, true))
+        push(Kind::kFinishedBucket, bucket.bucketIndex);
+}
+
+void EventQueue::finished(PmrStatus status) {
+    const std::lock_guard lock(m_mutex);
+    m_status = status;
+    m_finishedWaits = true;
+    push(Kind::kFinished);
+}
+
+EventQueue::Parcel EventQueue::take() {
+    const Event event = m_events.front();
+    m_events.pop_front();
+    Parcel parcel;
+    parcel.kind = event.kind;
+    switch (event.kind) {
+        case Kind::kMessage:
+            parcel.message = std::move(m_messages.front());
+            m_messages.pop_front();
+            break;
+        case Kind::kProgress:
+            parcel.fraction = m_fraction;
+            parcel.remainingSeconds = m_remainingSeconds;
+            m_progressWaits = false;
+            break;
+        case Kind::kStarted:
+            parcel.bucket = m_buckets[event.bucket].started;
+            m_buckets[event.bucket].startedWaits = false;
+            break;
+        case Kind::kFinishedBucket:
+            parcel.bucket = m_buckets[event.bucket].finished;
+            m_buckets[event.bucket].finishedWaits = false;
+            break;
+        case Kind::kFinished:
+            parcel.status = m_status;
+            m_finishedWaits = false;
+            break;
+    }
+    return parcel;
+}
+
+void EventQueue::call(const Parcel& parcel) const {
+    const CallbackScope scope;
+    switch (parcel.kind) {
+        case Kind::kMessage:
+            m_sinks.message(m_sinks.user, m_render, parcel.message.level, parcel.message.code,
+                            parcel.message.text.c_str());
+            break;
+        case Kind::kProgress:
+            m_sinks.progress(m_sinks.user, m_render, parcel.fraction, parcel.remainingSeconds);
+            break;
+        case Kind::kStarted:
+            m_sinks.bucketStarted(m_sinks.user, m_render, &parcel.bucket);
+            break;
+        case Kind::kFinishedBucket:
+            m_sinks.bucketFinished(m_sinks.user, m_render, &parcel.bucket);
+            break;
+        case Kind::kFinished:
+            if (m_sinks.finished != nullptr)
+                m_sinks.finished(m_sinks.user, m_render, parcel.status);
+            break;
+    }
+}
+
+bool EventQueue::waitFor(std::unique_lock<std::mutex>& lock, const Deadline& deadline,
+                         bool (*ready)(const EventQueue&)) {
+    const auto isReady = [this, ready] { return ready(*this); };
+    if (deadline) return m_changed.wait_until(lock, *deadline, isReady);
+    m_changed.wait(lock, isReady);
+    return true;
+}
+
+EventQueue::Delivery EventQueue::deliverOne(const Deadline& deadline) {
+    std::unique_lock lock(m_mutex);
+    const bool ready = waitFor(lock, deadline, [](const EventQueue& queue) {
+        return queue.m_over || (!queue.m_delivering && !queue.m_events.empty());
+    });
+    if (m_over) return Delivery::kOver;
+    if (!ready) return Delivery::kTimeout;
+    const Parcel parcel = take();
+    m_delivering = true;
+    lock.unlock();
+    try {
+        call(parcel);
+    } catch (...) {
+        // A host in C++ must not throw through a C interface; its exception ends here.
+    }
+    lock.lock();
+    m_delivering = false;
+    if (parcel.kind == Kind::kFinished) m_over = true;
+    m_changed.notify_all();
+    return Delivery::kDelivered;
+}
+
+void EventQueue::dropAllButFinished() {
+    const std::lock_guard lock(m_mutex);
+    m_dropping = true;
+    if (m_over) return;
+    m_events.clear();
+    m_messages.clear();
+    if (m_finishedWaits) push(Kind::kFinished);
+}
+
+void EventQueue::close() {
+    const std::lock_guard lock(m_mutex);
+    m_over = true;
+    m_changed.notify_all();
+}
+
+bool EventQueue::waitUntilOver(const Deadline& deadline) {
+    std::unique_lock lock(m_mutex);
+    return waitFor(lock, deadline, [](const EventQueue& queue) { return queue.m_over; });
+}
+
+}  // namespace pm::plugin

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/src/layer_table.h"
+
+#include <array>
+
+namespace pm::plugin {
+
+namespace {
+
+constexpr std::array<LayerSpec, kLayerCount> kLayers = {{
+    {Layer::kBeauty, "beauty", "R,G,B,A", 4, PMR_LAYER_COLOUR, true,
+     "Radiance, the sum of direct, indirect, caustic and emission; A is the coverage."},
+    {Layer::kDirect, "direct", "direct.R,direct.G,direct.B", 3, PMR_LAYER_COLOUR, true,
+     "Radiance of light that comes straight from a lamp to the surface seen."},
+    {Layer::kIndirect, "indirect", "indirect.R,indirect.G,indirect.B", 3, PMR_LAYER_COLOUR, true,
+     "Radiance of light that met other surfaces before."},
+    {Layer::kCaustic, "caustic", "caustic.R,caustic.G,caustic.B", 3, PMR_LAYER_COLOUR, true,
+     "Radiance of light that mirrors or glass focus on the surface seen."},
+    {Layer::kEmission, "emission", "emission.R,emission.G,emission.B", 3, PMR_LAYER_COLOUR, true,
+     "Radiance that the surface seen emits itself."},
+    {Layer::kAlbedo, "albedo", "albedo.R,albedo.G,albedo.B", 3, PMR_LAYER_COLOUR, false,
+     "Reflectance of the surface seen, premultiplied by coverage."},
+    {Layer::kNormal, "N", "N.X,N.Y,N.Z", 3, PMR_LAYER_DATA, false,
+     "Shading normal in world space, premultiplied by coverage: its mean over the pixel."},
+    {Layer::kDepth, "Z", "Z", 1, PMR_LAYER_DATA, false,
+     "Depth along the view axis in scene units, the mean over what is covered; 1e10 where nothing "
+     "is hit."},
+    {Layer::kStandardError, "stderr", "stderr.X,stderr.Y,stderr.Z", 3, PMR_LAYER_DATA, false,
+     "Standard error of the beauty's mean, from the spread between passes; 0 with one pass."},
+    {Layer::kSamples, "samples", "samples.X", 1, PMR_LAYER_DATA, false,
+     "Camera samples of the pixel."},
+}};
+
+constexpr bool inOrder() {
+    for (std::size_t i = 0; i < kLayers.size(); ++i)
+        if (static_cast<std::size_t>(kLayers[i].id) != i) return false;
+    return true;
+}
+static_assert(inOrder());
+
+}  // namespace
+
+std::span<const LayerSpec, kLayerCount> layerSpecs() {
+    return kLayers;
+}
+
+const LayerSpec* findLayer(std::string_view name) {
+    for (const LayerSpec& spec : kLayers)
+        if (name == spec.name) return &spec;
+    return nullptr;
+}
+
+std::vector<std::string_view> layerNames() {
+    std::vector<std::string_view> names;
+    for (const LayerSpec& spec : kLayers) names.emplace_back(spec.name);
+    return names;
+}
+
+PmrLayerInfo toInfo(const LayerSpec& spec) {
+    PmrLayerInfo info{};
+    info.size = sizeof info;
+    info.name = spec.name;
+    info.channels = spec.channels;
+    info.help = spec.help;
+    info.channelCount = spec.channelCount;
+    info.kind = spec.kind;
+    info.isDefault = spec.isDefault ? 1 : 0;
+    return info;
+}
+
+}  // namespace pm::plugin

@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Render::readPixels and the layers: what the host sees of the frame store.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+#include "plugin/src/call_error.h"
+#include "plugin/src/render.h"
+
+namespace pm::plugin {
+
+namespace {
+
+// No picture is larger, so a rectangle beyond it is a mistake (and its width can't overflow).
+constexpr std::int32_t kMaxCoordinatePixels = 1 << 24;
+constexpr float kNoDepth = 1e10f;  // where nothing is hit
+
+struct Destination {
+    unsigned char* first;
+    std::int64_t pixelStride, rowStride;
+
+    void put(std::int64_t x, std::int64_t y, const float* values, std::size_t count) const {
+        std::memcpy(first + y * rowStride + x * pixelStride, values, count * sizeof(float));
+    }
+};
+
+Rect checkedRectangle(const PmrRectangle& given) {
+    const Rect rect{given.x0, given.y0, given.x1, given.y1};
+    for (const std::int32_t coordinate : {rect.x0, rect.y0, rect.x1, rect.y1})
+        if (coordinate < -kMaxCoordinatePixels || coordinate > kMaxCoordinatePixels)
+            throw argumentError(fmt::format("rectangle has the coordinate {}; it must be {} to {}",
+                                            coordinate, -kMaxCoordinatePixels,
+                                            kMaxCoordinatePixels));
+    if (rect.x1 < rect.x0 || rect.y1 < rect.y0)
+        throw argumentError(
+            fmt::format("rectangle is [{},{}) x [{},{}); its ends must not come "
+                        "before its beginnings",
+                        rect.x0, rect.x1, rect.y0, rect.y1));
+    return rect;
+}
+
+Destination checkedDestination(const Rect& rect, const LayerSpec& layer, float* destination,
+                               std::int64_t pixelStride, std::int64_t rowStride) {
+    const auto pixelBytes = static_cast<std::int64_t>(layer.channelCount * sizeof(float));
+    if (pixelStride == 0) pixelStride = pixelBytes;
+    if (rowStride == 0) rowStride = pixelStride * rect.width();
+    constexpr std::int64_t kMaxStride = std::int64_t{1} << 40;
+    if (std::abs(pixelStride) < pixelBytes || std::abs(pixelStride) > kMaxStride)
+        throw argumentError(fmt::format("pixelStrideBytes is {}; layer {} has {} bytes a pixel",
+                                        pixelStride, layer.name, pixelBytes));
+    if (std::abs(rowStride) < pixelBytes || std::abs(rowStride) > kMaxStride)
+        throw argumentError(fmt::format("rowStrideBytes is {}; a row has at least {} bytes",
+                                        rowStride, pixelBytes));
+    return {reinterpret_cast<unsigned char*>(destination), pixelStride, rowStride};
+}
+
+// The value of one layer at a pixel from all its channels. Beauty is the sum of its parts.
+void layerValue(Layer layer, const ChannelLayout& layout, const float* pixel, float* value) {
+    const auto copy = [&](std::int32_t first) { std::copy_n(pixel + first, 3, value); };
+    switch (layer) {
+        case Layer::kBeauty:
+            for (int c = 0; c < 3; ++c)
+                value[c] = pixel[layout.direct + c] + pixel[layout.indirect + c] +
+                           pixel[layout.caustic + c] + pixel[layout.emission + c];
+            value[3] = pixel[layout.alpha];
+            break;
+        case Layer::kDirect:
+            return copy(layout.direct);
+        case Layer::kIndirect:
+            return copy(layout.indirect);
+        case Layer::kCaustic:
+            return copy(layout.caustic);
+        case Layer::kEmission:
+            return copy(layout.emission);
+        case Layer::kAlbedo:
+            return copy(layout.albedo);
+        case Layer::kNormal:
+            return copy(layout.normal);
+        case Layer::kDepth:
+            value[0] =
+                pixel[layout.alpha] > 0.0f ? pixel[layout.depth] / pixel[layout.alpha] : kNoDepth;
+            break;
+        case Layer::kStandardError:
+        case Layer::kSamples:
+        case Layer::kCount:
+            break;
+    }
+}
+
+void readMeans(const FrameStore& frame, const ChannelLayout& layout, const Rect& rect,
+               const LayerSpec& layer, const Destination& destination) {
+    const auto channels = static_cast<std::size_t>(layout.count);
+    const auto width = static_cast<std::size_t>(rect.width());
+    std::vector<float> row(channels * width), samples(width);
+    const auto pixelBytes = static_cast<std::int64_t>(channels * sizeof(float));
+    for (std::int32_t y = rect.y0; y < rect.y1; ++y) {
+        const Rect line{rect.x0, y, rect.x1, y + 1};
+        // The counts first: a pixel that was counted has a value by the time that is read.
+        frame.readSampleCount(line, samples.data(), sizeof(float), 0);
+        frame.read(line, 0, layout.count, row.data(), pixelBytes, 0);
+        for (std::size_t x = 0; x < width; ++x) {
+            float value[4] = {};
+            if (samples[x] > 0.0f) layerValue(layer.id, layout, row.data() + x * channels, value);
+            destination.put(static_cast<std::int64_t>(x), y - rect.y0, value, layer.channelCount);
+        }
+    }
+}
+
+void clear(const Rect& rect, const LayerSpec& layer, const Destination& destination) {
+    const float zero[4] = {};
+    for (std::int64_t y = 0; y < rect.height(); ++y)
+        for (std::int64_t x = 0; x < rect.width(); ++x)
+            destination.put(x, y, zero, layer.channelCount);
+}
+
+}  // namespace
+
+std::vector<Layer> Render::layers() const {
+    const SettingValues values = settings();
+    std::vector<Layer> layers;
+    for (const LayerSpec& spec : layerSpecs())
+        if (spec.isDefault || values.wantsLayer(spec.name)) layers.push_back(spec.id);
+    return layers;
+}
+
+void Render::readPixels(const PmrRectangle& rectangle, const char* layer, float* destination,
+                        std::int64_t pixelStrideBytes, std::int64_t rowStrideBytes) const {
+    if (layer == nullptr) throw argumentError("layer is null");
+    const LayerSpec* spec = findLayer(layer);
+    const std::vector<Layer> available = layers();
+    if (spec == nullptr ||
+        std::find(available.begin(), available.end(), spec->id) == available.end())
+        throw CallError(PMR_ERROR_NAME, fmt::format("this render has no layer '{}'", layer));
+    const Rect rect = checkedRectangle(rectangle);
+    if (destination == nullptr) throw argumentError("destination is null");
+    if (rect.empty()) return;
+    const Destination target =
+        checkedDestination(rect, *spec, destination, pixelStrideBytes, rowStrideBytes);
+    const std::shared_ptr<RenderWork> running = work();
+    if (!running)
+        clear(rect, *spec, target);
+    else if (spec->id == Layer::kStandardError)
+        running->frame().readStandardError(rect, destination, target.pixelStride, target.rowStride);
+    else if (spec->id == Layer::kSamples)
+        running->frame().readSampleCount(rect, destination, target.pixelStride, target.rowStride);
+    else
+        readMeans(running->frame(), running->layout(), rect, *spec, target);
+}
+
+}  // namespace pm::plugin

@@ -1,0 +1,206 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/src/render.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <utility>
+
+#include "plugin/src/call_error.h"
+#include "plugin/src/callback_scope.h"
+#include "plugin/src/entry.h"
+
+namespace pm::plugin {
+
+namespace {
+
+std::int32_t checkedCallbackMode(const PmrRenderDesc& desc) {
+    if (desc.callbackMode != PMR_CALLBACKS_THREAD && desc.callbackMode != PMR_CALLBACKS_POLL)
+        throw argumentError(
+            fmt::format("PmrRenderDesc: callbackMode is {}; it must be 0 (THREAD) or 1 (POLL)",
+                        desc.callbackMode));
+    if (desc.reserved != 0) throw argumentError("PmrRenderDesc: reserved must be 0");
+    return desc.callbackMode;
+}
+
+void checkTimeout(double seconds) {
+    if (std::isnan(seconds)) throw argumentError("timeoutSeconds is NaN; it must be a number");
+}
+
+void refuseInCallback(const char* function) {
+    if (CallbackScope::active())
+        throw CallError(PMR_ERROR_IN_CALLBACK,
+                        fmt::format("{} is not allowed inside a callback", function));
+}
+
+CallError notStarted() {
+    return {PMR_ERROR_STATE, "the render was not started"};
+}
+
+}  // namespace
+
+Render::Render(std::shared_ptr<SceneObject> scene, const PmrRenderDesc& desc)
+    : m_scene(std::move(scene)),
+      m_built(m_scene->built()),
+      m_callbackMode(checkedCallbackMode(desc)),
+      m_events(desc) {}
+
+void Render::changeSettings(const std::function<void(SettingValues&)>& change) {
+    const std::lock_guard lock(m_mutex);
+    if (m_state != PMR_RENDER_CREATED)
+        throw CallError(PMR_ERROR_STATE, "settings can't change after startRender");
+    change(m_settings);
+}
+
+SettingValues Render::settings() const {
+    const std::lock_guard lock(m_mutex);
+    return m_settings;
+}
+
+std::shared_ptr<RenderWork> Render::work() const {
+    const std::lock_guard lock(m_mutex);
+    return m_work;
+}
+
+std::string Render::explain() const {
+    if (const auto running = work()) return running->plan().explain();
+    return makePlan(*m_built, settings().toRenderSettings()).explain();
+}
+
+void Render::start(PmrRender handle) {
+    const std::lock_guard lock(m_mutex);
+    if (m_state != PMR_RENDER_CREATED || m_shuttingDown)
+        throw CallError(PMR_ERROR_STATE, "the render was started before");
+    m_startTime = std::chrono::steady_clock::now();
+    auto made = std::make_shared<RenderWork>(m_built, m_settings);
+    m_events.open(handle, made->bucketCount());
+    // The threads wait for m_mutex, so they see the state that is set last.
+    if (m_callbackMode == PMR_CALLBACKS_THREAD && !m_delivery.joinable())
+        m_delivery = std::thread([this] {
+            while (m_events.deliverOne(std::nullopt) != EventQueue::Delivery::kOver) {
+            }
+        });
+    m_work = made;
+    m_state = PMR_RENDER_RUNNING;
+    try {
+        m_job = std::thread([this] { runJob(); });
+    } catch (...) {
+        m_work.reset();
+        m_state = PMR_RENDER_CREATED;
+        throw;
+    }
+}
+
+void Render::runJob() {
+    const FpEnvironment environment;
+    const PmrStatus status = runWork();
+    {
+        const std::lock_guard lock(m_mutex);
+        m_totalSeconds =
+            std::chrono::duration<double>(std::chrono::steady_clock::now() - m_startTime).count();
+        m_status = status;
+        m_state = PMR_RENDER_FINISHED;
+    }
+    m_stateChanged.notify_all();
+    if (status == PMR_OK) m_events.progress(1.0, 0.0);
+    m_events.finished(status);
+}
+
+PmrStatus Render::runWork() {
+    const std::shared_ptr<RenderWork> running = work();
+    try {
+        running->announce(m_events);
+        running->run(m_cancel, m_events);
+        if (const std::uint64_t failures = m_scene->textureFailures(); failures > 0) {
+            const std::string text = fmt::format("{} texture look-ups failed and gave 0", failures);
+            running->warnings().add(PMR_MESSAGE_TEXTURE, text);
+            m_events.message(PMR_LEVEL_WARNING, PMR_MESSAGE_TEXTURE, text);
+        }
+        return PMR_OK;
+    } catch (...) {
+        std::string text;
+        const PmrStatus status = translateException(text);
+        if (status != PMR_ERROR_CANCELLED)
+            m_events.message(PMR_LEVEL_ERROR, PMR_MESSAGE_NONE, text);
+        const std::lock_guard lock(m_mutex);
+        m_errorText = text;
+        return status;
+    }
+}
+
+PmrStatus Render::poll(double timeoutSeconds) {
+    checkTimeout(timeoutSeconds);
+    refuseInCallback("pollRender");
+    if (m_callbackMode != PMR_CALLBACKS_POLL)
+        throw CallError(PMR_ERROR_STATE, "pollRender is for renders made with PMR_CALLBACKS_POLL");
+    if (!work()) throw notStarted();
+    const Deadline deadline = deadlineAfter(timeoutSeconds);
+    EventQueue::Delivery delivery = m_events.deliverOne(deadline);
+    if (delivery == EventQueue::Delivery::kTimeout) return PMR_ERROR_TIMEOUT;
+    if (delivery == EventQueue::Delivery::kOver)
+        throw CallError(PMR_ERROR_STATE, "`finished` has been delivered; nothing else will come");
+    // What else waits already, but no longer than the caller has time.
+    while (delivery == EventQueue::Delivery::kDelivered &&
+           (!deadline || std::chrono::steady_clock::now() < *deadline))
+        delivery = m_events.deliverOne(deadlineAfter(0.0));
+    return PMR_OK;
+}
+
+PmrStatus Render::outcome() const {
+    const std::lock_guard lock(m_mutex);
+    if (m_status != PMR_OK) context()->setLastError(m_errorText.c_str());
+    return m_status;
+}
+
+PmrStatus Render::wait(double timeoutSeconds) {
+    checkTimeout(timeoutSeconds);
+    refuseInCallback("waitRender");
+    if (!work()) throw notStarted();
+    const Deadline deadline = deadlineAfter(timeoutSeconds);
+    if (m_callbackMode == PMR_CALLBACKS_THREAD)
+        return m_events.waitUntilOver(deadline) ? outcome() : PMR_ERROR_TIMEOUT;
+    std::unique_lock lock(m_mutex);
+    const auto ended = [this] { return m_state == PMR_RENDER_FINISHED; };
+    if (!deadline)
+        m_stateChanged.wait(lock, ended);
+    else if (!m_stateChanged.wait_until(lock, *deadline, ended))
+        return PMR_ERROR_TIMEOUT;
+    lock.unlock();
+    return outcome();
+}
+
+void Render::cancel() {
+    m_cancel.set();
+}
+
+void Render::stateAndStatus(std::int32_t& state, PmrStatus& status) const {
+    const std::lock_guard lock(m_mutex);
+    state = m_state;
+    status = m_status;
+}
+
+bool Render::shutDown() {
+    refuseInCallback("destroyRender");
+    std::thread job, delivery;
+    {
+        const std::lock_guard lock(m_mutex);
+        if (std::exchange(m_shuttingDown, true)) return false;
+        job = std::move(m_job);
+        delivery = std::move(m_delivery);
+    }
+    m_cancel.set();
+    m_events.dropAllButFinished();
+    if (job.joinable())
+        job.join();
+    else
+        m_events.close();
+    // Here in the poll mode, beside another thread that may be at it; else on the thread for it.
+    while (m_callbackMode == PMR_CALLBACKS_POLL &&
+           m_events.deliverOne(std::nullopt) != EventQueue::Delivery::kOver) {
+    }
+    if (delivery.joinable()) delivery.join();
+    return true;
+}
+
+}  // namespace pm::plugin

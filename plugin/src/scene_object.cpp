@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/src/scene_object.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "plugin/src/call_error.h"
+#include "plugin/src/entry.h"
+#include "plugin/src/transform_reader.h"
+#include "scheduler/worker_arena.h"
+
+namespace pm::plugin {
+
+namespace {
+
+CallError unsupported(const std::string& text) {
+    return {PMR_ERROR_UNSUPPORTED, text};
+}
+
+std::array<double, 9> checkedRgbToXyz(const double (&given)[9]) {
+    // Linear Rec.709 with white D65 (IEC 61966-2-1).
+    constexpr std::array<double, 9> kRec709 = {0.4124564, 0.3575761, 0.1804375,
+                                               0.2126729, 0.7151522, 0.0721750,
+                                               0.0193339, 0.1191920, 0.9503041};
+    if (std::all_of(std::begin(given), std::end(given), [](double v) { return v == 0.0; }))
+        return kRec709;
+    std::array<double, 9> matrix{};
+    std::copy(std::begin(given), std::end(given), matrix.begin());
+    for (const double value : matrix)
+        if (!std::isfinite(value))
+            throw argumentError(
+                fmt::format("PmrSceneDesc: rgbToXyz holds {}; all must be finite", value));
+    const Transform padded = {matrix[0], matrix[1], matrix[2], 0,         matrix[3], matrix[4],
+                              matrix[5], 0,         matrix[6], matrix[7], matrix[8], 0};
+    if (determinant(padded) == 0.0) throw argumentError("PmrSceneDesc: rgbToXyz has no inverse");
+    return matrix;
+}
+
+Rgb checkedIntensity(const float (&emission)[3]) {
+    for (const float value : emission)
+        if (!(value >= 0.0f) || !std::isfinite(value))
+            throw argumentError(fmt::format(
+                "PmrLightDesc: emission is {}; it must be 0 or more and finite (W/sr)", value));
+    return {emission[0], emission[1], emission[2]};
+}
+
+void refuseOtherCameras(const PmrCameraDesc& desc) {
+    if (desc.kind == PMR_CAMERA_ORTHOGRAPHIC || desc.kind == PMR_CAMERA_PANORAMA)
+        throw unsupported(
+            fmt::format("PmrCameraDesc: this version renders perspective cameras only, not {} ones",
+                        desc.kind == PMR_CAMERA_ORTHOGRAPHIC ? "orthographic" : "panorama"));
+    if (desc.kind != PMR_CAMERA_PERSPECTIVE)
+        throw argumentError(
+            fmt::format("PmrCameraDesc: kind is {}; it must be 0 to 2 (PMR_CAMERA_*)", desc.kind));
+    if (!(desc.lensRadius >= 0.0) || !std::isfinite(desc.lensRadius))
+        throw argumentError(fmt::format(
+            "PmrCameraDesc: lensRadius is {}; it must be 0 or more and finite", desc.lensRadius));
+    if (desc.lensRadius > 0.0)
+        throw unsupported(
+            "PmrCameraDesc: this version renders pinhole cameras only (lensRadius 0)");
+    if (desc.reserved != 0) throw argumentError("PmrCameraDesc: reserved must be 0");
+}
+
+}  // namespace
+
+SceneObject::SceneObject(std::shared_ptr<Context> context, const PmrSceneDesc& desc)
+    : m_context(std::move(context)), m_textures(std::make_shared<SceneTextures>()) {
+    if (desc.renderingSpace != nullptr) m_description.renderingSpace = desc.renderingSpace;
+    m_description.rgbToXyz = checkedRgbToXyz(desc.rgbToXyz);
+}
+
+void SceneObject::requireOpen() const {
+    if (m_scene)
+        throw CallError(PMR_ERROR_STATE,
+                        "the scene is committed and can't change; an edit makes a new scene");
+}
+
+std::uint32_t SceneObject::materialIndex(const std::shared_ptr<MaterialObject>& material) {
+    const auto index = static_cast<std::uint32_t>(m_materials.size());
+    const auto [found, isNew] = m_materialIndices.try_emplace(material.get(), index);
+    if (!isNew) return found->second;
+    MaterialDescription description = material->description();
+    const auto textureIndex = [&](TextureUse use) {
+        return m_textures->add(material->textures()[static_cast<std::size_t>(use)]);
+    };
+    description.diffuseTexture = textureIndex(TextureUse::kDiffuse);
+    description.glossyTexture = textureIndex(TextureUse::kGlossy);
+    description.glossyExponentTexture = textureIndex(TextureUse::kGlossyExponent);
+    description.transmissionTexture = textureIndex(TextureUse::kTransmission);
+    description.emissionTexture = textureIndex(TextureUse::kEmission);
+    description.opacityTexture = textureIndex(TextureUse::kOpacity);
+    m_description.materials.push_back(std::move(description));
+    m_materials.push_back(material);
+    return index;
+}
+
+std::vector<std::uint32_t> SceneObject::materialsOf(const PmrInstanceDesc& desc,
+                                                    const MeshObject& mesh) {
+    if (desc.materialCount != mesh.slotCount())
+        throw argumentError(
+            fmt::format("PmrInstanceDesc: materialCount is {}; the mesh has {} slots",
+                        desc.materialCount, mesh.slotCount()));
+    if (desc.materials == nullptr) throw argumentError("PmrInstanceDesc: materials is null");
+    std::vector<std::shared_ptr<MaterialObject>> materials;
+    for (std::uint64_t i = 0; i < desc.materialCount; ++i) {
+        auto material = findObject<MaterialObject>(desc.materials[i]);
+        if (!material)
+            throw CallError(
+                PMR_ERROR_HANDLE,
+                fmt::format("PmrInstanceDesc: materials[{}] is not a live material", i));
+        if (material->context() != m_context)
+            throw argumentError(
+                fmt::format("PmrInstanceDesc: materials[{}] belongs to another context", i));
+        materials.push_back(std::move(material));
+    }
+    std::vector<std::uint32_t> indices;
+    for (const auto& material : materials) indices.push_back(materialIndex(material));
+    return indices;
+}
+
+void SceneObject::addInstance(const PmrInstanceDesc& desc) {
+    const std::lock_guard lock(m_mutex);
+    requireOpen();
+    const auto mesh = findObject<MeshObject>(desc.mesh);
+    if (!mesh) throw CallError(PMR_ERROR_HANDLE, "PmrInstanceDesc: mesh is not a live mesh");
+    if (mesh->context() != m_context)
+        throw argumentError("PmrInstanceDesc: mesh belongs to another context");
+    if (desc.reserved != 0) throw argumentError("PmrInstanceDesc: reserved must be 0");
+    InstanceDescription instance;
+    instance.shape = mesh->shape();
+    instance.transform = readTransform(desc.transforms, desc.transformCount, "PmrInstanceDesc");
+    instance.name = desc.name == nullptr ? "" : desc.name;
+    instance.id = desc.id;
+    instance.materials = materialsOf(desc, *mesh);
+    m_description.instances.push_back(std::move(instance));
+}
+
+void SceneObject::addLight(const PmrLightDesc& desc) {
+    const std::lock_guard lock(m_mutex);
+    requireOpen();
+    if (desc.kind == PMR_LIGHT_SPOT || desc.kind == PMR_LIGHT_DIRECTIONAL)
+        throw unsupported(fmt::format(
+            "PmrLightDesc: this version renders point lights and emitting surfaces only, not {} "
+            "lights",
+            desc.kind == PMR_LIGHT_SPOT ? "spot" : "directional"));
+    if (desc.kind != PMR_LIGHT_POINT)
+        throw argumentError(
+            fmt::format("PmrLightDesc: kind is {}; it must be 0 to 2 (PMR_LIGHT_*)", desc.kind));
+    const Transform transform = readTransform(desc.transforms, desc.transformCount, "PmrLightDesc");
+    PointLightDescription light;
+    light.position = {transform[3], transform[7], transform[11]};
+    light.intensity = checkedIntensity(desc.emission);
+    light.name = desc.name == nullptr ? "" : desc.name;
+    m_description.pointLights.push_back(std::move(light));
+}
+
+void SceneObject::setEnvironment(const PmrEnvironmentDesc&) {
+    const std::lock_guard lock(m_mutex);
+    requireOpen();
+    throw unsupported("PmrEnvironmentDesc: this version renders no environment light");
+}
+
+void SceneObject::setCamera(const PmrCameraDesc& desc) {
+    const std::lock_guard lock(m_mutex);
+    requireOpen();
+    refuseOtherCameras(desc);
+    if (!(desc.fieldOfView > 0.0 && desc.fieldOfView < std::numbers::pi))
+        throw argumentError(fmt::format(
+            "PmrCameraDesc: fieldOfView is {}; it must be between 0 and pi (radians, vertical)",
+            desc.fieldOfView));
+    if (!(desc.pixelAspect >= 0.0) || !std::isfinite(desc.pixelAspect))
+        throw argumentError(
+            fmt::format("PmrCameraDesc: pixelAspect is {}; it must be above 0 and finite (0 = 1)",
+                        desc.pixelAspect));
+    CameraDescription camera;
+    camera.cameraToWorld = readTransform(desc.transforms, desc.transformCount, "PmrCameraDesc");
+    camera.verticalFieldOfView = desc.fieldOfView;
+    camera.pixelAspect = desc.pixelAspect == 0.0 ? 1.0 : desc.pixelAspect;
+    m_description.camera = camera;
+}
+
+void SceneObject::commit() {
+    std::unique_lock lock(m_mutex);
+    requireOpen();
+    SceneDescription description = m_description;
+    description.textures = m_textures;
+    const auto start = std::chrono::steady_clock::now();
+    WorkerArena arena(m_context->threads());
+    m_scene = arena.execute([&] { return Scene::build(std::move(description), m_context->isa()); });
+    m_buildSeconds =
+        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    m_description = {};
+    const std::shared_ptr<const Scene> scene = m_scene;
+    lock.unlock();  // the host's function may ask for the bounds
+    for (const Notice& notice : scene->notices()) m_context->sendNotice(notice);
+}
+
+std::shared_ptr<const Scene> SceneObject::built() const {
+    const std::lock_guard lock(m_mutex);
+    if (!m_scene) throw CallError(PMR_ERROR_STATE, "the scene is not committed yet");
+    return m_scene;
+}
+
+std::array<double, 6> SceneObject::bounds() const {
+    return built()->bounds();
+}
+
+double SceneObject::buildSeconds() const {
+    const std::lock_guard lock(m_mutex);
+    return m_buildSeconds;
+}
+
+std::uint64_t SceneObject::textureFailures() const {
+    return m_textures->failureCount();
+}
+
+}  // namespace pm::plugin

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/src/scene_textures.h"
+
+#include <algorithm>
+
+namespace pm::plugin {
+
+std::int32_t SceneTextures::add(const std::shared_ptr<TextureObject>& texture) {
+    if (!texture) return kNoTexture;
+    const auto found = std::find(m_textures.begin(), m_textures.end(), texture);
+    const auto index = static_cast<std::int32_t>(found - m_textures.begin());
+    if (found == m_textures.end()) m_textures.push_back(texture);
+    return index;
+}
+
+Texel SceneTextures::lookUp(std::int32_t index, Vec2f uv, float width) const {
+    Texel texel;
+    const TextureObject& texture = *m_textures[static_cast<std::size_t>(index)];
+    if (!texture.context()->textures().lookUp(texture.picture(), uv, width, texel))
+        m_failures.fetch_add(1, std::memory_order_relaxed);
+    return texel;
+}
+
+std::uint64_t SceneTextures::failureCount() const {
+    return m_failures.load(std::memory_order_relaxed);
+}
+
+}  // namespace pm::plugin

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "integrator/scene/texture_source.h"
+#include "plugin/src/objects.h"
+
+namespace pm::plugin {
+
+// The textures of one scene, numbered. Filled while the scene is built, then const.
+class SceneTextures final : public TextureSource {
+  public:
+    // The number of a texture here, given on first sight; kNoTexture for null. One thread.
+    std::int32_t add(const std::shared_ptr<TextureObject>& texture);
+
+    Texel lookUp(std::int32_t index, Vec2f uv, float width) const override;
+    std::uint64_t failureCount() const override;
+
+  private:
+    std::vector<std::shared_ptr<TextureObject>> m_textures;
+    mutable std::atomic<std::uint64_t> m_failures{0};
+};
+
+}  // namespace pm::plugin

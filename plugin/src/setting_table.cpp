@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/src/setting_table.h"
+
+#include <array>
+#include <limits>
+
+namespace pm::plugin {
+
+namespace {
+
+constexpr std::int64_t kMaxInteger = std::numeric_limits<std::int64_t>::max();
+
+constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
+    {Setting::kWidth, "width", PMR_SETTING_INTEGER, "pixels", "640", 1, kMaxFramePixels, 1, "",
+     true, "Width of the frame.", "Time and memory grow with width x height."},
+    {Setting::kHeight, "height", PMR_SETTING_INTEGER, "pixels", "480", 1, kMaxFramePixels, 1, "",
+     true, "Height of the frame.", "Time and memory grow with width x height."},
+    {Setting::kCrop, "crop", PMR_SETTING_TEXT, "pixels", "", 0, 0, 1, "", false,
+     "Pixels to render, x0,y0,x1,y1 (half-open, origin top left); may exceed the frame; empty = "
+     "the "
+     "frame. A pixel has the same value in any crop.",
+     "Only the crop's pixels cost time and memory; photons cost the same."},
+    {Setting::kThreads, "threads", PMR_SETTING_INTEGER, "threads", "0", 0, kMaxThreads, 1, "",
+     false, "Threads of this render; 0 = all that affinity and cgroup allow.",
+     "Each thread needs a buffer of one bucket."},
+    {Setting::kBucketSize, "bucketSize", PMR_SETTING_INTEGER, "pixels", "32", 8, 1024, 8, "", false,
+     "Side of a bucket, a multiple of 8.",
+     "Small ones cost more administration, large ones leave threads idle at the end of a pass."},
+    {Setting::kBucketOrder, "bucketOrder", PMR_SETTING_CHOICE, "", "hilbert", 0, 0, 1,
+     "hilbert,row", false, "The order in which buckets are rendered.",
+     "hilbert keeps neighbours together, so caches hit more often."},
+    {Setting::kAaLevel, "aaLevel", PMR_SETTING_INTEGER, "", "3", 1, 6, 1, "", true,
+     "Anti-aliasing: level l takes 4^(l-1) samples a pixel in every four passes.",
+     "Each level takes four times the time of the one before."},
+    {Setting::kIntegrator, "integrator", PMR_SETTING_CHOICE, "", "photon", 0, 0, 1, "photon,path",
+     true, "photon: photon maps with final gathering; path: the unbiased path tracer, a reference.",
+     "path needs no memory for maps, but many more samples where light is indirect or focused."},
+    {Setting::kPhotons, "photons", PMR_SETTING_INTEGER, "photons", "0", 0, 4000000000, 1, "", true,
+     "Photons emitted in each pass; 0 = as many as the scene and the frame call for.",
+     "About 1 us of one thread and up to 64 bytes a photon."},
+    {Setting::kEstimatePhotons, "estimatePhotons", PMR_SETTING_INTEGER, "photons", "50", 2, 100000,
+     1, "", true, "Photons in each density estimate: fewer are noisier, more are more blurred.",
+     "Time of a look-up grows with it."},
+    {Setting::kGatherRays, "gatherRays", PMR_SETTING_INTEGER, "rays", "1", 1, 1024, 1, "", true,
+     "Final-gather rays of each camera sample.", "Time grows with it where light is indirect."},
+    {Setting::kPasses, "passes", PMR_SETTING_INTEGER, "passes", "4", 1, 1000000, 1, "", true,
+     "Passes, each with photons and samples of its own; the picture is their mean. At least 2 are "
+     "needed to tell the error.",
+     "Time grows with it; memory does not."},
+    {Setting::kSeed, "seed", PMR_SETTING_INTEGER, "", "1", 0, kMaxInteger, 1, "", true,
+     "Start of all random numbers; the same seed gives the same picture.", "None."},
+    {Setting::kLayers, "layers", PMR_SETTING_TEXT, "", "", 0, 0, 1, "", false,
+     "Optional layers, separated by commas: albedo, N, Z, stderr, samples.",
+     "albedo and N take 24 bytes a pixel each, Z 8; stderr and samples none."},
+    {Setting::kMemoryLimit, "memoryLimitGib", PMR_SETTING_NUMBER, "GiB", "0", 0, 1048576, 1, "",
+     false,
+     "A render that needs more is refused at its start; 0 = the cgroup's limit, else 90 % of "
+     "memory.",
+     "None; it never changes the picture."},
+}};
+
+constexpr bool inOrder() {
+    for (std::size_t i = 0; i < kSettings.size(); ++i)
+        if (static_cast<std::size_t>(kSettings[i].id) != i) return false;
+    return true;
+}
+static_assert(inOrder());
+
+}  // namespace
+
+std::span<const SettingSpec, kSettingCount> settingSpecs() {
+    return kSettings;
+}
+
+const SettingSpec* findSetting(std::string_view name) {
+    for (const SettingSpec& spec : kSettings)
+        if (name == spec.name) return &spec;
+    return nullptr;
+}
+
+PmrSettingInfo toInfo(const SettingSpec& spec) {
+    PmrSettingInfo info{};
+    info.size = sizeof info;
+    info.name = spec.name;
+    info.unit = spec.unit;
+    info.defaultText = spec.defaultText;
+    info.choices = spec.choices;
+    info.help = spec.help;
+    info.cost = spec.cost;
+    info.minimum = static_cast<double>(spec.minimum);
+    info.maximum = static_cast<double>(spec.maximum);
+    info.type = spec.type;
+    info.changesPixels = spec.changesPixels ? 1 : 0;
+    return info;
+}
+
+}  // namespace pm::plugin

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/src/texture_system.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "plugin/src/call_error.h"
+
+namespace pm::plugin {
+
+namespace {
+
+constexpr float kCacheMegabytes = 1024.0f;
+// Pictures that are not tiled are cut into tiles of this size when they are read.
+constexpr int kTilePixels = 64;
+
+OIIO::TextureOpt::Wrap toWrap(std::int32_t wrap, const char* name) {
+    switch (wrap) {
+        case PMR_WRAP_REPEAT:
+            return OIIO::TextureOpt::WrapPeriodic;
+        case PMR_WRAP_CLAMP:
+            return OIIO::TextureOpt::WrapClamp;
+        case PMR_WRAP_MIRROR:
+            return OIIO::TextureOpt::WrapMirror;
+        case PMR_WRAP_BLACK:
+            return OIIO::TextureOpt::WrapBlack;
+        default:
+            throw argumentError(fmt::format(
+                "PmrTextureDesc: {} is {}; it must be 0 to 3 (PMR_WRAP_*)", name, wrap));
+    }
+}
+
+float checkedFinite(float value, const char* name) {
+    if (!std::isfinite(value))
+        throw argumentError(
+            fmt::format("PmrTextureDesc: {} is {}; it must be finite", name, value));
+    return value;
+}
+
+float orOne(float value) {
+    return value == 0.0f ? 1.0f : value;
+}
+
+Texel toTexel(const std::array<float, 4>& values, int channelCount) {
+    switch (channelCount) {
+        case 1:
+            return {values[0], values[0], values[0], 1.0f};
+        case 2:
+            return {values[0], values[0], values[0], values[1]};
+        case 3:
+            return {values[0], values[1], values[2], 1.0f};
+        default:
+            return {values[0], values[1], values[2], values[3]};
+    }
+}
+
+bool isFinite(const Texel& texel) {
+    return std::isfinite(texel.r) && std::isfinite(texel.g) && std::isfinite(texel.b) &&
+           std::isfinite(texel.a);
+}
+
+}  // namespace
+
+TextureSystem::~TextureSystem() {
+    if (m_system != nullptr) OIIO::TextureSystem::destroy(m_system);
+}
+
+OIIO::TextureSystem& TextureSystem::system() {
+    std::call_once(m_once, [this] {
+        OIIO::TextureSystem* made = OIIO::TextureSystem::create(false);
+        if (made == nullptr) throw CallError(PMR_ERROR_INTERNAL, "no texture system");
+        made->attribute("max_memory_MB", kCacheMegabytes);
+        made->attribute("autotile", kTilePixels);
+        made->attribute("automip", 0);
+        made->attribute("accept_untiled", 1);
+        made->attribute("accept_unmipped", 1);
+        // Together with autotile it trips an assertion of the library (2.4.7) and ends the process.
+        made->attribute("forcefloat", 0);
+        made->attribute("unassociatedalpha", 0);
+        made->attribute("gray_to_rgb", 0);
+        made->attribute("flip_t", 0);
+        made->attribute("substitute_image", "");
+        made->attribute("searchpath", "");
+        m_system = made;
+    });
+    return *m_system;
+}
+
+TexturePicture TextureSystem::open(const PmrTextureDesc& desc) {
+    if (desc.fileName == nullptr || *desc.fileName == 0)
+        throw argumentError("PmrTextureDesc: fileName is null or empty");
+    TexturePicture picture;
+    picture.fileName = desc.fileName;
+    picture.wrapS = toWrap(desc.wrapS, "wrapS");
+    picture.wrapT = toWrap(desc.wrapT, "wrapT");
+    picture.uvScale = {orOne(checkedFinite(desc.uvScale[0], "uvScale[0]")),
+                       orOne(checkedFinite(desc.uvScale[1], "uvScale[1]"))};
+    picture.uvOffset = {checkedFinite(desc.uvOffset[0], "uvOffset[0]"),
+                        checkedFinite(desc.uvOffset[1], "uvOffset[1]")};
+    picture.gain = orOne(checkedFinite(desc.gain, "gain"));
+    picture.base = checkedFinite(desc.base, "base");
+
+    OIIO::TextureSystem& textures = system();
+    const OIIO::ustring name(picture.fileName);
+    picture.handle = textures.get_texture_handle(name);
+    const bool good = picture.handle != nullptr && textures.good(picture.handle) &&
+                      textures.get_texture_info(name, 0, OIIO::ustring("channels"), OIIO::TypeInt,
+                                                &picture.channelCount);
+    const std::string reason = textures.geterror();
+    if (!good || picture.channelCount < 1)
+        throw CallError(PMR_ERROR_IO, fmt::format("texture {}: {}", picture.fileName,
+                                                  reason.empty() ? "can't be read" : reason));
+    return picture;
+}
+
+bool TextureSystem::lookUp(const TexturePicture& picture, Vec2f uv, float width,
+                           Texel& texel) const {
+    texel = {0.0f, 0.0f, 0.0f, 0.0f};
+    const float s = uv.x * picture.uvScale.x + picture.uvOffset.x;
+    const float t = 1.0f - (uv.y * picture.uvScale.y + picture.uvOffset.y);
+    if (!std::isfinite(s) || !std::isfinite(t) || !std::isfinite(width)) return false;
+    OIIO::TextureOpt options;
+    options.swrap = picture.wrapS;
+    options.twrap = picture.wrapT;
+    options.mipmode = OIIO::TextureOpt::MipModeTrilinear;
+    options.interpmode = OIIO::TextureOpt::InterpBilinear;
+    const float widthS = std::abs(width * picture.uvScale.x);
+    const float widthT = std::abs(width * picture.uvScale.y);
+    const int channelCount = std::min(picture.channelCount, 4);
+    std::array<float, 4> values{};
+    const bool good = m_system->texture(picture.handle, m_system->get_perthread_info(), options, s,
+                                        t, widthS, 0.0f, 0.0f, widthT, channelCount, values.data());
+    if (!good) {
+        m_system->geterror();  // or the texts pile up
+        return false;
+    }
+    Texel found = toTexel(values, channelCount);
+    found.r = picture.base + picture.gain * found.r;
+    found.g = picture.base + picture.gain * found.g;
+    found.b = picture.base + picture.gain * found.b;
+    if (!isFinite(found)) return false;
+    texel = found;
+    return true;
+}
+
+}  // namespace pm::plugin

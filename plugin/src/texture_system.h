@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <OpenImageIO/texture.h>
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+
+#include "integrator/scene/texture_source.h"
+#include "integrator/values/vec.h"
+#include "plugin/include/pm_plugin.h"
+
+namespace pm::plugin {
+
+// A picture and how it is looked up; a plain value that many scenes may share.
+struct TexturePicture {
+    std::string fileName;
+    OIIO::TextureSystem::TextureHandle* handle = nullptr;
+    int channelCount = 1;  // as the file has, at most 4 are used
+    OIIO::TextureOpt::Wrap wrapS = OIIO::TextureOpt::WrapPeriodic;
+    OIIO::TextureOpt::Wrap wrapT = OIIO::TextureOpt::WrapPeriodic;
+    Vec2f uvScale{1.0f, 1.0f};
+    Vec2f uvOffset{};
+    float gain = 1.0f;
+    float base = 0.0f;
+};
+
+// A texture cache of our own: neither its contents nor its options mix with another user of the
+// same library in this process. Options that change values are all set here, so that what the
+// library takes from the environment has no say.
+// Threads: any, at once.
+class TextureSystem {
+  public:
+    TextureSystem() = default;
+    ~TextureSystem();
+    TextureSystem(const TextureSystem&) = delete;
+    TextureSystem& operator=(const TextureSystem&) = delete;
+
+    // Opens the picture. Throws CallError: ARGUMENT for values outside their ranges, IO for a file
+    // that is not there or can't be read.
+    TexturePicture open(const PmrTextureDesc& desc);
+
+    // The picture's value at uv, origin bottom left. Bilinear within a level, linear between the
+    // levels of a mip-mapped file; a file without levels is looked up at its only one whatever the
+    // width. One channel is grey, two are grey and alpha; gain and base apply to the colour.
+    // Returns false, and a texel of 0, when the look-up failed or gave no finite number.
+    bool lookUp(const TexturePicture& picture, Vec2f uv, float width, Texel& texel) const;
+
+  private:
+    OIIO::TextureSystem& system();
+
+    std::once_flag m_once;
+    OIIO::TextureSystem* m_system = nullptr;
+};
+
+}  // namespace pm::plugin

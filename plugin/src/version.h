@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace pm::plugin {
+
+// "0.1.0 (embree 3.13.5, OpenImageIO 2.4.7, TBB 2021.8)".
+const std::string& versionText();
+
+// The same by name.
+nlohmann::ordered_json versionsJson();
+
+}  // namespace pm::plugin

@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Layers and readPixels.
+#include <cmath>
+#include <cstring>
+#include <set>
+
+#include "tests/abi/host.h"
+
+namespace pm::test {
+
+namespace {
+
+constexpr PmrRectangle kWhole = {0, 0, kWidth, kHeight};
+
+class Pixels : public ::testing::Test {
+  protected:
+    Pixels() : m_render(m_host.makeRender({{"layers", "albedo,N,Z,stderr,samples"}})) {}
+    ~Pixels() override { EXPECT_EQ(PMR_OK, api().destroyRender(m_render)); }
+    void finish() {
+        ASSERT_EQ(PMR_OK, api().startRender(m_render));
+        ASSERT_EQ(PMR_OK, api().waitRender(m_render, -1.0));
+    }
+    BoxHost m_host;
+    PmrRender m_render;
+};
+
+TEST_F(Pixels, LayersOfARender) {
+    std::uint32_t count = 0;
+    EXPECT_EQ(PMR_OK, api().renderLayerCount(m_render, &count));
+    EXPECT_EQ(api().layerCount(), count);
+    std::set<std::string> channels;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        PmrLayerInfo info = PMR_INIT(PmrLayerInfo);
+        ASSERT_EQ(PMR_OK, api().renderLayerInfo(m_render, i, &info));
+        std::string names = info.channels;
+        std::uint32_t found = 1;
+        for (const char c : names) found += c == ',';
+        EXPECT_EQ(info.channelCount, found);
+        EXPECT_TRUE(channels.insert(names).second);
+        // Data must not be taken for colour by programs that go by the name.
+        if (info.kind == PMR_LAYER_DATA) {
+            EXPECT_EQ(std::string::npos, names.find(".R")) << names;
+        }
+    }
+    PmrLayerInfo info = PMR_INIT(PmrLayerInfo);
+    EXPECT_EQ(PMR_ERROR_ARGUMENT, api().renderLayerInfo(m_render, count, &info));
+    EXPECT_EQ(PMR_OK, api().setSettingText(m_render, "layers", "Z"));
+    EXPECT_EQ(PMR_OK, api().renderLayerCount(m_render, &count));
+    EXPECT_EQ(6u, count);
+    ASSERT_EQ(PMR_OK, api().renderLayerInfo(m_render, 5, &info));
+    EXPECT_STREQ("Z", info.name);
+}
+
+TEST_F(Pixels, BeautyIsTheSumOfItsParts) {
+    for (const float value : readLayer(m_render, "beauty", 4, kWhole)) EXPECT_EQ(0.0f, value);
+    finish();
+    const auto beauty = readLayer(m_render, "beauty", 4, kWhole);
+    const auto direct = readLayer(m_render, "direct", 3, kWhole);
+    const auto indirect = readLayer(m_render, "indirect", 3, kWhole);
+    const auto caustic = readLayer(m_render, "caustic", 3, kWhole);
+    const auto emission = readLayer(m_render, "emission", 3, kWhole);
+    double sums[4] = {};
+    for (std::size_t i = 0; i < direct.size() / 3; ++i) {
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::size_t at = 3 * i + c;
+            EXPECT_EQ(direct[at] + indirect[at] + caustic[at] + emission[at], beauty[4 * i + c]);
+            sums[0] += direct[at];
+            sums[1] += indirect[at];
+            sums[2] += caustic[at];
+            sums[3] += emission[at];
+        }
+        EXPECT_GE(beauty[4 * i + 3], 0.0f);
+        EXPECT_LE(beauty[4 * i + 3], 1.0f);
+    }
+    for (const double sum : sums) EXPECT_GT(sum, 0.0);
+}
+
+TEST_F(Pixels, DataLayers) {
+    finish();
+    const auto alpha = readLayer(m_render, "beauty", 4, kWhole);
+    const auto depth = readLayer(m_render, "Z", 1, kWhole);
+    const auto normal = readLayer(m_render, "N", 3, kWhole);
+    const auto albedo = readLayer(m_render, "albedo", 3, kWhole);
+    const auto samples = readLayer(m_render, "samples", 1, kWhole);
+    const auto error = readLayer(m_render, "stderr", 3, kWhole);
+    double errorSum = 0;
+    for (std::size_t i = 0; i < depth.size(); ++i) {
+        if (alpha[4 * i + 3] == 0.0f) {
+            EXPECT_EQ(1e10f, depth[i]);
+        } else {
+            EXPECT_GE(depth[i], 2.4f);  // the box is from 2.5 to 4.5 before the camera
+            EXPECT_LE(depth[i], 4.6f);
+        }
+        EXPECT_LE(std::hypot(normal[3 * i], normal[3 * i + 1], normal[3 * i + 2]), 1.001f);
+        EXPECT_LE(albedo[3 * i], 1.0f);
+        EXPECT_GE(samples[i], 1.0f);
+        EXPECT_GE(error[3 * i], 0.0f);
+        errorSum += error[3 * i];
+    }
+    EXPECT_GT(errorSum, 0.0);
+    // The middle of the picture looks along -z at the back wall or the block: z up to 1.
+    const std::size_t middle = (kHeight / 2 - 8) * std::size_t{kWidth} + kWidth / 2;
+    EXPECT_NEAR(1.0f, normal[3 * middle + 2], 1e-3f);
+    EXPECT_NEAR(0.75f, albedo[3 * middle], 1e-3f);
+}
+
+TEST_F(Pixels, StridesAndEdges) {
+    finish();
+    const auto plain = readLayer(m_render, "beauty", 4, kWhole);
+    // Bottom up, RGBA, with a margin between the pixels: as some hosts keep their buffers.
+    const std::size_t pixel = 6, row = pixel * kWidth;
+    std::vector<float> upside(row * kHeight, -7.0f);
+    const auto floatBytes = static_cast<std::int64_t>(sizeof(float));
+    EXPECT_EQ(PMR_OK,
+              api().readPixels(m_render, &kWhole, "beauty", upside.data() + row * (kHeight - 1),
+                               static_cast<std::int64_t>(pixel) * floatBytes,
+                               -static_cast<std::int64_t>(row) * floatBytes));
+    for (std::size_t y = 0; y < kHeight; ++y)
+        for (std::size_t x = 0; x < kWidth; ++x) {
+            const float* found = &upside[(kHeight - 1 - y) * row + x * pixel];
+            EXPECT_EQ(0, std::memcmp(found, &plain[(y * kWidth + x) * 4], 4 * sizeof(float)));
+            EXPECT_EQ(-7.0f, found[4]);
+            EXPECT_EQ(-7.0f, found[5]);
+        }
+    const auto beyond = readLayer(m_render, "beauty", 4, {-3, -2, 5, 4});
+    for (int y = -2; y < 4; ++y)
+        for (int x = -3; x < 5; ++x)
+            for (std::size_t c = 0; c < 4; ++c) {
+                const auto at = static_cast<std::size_t>((y + 2) * 8 + x + 3) * 4 + c;
+                const bool inside = x >= 0 && y >= 0;
+                EXPECT_EQ(inside ? plain[static_cast<std::size_t>(y * kWidth + x) * 4 + c] : 0.0f,
+                          beyond[at]);
+            }
+    for (const float value : readLayer(m_render, "Z", 1, {1000, 1000, 1004, 1004}))
+        EXPECT_EQ(0.0f, value);
+    const PmrRectangle empty = {4, 4, 4, 9};
+    float untouched = -7.0f;
+    EXPECT_EQ(PMR_OK, api().readPixels(m_render, &empty, "Z", &untouched, 0, 0));
+    EXPECT_EQ(-7.0f, untouched);
+}
+
+}  // namespace
+
+}  // namespace pm::test

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Textures through the interface: a square in front of the camera that emits its picture.
+#include <cstdio>
+
+#include "tests/abi/host.h"
+
+namespace pm::test {
+
+namespace {
+
+// 2 x 2 texels, top row first: red, green / blue, white.
+std::string writePicture() {
+    const std::string name = ::testing::TempDir() + "pm_four_texels.ppm";
+    const unsigned char texels[12] = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255};
+    FILE* file = std::fopen(name.c_str(), "wb");
+    std::fputs("P6\n2 2\n255\n", file);
+    std::fwrite(texels, 1, sizeof texels, file);
+    std::fclose(file);
+    return name;
+}
+
+// The middle pixels of the four quarters: top left, top right, bottom left, bottom right.
+std::vector<std::vector<float>> renderQuarters(PmrTextureDesc texture) {
+    const BoxHost host;
+    const std::string name = writePicture();
+    texture.fileName = name.c_str();
+    const float positions[12] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0};
+    const float uvs[8] = {0, 0, 1, 0, 1, 1, 0, 1};
+    const std::uint32_t size = 4, indices[4] = {0, 1, 2, 3};
+    PmrMeshDesc square = PMR_INIT(PmrMeshDesc);
+    square.positions = positions;
+    square.positionCount = 4;
+    square.faceSizes = &size;
+    square.faceCount = 1;
+    square.indices = indices;
+    square.indexCount = 4;
+    square.uvs = uvs;
+    square.uvCount = 4;
+    PmrMesh mesh = nullptr;
+    PmrTexture picture = nullptr;
+    PmrMaterial material = nullptr;
+    PmrScene scene = nullptr;
+    EXPECT_EQ(PMR_OK, api().createMesh(host.context(), &square, &mesh)) << host.lastError();
+    EXPECT_EQ(PMR_OK, api().createTexture(host.context(), &texture, &picture)) << host.lastError();
+    PmrMaterialDesc surface = PMR_INIT(PmrMaterialDesc);
+    for (float& value : surface.emission) value = 2.0f;
+    surface.emissionTexture = picture;
+    EXPECT_EQ(PMR_OK, api().createMaterial(host.context(), &surface, &material));
+    EXPECT_EQ(PMR_OK, api().createScene(host.context(), nullptr, &scene));
+    PmrInstanceDesc instance = PMR_INIT(PmrInstanceDesc);
+    instance.mesh = mesh;
+    instance.materials = &material;
+    instance.materialCount = 1;
+    EXPECT_EQ(PMR_OK, api().addInstance(scene, &instance)) << host.lastError();
+    // The square fills the frame: half its height over the distance is the tangent of half the
+    // angle.
+    const double transform[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1};
+    PmrCameraDesc camera = PMR_INIT(PmrCameraDesc);
+    camera.transforms = transform;
+    camera.transformCount = 1;
+    camera.fieldOfView = 1.5707963267948966;
+    EXPECT_EQ(PMR_OK, api().setCamera(scene, &camera));
+    EXPECT_EQ(PMR_OK, api().commitScene(scene)) << host.lastError();
+    PmrRender render = nullptr;
+    EXPECT_EQ(PMR_OK, api().createRender(scene, nullptr, &render));
+    api().setSettingInteger(render, "width", 32);
+    api().setSettingInteger(render, "height", 32);
+    api().setSettingInteger(render, "photons", 1000);
+    EXPECT_EQ(PMR_OK, api().startRender(render)) << host.lastError();
+    EXPECT_EQ(PMR_OK, api().waitRender(render, -1.0)) << host.lastError();
+    std::vector<std::vector<float>> quarters;
+    for (const PmrRectangle corner : {PmrRectangle{2, 2, 3, 3}, PmrRectangle{29, 2, 30, 3},
+                                      PmrRectangle{2, 29, 3, 30}, PmrRectangle{29, 29, 30, 30}})
+        quarters.push_back(readLayer(render, "emission", 3, corner));
+    EXPECT_EQ(PMR_OK, api().destroyRender(render));
+    EXPECT_EQ(PMR_OK, api().releaseScene(scene));
+    EXPECT_EQ(PMR_OK, api().releaseMaterial(material));
+    EXPECT_EQ(PMR_OK, api().releaseTexture(picture));
+    EXPECT_EQ(PMR_OK, api().releaseMesh(mesh));
+    std::remove(name.c_str());
+    return quarters;
+}
+
+void expectColour(const std::vector<float>& found, float r, float g, float b) {
+    EXPECT_NEAR(r, found[0], 0.02f);
+    EXPECT_NEAR(g, found[1], 0.02f);
+    EXPECT_NEAR(b, found[2], 0.02f);
+}
+
+TEST(Textures, OriginIsBottomLeft) {
+    PmrTextureDesc desc = PMR_INIT(PmrTextureDesc);
+    desc.wrapS = desc.wrapT = PMR_WRAP_CLAMP;
+    const auto quarters = renderQuarters(desc);
+    expectColour(quarters[0], 2, 0, 0);
+    expectColour(quarters[1], 0, 2, 0);
+    expectColour(quarters[2], 0, 0, 2);
+    expectColour(quarters[3], 2, 2, 2);
+}
+
+TEST(Textures, OffsetGainAndBase) {
+    PmrTextureDesc desc = PMR_INIT(PmrTextureDesc);
+    desc.wrapS = desc.wrapT = PMR_WRAP_CLAMP;
+    desc.uvOffset[0] = 5.0f;  // beyond the right edge: its column everywhere
+    desc.gain = 0.5f;
+    desc.base = 0.25f;
+    const auto quarters = renderQuarters(desc);
+    expectColour(quarters[0], 0.5f, 1.5f, 0.5f);
+    expectColour(quarters[2], 1.5f, 1.5f, 1.5f);
+}
+
+TEST(Textures, WrapModes) {
+    PmrTextureDesc desc = PMR_INIT(PmrTextureDesc);
+    desc.uvOffset[0] = 1.0f;
+    desc.wrapT = PMR_WRAP_CLAMP;
+    desc.wrapS = PMR_WRAP_BLACK;
+    expectColour(renderQuarters(desc)[3], 0, 0, 0);
+    desc.wrapS = PMR_WRAP_MIRROR;  // the second copy runs backwards
+    expectColour(renderQuarters(desc)[0], 0, 2, 0);
+}
+
+}  // namespace
+
+}  // namespace pm::test

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include <benchmark/benchmark.h>
+#include <fmt/format.h>
+#include <tbb/task_arena.h>
+
+#include "integrator/sampling/sampler.h"
+#include "tests/bench/bench_scenes.h"
+#include "tests/bench/render_run.h"
+#include "tests/bench/speed_bench.h"
+
+namespace pm::bench {
+
+namespace {
+
+// Seconds of each phase, one entry a turn.
+struct Phases {
+    std::vector<double> build, photons, maps, render, whole, processorNsPerSample;
+
+    void add(const test::SceneMaker& maker, IntegratorKind kind, int threads) {
+        tbb::task_arena arena(threads);
+        std::shared_ptr<const Scene> scene;
+        build.push_back(secondsOf([&] { arena.execute([&] { scene = maker.build(); }); }));
+        Accumulated last;
+        const RenderCounters counters =
+            renderPasses(scene, test::smallFrame(256, 256, kind, 4, 3), threads,
+                         [&](const Accumulated& so) { last = so; });
+        photons.push_back(counters.photonSeconds);
+        maps.push_back(counters.mapSeconds);
+        render.push_back(last.renderSeconds);
+        whole.push_back(build.back() + last.wallSeconds);
+        processorNsPerSample.push_back(1e9 * last.processorSeconds /
+                                       static_cast<double>(counters.cameraSamples));
+    }
+};
+
+}  // namespace
+
+void benchPhases(Report& report, int turns) {
+    report.table("Seconds of each phase, 256 x 256 pixels, 4 passes of 4 samples",
+                 {"scene, integrator, threads", "scene build", "photons", "maps", "render", "whole",
+                  "ns of processor time a camera sample, photons and maps included"});
+    struct Case {
+        std::string name;
+        test::SceneMaker maker;
+        IntegratorKind kind;
+        int threads;
+        Phases phases{};
+    };
+    std::vector<Case> cases;
+    for (const auto& [scene, maker] : {std::pair{"box of 32 triangles", plainBox()},
+                                       std::pair{"the same with 2 spheres", boxWithSpheres()}})
+        for (const auto& [name, kind] : {std::pair{"photon", IntegratorKind::kPhoton},
+                                         std::pair{"path", IntegratorKind::kPath}})
+            for (const int threads : {1, 2})
+                cases.push_back(
+                    {fmt::format("{}, {}, {}", scene, name, threads), maker, kind, threads});
+    for (int turn = 0; turn < std::min(turns, 5); ++turn)
+        for (Case& c : cases) c.phases.add(c.maker, c.kind, c.threads);
+    for (const Case& c : cases) {
+        const Phases& p = c.phases;
+        report.row({c.name, show(spreadOf(p.build)), show(spreadOf(p.photons)),
+                    show(spreadOf(p.maps)), show(spreadOf(p.render)), show(spreadOf(p.whole)),
+                    show(spreadOf(p.processorNsPerSample))});
+    }
+}
+
+void benchSampler(Report& report, int turns) {
+    report.table("Random numbers, nanoseconds, one thread", {"what", "ns"});
+    constexpr int kSamples = 200'000, kPairs = 8;
+    const auto times =
+        takeTurns(turns, {[] {
+                              for (int i = 0; i < kSamples; ++i) {
+                                  Sampler sampler(1, 0, static_cast<std::uint64_t>(i / 16),
+                                                  static_cast<std::uint32_t>(i % 16));
+                                  benchmark::DoNotOptimize(sampler);
+                              }
+                          },
+                          [] {
+                              for (int i = 0; i < kSamples; ++i) {
+                                  Sampler sampler(1, 0, static_cast<std::uint64_t>(i / 16),
+                                                  static_cast<std::uint32_t>(i % 16));
+                                  for (int d = 0; d < kPairs; ++d)
+                                      benchmark::DoNotOptimize(sampler.next2D());
+                              }
+                          }});
+    report.row({"a sampler made", show(spreadOf(times[0]), 1e9 / kSamples)});
+    std::vector<double> draws;
+    for (std::size_t i = 0; i < times[0].size(); ++i) draws.push_back(times[1][i] - times[0][i]);
+    report.row({"a 2D sample drawn (8 from each sampler)",
+                show(spreadOf(draws), 1e9 / (kSamples * kPairs))});
+}
+
+}  // namespace pm::bench

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "tests/bench/picture_error.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace pm::bench {
+
+double relativeError(std::span<const double> a, std::span<const double> b,
+                     std::span<const double> reference, double dropped) {
+    std::vector<double> errors(reference.size() / 3);
+    for (std::size_t i = 0; i < reference.size(); ++i) {
+        const double r = reference[i];
+        errors[i / 3] += (a[i] - r) * (b[i] - r) / (r * r + 0.01) / 3;
+    }
+    std::sort(errors.begin(), errors.end(),
+              [](double x, double y) { return std::abs(x) < std::abs(y); });
+    // A NaN in the picture must show, wherever it was sorted to.
+    const auto out =
+        static_cast<std::size_t>(std::ceil(dropped * static_cast<double>(errors.size())));
+    double sum = 0;
+    for (std::size_t i = 0; i < errors.size(); ++i)
+        if (i < errors.size() - out || std::isnan(errors[i])) sum += errors[i];
+    return sum / static_cast<double>(errors.size() - out);
+}
+
+}  // namespace pm::bench

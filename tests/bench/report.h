@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/bench/timing.h"
+
+namespace pm::bench {
+
+// What a benchmark program found: tables for people (Markdown) and programs (CSV).
+class Report {
+  public:
+    // name: of the place in docs/benchmarks.md that belongs to this program.
+    explicit Report(std::string name) : m_name(std::move(name)) {}
+
+    // The rows that follow belong to this table.
+    void table(const std::string& title, std::vector<std::string> header);
+    // Also says on standard error that this row is done.
+    void row(std::vector<std::string> cells);
+
+    std::string markdown() const;
+    std::string csv() const;
+    // Markdown to standard output, CSV to csvFile, and Markdown between the lines
+    // <!-- NAME begin --> and <!-- NAME end --> of docsFile; a file name that is empty is left out.
+    // Throws Error(kIo), naming the file and what is wrong with it.
+    void publish(const std::string& csvFile, const std::string& docsFile) const;
+
+  private:
+    struct Table {
+        std::string title;
+        std::vector<std::string> header;
+        std::vector<std::vector<std::string>> rows;
+    };
+    std::string m_name;
+    std::vector<Table> m_tables;
+};
+
+// Processor, threads, build, date (UTC), and how busy the machine was, in one line.
+std::string machineLine();
+
+// "1.23 (1.20 to 1.25)": median and quartiles, each times `scale`.
+std::string show(const Spread& spread, double scale = 1.0);
+// Three significant digits.
+std::string show(double value);
+
+}  // namespace pm::bench

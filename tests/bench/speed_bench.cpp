@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// How fast the parts are: rays, photons, maps, look-ups, phases, random numbers; where there is a
+// rival, side by side with it in one run.
+#include "tests/bench/speed_bench.h"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <functional>
+#include <map>
+
+namespace pm::bench {
+namespace {
+
+int runProgram(int argc, char** argv) {
+    static const std::map<std::string, std::function<void(Report&, int)>> kParts = {
+        {"1-rays", benchRays},     {"2-photons", benchPhotons}, {"3-queries", benchQueries},
+        {"4-phases", benchPhases}, {"5-sampler", benchSampler},
+    };
+    std::string csvFile, docsFile, only;
+    int turns = 9;
+    CLI::App app("Speed of the integrator's parts");
+    app.add_option("--csv", csvFile, "also write the tables to this CSV file");
+    app.add_option("--docs", docsFile, "also put the tables into this Markdown file");
+    app.add_option("--turns", turns, "timed turns of each rival (9)")->check(CLI::Range(1, 1000));
+    app.add_option("--only", only, "one part: rays, photons, queries, phases or sampler")
+        ->check(CLI::IsMember({"rays", "photons", "queries", "phases", "sampler"}));
+    CLI11_PARSE(app, argc, argv);
+    try {
+        Report report("pm_bench_speed");
+        for (const auto& [name, part] : kParts)
+            if (only.empty() || name.ends_with(only)) part(report, turns);
+        report.publish(csvFile, docsFile);
+        return 0;
+    } catch (const std::exception& e) {
+        fmt::print(stderr, "pm_bench_speed: {}\n", e.what());
+        return 1;
+    }
+}
+
+}  // namespace
+}  // namespace pm::bench
+
+int main(int argc, char** argv) {
+    return pm::bench::runProgram(argc, argv);
+}

@@ -1,0 +1,101 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: The pm authors
+"""That house_rules.py can fail: each rule meets a tree that breaks it, and one that does not."""
+import pathlib
+import tempfile
+import unittest
+
+import house_rules
+
+HEAD = "// SPDX-License-Identifier: Apache-2.0\n// SPDX-FileCopyrightText: The pm authors\n"
+
+
+class HouseRules(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.root = pathlib.Path(folder.name, "repository")
+        self.root.mkdir()
+
+    def write(self, name, text, head=HEAD):
+        path = self.root / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(head + text)
+
+    def one_breach(self, *parts):
+        found = house_rules.breaches(self.root)
+        self.assertEqual(len(found), 1, found)
+        for part in parts:
+            self.assertIn(part, found[0])
+
+    def test_good_tree(self):
+        self.write("integrator/values/v.h", "#pragma once\n#include <vector>\n")
+        self.write("integrator/rays/r.cpp", "#include <embree3/rtcore.h>\n")
+        self.write("scheduler/s.cpp", '#include "integrator/values/v.h"\n// never abort() here\n')
+        self.write("plugin/include/pm_plugin.h", "")
+        self.write("plugin/src/p.cpp", '#include "scheduler/s.h"\n#include "plugin/include/pm_plugin.h"\n')
+        self.write("scheduler/s.h", "#pragma once\n")
+        self.write("host_shim/h.cpp", '#include "plugin/include/pm_plugin.h"\n#include <OpenColorIO/x.h>\n')
+        self.assertEqual(house_rules.breaches(self.root), [])
+
+    def test_layers(self):
+        cases = [("integrator", "scheduler"), ("integrator", "plugin"), ("integrator", "host_shim"),
+                 ("scheduler", "plugin"), ("scheduler", "integrator/light"), ("plugin", "host_shim"),
+                 ("host_shim", "integrator/values"), ("host_shim", "plugin/src")]  # fmt: skip
+        for who, whom in cases:
+            with self.subTest(who=who, whom=whom):
+                self.setUp()
+                self.write(f"{whom}/x.h", "#pragma once\n")
+                self.write(f"{who}/y.cpp", f'#include "{whom}/x.h"\n')
+                self.one_breach(f"{who}/y.cpp:3", "may see only")
+
+    def test_third_parties(self):
+        cases = [("integrator/light", "embree3/rtcore.h"), ("plugin", "embree3/rtcore.h"),
+                 ("integrator/rays", "opensubdiv/bfr/x.h"), ("integrator/x", "OpenImageIO/texture.h"),
+                 ("plugin", "OpenColorIO/OpenColorIO.h")]  # fmt: skip
+        for folder, what in cases:
+            with self.subTest(folder=folder, what=what):
+                self.setUp()
+                self.write(f"{folder}/y.cpp", f"#include <{what}>\n")
+                self.one_breach(f"{folder}/y.cpp:3", what)
+
+    def test_forbidden(self):
+        cases = [("host_shim", 'OIIO::attribute("threads", 1);'), ("plugin", "std::abort();"),
+                 ("plugin", "tbb::global_control c(x, 1);"), ("integrator", "exit(1);"),
+                 ("host_shim", "OCIO::SetCurrentConfig(c);"), ("integrator", "std::cerr << 1;"),
+                 ("scheduler", 'printf("x");'), ("host_shim", "double d = std::stod(s);")]  # fmt: skip
+        for folder, code in cases:
+            with self.subTest(code=code):
+                self.setUp()
+                self.write(f"{folder}/y.cpp", f"/* a\n comment */\n{code}\n")
+                self.one_breach(f"{folder}/y.cpp:5")
+
+    def test_cycle_between_subfolders(self):
+        self.write("integrator/a/a.h", '#pragma once\n#include "integrator/b/b.h"\n')
+        self.write("integrator/b/b.h", '#pragma once\n#include "integrator/c/c.h"\n')
+        self.write("integrator/c/c.h", '#pragma once\n#include "integrator/a/a.h"\n')
+        self.one_breach("integrator/a -> integrator/b -> integrator/c -> integrator/a")
+
+    def test_heads_and_places(self):
+        self.write("integrator/a.h", "#pragma once\n", head="")
+        self.one_breach("integrator/a.h:1", "SPDX")
+        self.setUp()
+        self.write("integrator/a.h", "")
+        self.one_breach("#pragma once")
+        self.setUp()
+        self.write("core/a.h", "")
+        self.one_breach("core: does not belong")
+        self.setUp()
+        self.write("integrator/a.cpp", '#include "../b.h"\n')
+        self.one_breach("named from the repository's root")
+
+    def test_copy_of_shared(self):
+        self.write("tests/data/x.txt", "y" * 100)
+        (self.root.parent / "shared").mkdir()
+        (self.root.parent / "shared" / "other.txt").write_text(HEAD + "y" * 100)
+        self.one_breach("tests/data/x.txt", "../shared/other.txt")
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,127 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// The command line: what it means, and what it refuses.
+#include "host_shim/cli/command_line.h"
+#include "host_shim/cli/option_values.h"
+#include "tests/ingest/heard.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <locale>
+
+namespace pm::host::test {
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+std::string refusal(Arguments arguments) {
+    arguments.insert(arguments.begin(), "s.obj");
+    return errorOf([&] { parseCommandLine(arguments); });
+}
+
+std::string setting(const Options& options, const std::string& name) {
+    const auto found = std::ranges::find(options.settings, name, &GivenSetting::name);
+    return found == options.settings.end() ? "none" : found->value;
+}
+
+TEST(CommandLine, defaults) {
+    const Options options = parseCommandLine({"in/my box.obj"});
+    EXPECT_EQ(options.scene, "in/my box.obj");
+    ASSERT_EQ(options.outputs.size(), 1u);
+    EXPECT_EQ(options.outputs[0], "my box.exr");
+    EXPECT_EQ(options.width, 640);
+    EXPECT_EQ(options.height, 480);
+    EXPECT_TRUE(options.settings.empty());
+    EXPECT_EQ(options.subdivide, Subdivide::kTagged);
+}
+
+TEST(CommandLine, values) {
+    const Options options = parseCommandLine(
+        {"-o",     "a.exr",     "-o",         "b c.png", "--eye", "-1,2.5,-3", "--size=32x16",
+         "s.obj",  "--crop",    "-4,0,12,16", "--aa",    "2:2",   "--photons", "auto",
+         "--seed", "frame",     "--frame",    "7",       "--aov", "albedo,N",  "--aov",
+         "Z",      "--threads", "3",          "--fov",   "60.5",  "--context", "A=b=c"});
+    EXPECT_EQ(options.outputs, (std::vector<std::filesystem::path>{"a.exr", "b c.png"}));
+    EXPECT_EQ(*options.camera.eye, (std::array<double, 3>{-1, 2.5, -3}));
+    EXPECT_EQ(options.width, 32);
+    EXPECT_EQ(*options.crop, (PixelRect{-4, 0, 12, 16}));
+    EXPECT_EQ(setting(options, "aaLevel"), "2");
+    EXPECT_EQ(setting(options, "photons"), "0");
+    EXPECT_EQ(setting(options, "seed"), "7");
+    EXPECT_EQ(options.layers, "albedo,N,Z");
+    EXPECT_EQ(options.threads, 3u);
+    EXPECT_EQ(*options.camera.verticalFovDegrees, 60.5);
+    EXPECT_EQ(options.colour.context[0].second, "b=c");
+}
+
+TEST(CommandLine, refusesWhatIsUnknownOrToCome) {
+    EXPECT_TRUE(refusal({"--bogus"}).starts_with("2 "));
+    EXPECT_TRUE(refusal({"another.obj"}).starts_with("2 "));
+    EXPECT_TRUE(refusal({"-o"}).starts_with("2 "));
+    for (const char* later : {"--checkpoint", "--resume", "--buckets", "--time-limit", "--filter",
+                              "--error-target", "--plan", "--photon-map", "--report"}) {
+        EXPECT_EQ(refusal({later, "x"}), std::string("2 ") + later + ": not available yet");
+        EXPECT_EQ(refusal({std::string(later) + "=x"}),
+                  std::string("2 ") + later + ": not available yet");
+    }
+    EXPECT_EQ(errorOf([] {
+                  parseCommandLine({"merge", "a", "-o", "b"});
+              }),
+              "2 merge: not available yet");
+    EXPECT_EQ(refusal({"--bucket-order", "spiral"}), "2 --bucket-order spiral: not available yet");
+    EXPECT_EQ(refusal({"--bucket-size", "auto"}), "2 --bucket-size auto: not available yet");
+    EXPECT_TRUE(refusal({"--aa", "1:6"}).starts_with("2 --aa 1:6: not available yet"));
+    EXPECT_TRUE(refusal({"--aa", "0"}).starts_with("2 --aa 0: not available yet"));
+}
+
+TEST(CommandLine, refusesBadValues) {
+    for (const Arguments& bad : std::vector<Arguments>{{"--size", "640"},
+                                                       {"--size", "0x5"},
+                                                       {"--size", "6,5x4"},
+                                                       {"--eye", "1,2"},
+                                                       {"--eye", "1,2,nan"},
+                                                       {"--up", "0,0,0"},
+                                                       {"--fov", "180"},
+                                                       {"--fov", "0"},
+                                                       {"--crop", "5,5,5,9"},
+                                                       {"--aa", "7"},
+                                                       {"--aa", "3:2"},
+                                                       {"--frame", "x"},
+                                                       {"--seed", "frame"},
+                                                       {"--subdivide", "some"},
+                                                       {"--progress", "loud"},
+                                                       {"--list", "all"},
+                                                       {"--context", "A"},
+                                                       {"--error-limit", "0.1"},
+                                                       {"-o", "a.####.exr"}}) {
+        EXPECT_TRUE(refusal(bad).starts_with("2 ")) << bad[0] << " " << bad[1] << refusal(bad);
+    }
+}
+
+TEST(CommandLine, framePatterns) {
+    EXPECT_EQ(withFrame("-o", "a.####.exr", 12), "a.0012.exr");
+    EXPECT_EQ(withFrame("-o", "a.%04d.exr", 12), "a.0012.exr");
+    EXPECT_EQ(withFrame("-o", "a.%d.exr", 12), "a.12.exr");
+    EXPECT_EQ(withFrame("-o", "100%.exr", 12), "100%.exr");
+    EXPECT_TRUE(errorOf([] { withFrame("-o", "a.##.exr", {}); }).starts_with("2 -o 'a.##.exr'"));
+}
+
+TEST(CommandLine, numbersHaveADotInAnyLocale) {
+    const std::locale old = std::locale::global(std::locale(std::locale(), new CommaPoint));
+    const Options options = parseCommandLine({"s.obj", "--fov", "60.5"});
+    const std::string comma = refusal({"--fov", "60,5"});
+    std::locale::global(old);
+    EXPECT_EQ(*options.camera.verticalFovDegrees, 60.5);
+    EXPECT_EQ(comma, "2 --fov '60,5': a number in [1e-06, 179.999999] is wanted");
+}
+
+TEST(CommandLine, helpNamesEveryOptionAndAsksThePlugin) {
+    const std::string text = helpText([](const std::string& name) { return "about " + name; });
+    for (const char* part : {"--output", "--bucket-order", "about bucketOrder", "--only-pixel"}) {
+        EXPECT_NE(text.find(part), std::string::npos) << part;
+    }
+}
+
+}  // namespace
+}  // namespace pm::host::test

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// MTL sections to materials, as section by section.
+#include "host_shim/ingest/materials.h"
+#include "tests/ingest/heard.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+namespace pm::host::test {
+namespace {
+
+using Colour = std::array<float, 3>;
+
+struct Result {
+    MaterialData material;
+    Heard heard;
+};
+
+Result read(const std::string& statements) {
+    Result result;
+    const auto all = readMaterials("newmtl m\n" + statements, "a.mtl", "folder", result.heard.sink);
+    result.material = all.at("m");
+    return result;
+}
+
+TEST(Material, diffuseAndGlossy) {
+    const Result r = read("Kd 0.5 0.4 0.3\nKs 0.2 0.2 0.2\nNs 40\nillum 2\n");
+    EXPECT_EQ(r.material.kind, MaterialKind::kSurface);
+    EXPECT_EQ(r.material.diffuse, (Colour{0.5f, 0.4f, 0.3f}));
+    EXPECT_EQ(r.material.glossy, (Colour{0.2f, 0.2f, 0.2f}));
+    EXPECT_EQ(r.material.glossyExponent, 40.0f);
+    EXPECT_TRUE(r.heard.list.empty());
+}
+
+TEST(Material, noLobeWithoutAnExponentOrWithIllum1) {
+    EXPECT_EQ(read("Kd 0.5 0.5 0.5\nKs 0.2 0.2 0.2\n").material.glossy, Colour{});
+    EXPECT_EQ(read("Kd 0.5 0.5 0.5\nKs 0.2 0.2 0.2\nNs 9\nillum 1\n").material.glossy, Colour{});
+    EXPECT_EQ(read("Kd 0.5 0.5 0.5\nKs 1 1 1\nNs 9\nillum 1\n").heard.list.size(), 0u);
+}
+
+TEST(Material, mirrors) {
+    const Result rough = read("Ks 0.9 0.8 0.7\nNs 100\nillum 3\n");
+    EXPECT_EQ(rough.material.kind, MaterialKind::kMirror);
+    EXPECT_FALSE(rough.material.fresnel);
+    EXPECT_EQ(rough.material.glossyExponent, 100.0f);
+    EXPECT_EQ(read("Ks 0.9 0.9 0.9\nillum 3\n").material.glossyExponent, 0.0f);
+    const Result fresnel = read("Kd 0.01 0.01 0.01\nKs 0.95 0.95 0.95\nNs 1024\nillum 5\n");
+    EXPECT_EQ(fresnel.material.kind, MaterialKind::kMirror);
+    EXPECT_TRUE(fresnel.material.fresnel);
+    EXPECT_EQ(fresnel.material.glossyExponent, 0.0f);
+    EXPECT_EQ(read("Kd 0.5 0.5 0.5\nillum 3\n").material.kind, MaterialKind::kSurface);
+}
+
+TEST(Material, dielectrics) {
+    for (const char* illum : {"4", "6", "7"}) {
+        const Result r = read(std::string("Ni 1.33\nillum ") + illum + "\n");
+        EXPECT_EQ(r.material.kind, MaterialKind::kDielectric);
+        EXPECT_EQ(r.material.ior, 1.33f);
+        EXPECT_EQ(r.material.transmission, (Colour{1, 1, 1}));
+    }
+    const Result tinted = read("d 0.2\nNi 1.5\nTf 0.9 0.8 0.7\n");
+    EXPECT_EQ(tinted.material.kind, MaterialKind::kDielectric);
+    EXPECT_EQ(tinted.material.transmission, (Colour{0.9f, 0.8f, 0.7f}));
+    EXPECT_EQ(tinted.material.transparency, 0.0f);
+    EXPECT_EQ(read("Tr 0.5\nNi 1.5\n").material.kind, MaterialKind::kDielectric);
+    EXPECT_TRUE(read("illum 7\n").heard.has(Warning::kMaterialValue, "without Ni"));
+}
+
+TEST(Material, transparencyWithoutAnIndexOfRefraction) {
+    EXPECT_FLOAT_EQ(read("Kd 1 1 1\nd 0.25\n").material.transparency, 0.75f);
+    EXPECT_FLOAT_EQ(read("Kd 1 1 1\nd 0.25\nNi 1\n").material.transparency, 0.75f);
+    EXPECT_FLOAT_EQ(read("Kd 1 1 1\nTr 0.75\n").material.transparency, 0.75f);
+    // d wins over Tr, whichever comes first.
+    EXPECT_FLOAT_EQ(read("Kd 1 1 1\nTr 1\nd 1\n").material.transparency, 0.0f);
+    EXPECT_FLOAT_EQ(read("Kd 1 1 1\nd 1\nTr 1\n").material.transparency, 0.0f);
+}
+
+TEST(Material, valuesOutOfRangeAreClampedWithTheLine) {
+    const Result r = read("Kd 1.5 -0.5 0.5\n");
+    EXPECT_EQ(r.material.diffuse, (Colour{1, 0, 0.5f}));
+    EXPECT_TRUE(r.heard.has(Warning::kMaterialValue, "a.mtl:2: material m: Kd 1.5 -0.5 0.5"));
+    EXPECT_TRUE(read("Kd nan 0 0\n").heard.has(Warning::kMaterialValue, "'Kd nan 0 0'"));
+    EXPECT_EQ(read("Ke -1 2 3\n").material.emission, (Colour{0, 2, 3}));
+}
+
+TEST(Material, noSurfaceReflectsMoreThanItGets) {
+    const Result r = read("Kd 0.8 0.8 0.8\nKs 1 1 1\nNs 250\nillum 2\n");
+    EXPECT_FLOAT_EQ(r.material.diffuse[0] + r.material.glossy[0], 1.0f);
+    EXPECT_FLOAT_EQ(r.material.diffuse[0] / r.material.glossy[0], 0.8f);
+    EXPECT_TRUE(r.heard.has(Warning::kMaterialValue, "Kd + Ks"));
+}
+
+TEST(Material, maps) {
+    const Result r = read(
+        "map_Kd -s 2 3 -o 0.5 -mm 0.1 0.5 -clamp on -colorspace sRGB my wood.png\n"
+        "map_d alpha.png\nmap_bump -bm 3 b.png\n");
+    ASSERT_TRUE(r.material.diffuseTexture);
+    const TextureUse& use = *r.material.diffuseTexture;
+    EXPECT_EQ(use.file, "folder/my wood.png");
+    EXPECT_EQ(use.scale, (std::array<float, 2>{2, 3}));
+    EXPECT_EQ(use.offset, (std::array<float, 2>{0.5f, 0}));
+    EXPECT_FLOAT_EQ(use.base, 0.1f);
+    EXPECT_FLOAT_EQ(use.gain, 0.5f);
+    EXPECT_TRUE(use.clamp);
+    EXPECT_EQ(use.colourSpace, "sRGB");
+    EXPECT_FALSE(use.isData);
+    EXPECT_TRUE(r.material.opacityTexture->isData);
+    EXPECT_EQ(r.material.diffuse, (Colour{1, 1, 1}));
+    EXPECT_TRUE(r.heard.has(Warning::kMaterialPart, "map_bump is not rendered yet"));
+    EXPECT_EQ(read("Kd 0.5 0.5 0.5\nmap_Kd a.png\n").material.diffuse, (Colour{0.5f, 0.5f, 0.5f}));
+    EXPECT_EQ(read("illum 7\nNi 1.5\nmap_Tf a.png\n").material.transmissionTexture->file,
+              "folder/a.png");
+}
+
+TEST(Material, aLoneNumberIsGrey) {
+    EXPECT_EQ(read("Kd 0.5\n").material.diffuse, (Colour{0.5f, 0.5f, 0.5f}));
+}
+
+TEST(Material, oneSectionSaysNothingAboutTheNext) {
+    Heard heard;
+    const auto all = readMaterials(
+        "newmtl a\nKd 0.1 0.1 0.1\nnewmtl b c\nmap_Kd x.png\n"
+        "newmtl a\nKd 1 1 1\nnewmtl e\n",
+        "a.mtl", ".", heard.sink);
+    EXPECT_EQ(all.size(), 3u);
+    EXPECT_EQ(all.at("b c").diffuse, (Colour{1, 1, 1}));
+    EXPECT_EQ(all.at("a").diffuse, (Colour{0.1f, 0.1f, 0.1f}));
+    EXPECT_EQ(all.at("e").diffuse, (Colour{0.8f, 0.8f, 0.8f}));
+    EXPECT_TRUE(heard.has(Warning::kMaterialValue, "a.mtl:5: material a is defined twice"));
+}
+
+}  // namespace
+}  // namespace pm::host::test

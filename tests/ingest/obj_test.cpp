@@ -1,0 +1,177 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// OBJ ingest on small texts: what is kept, what is refused and at which line.
+#include "tests/ingest/heard.h"
+
+#include <gtest/gtest.h>
+
+#include <clocale>
+#include <string>
+
+namespace pm::host::test {
+namespace {
+
+const std::string kQuad = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+SceneData read(const std::string& text) {
+    Heard heard;
+    return readObj(text, "scene.obj", ".", heard.sink);
+}
+std::string refusal(const std::string& text) {
+    return errorOf([&] { read(text); });
+}
+
+TEST(Obj, keepsPolygonsAndRecentresThem) {
+    const SceneData scene = read("v 800000.0123456 0 0\nv 800001 0 0\nv 800001 1 0\nf 1 2 3\n");
+    ASSERT_EQ(scene.meshes.size(), 1u);
+    EXPECT_DOUBLE_EQ(scene.bounds.low[0], 800000.0123456);
+    // In float alone the corner would sit at 800000 exactly.
+    EXPECT_NEAR(static_cast<double>(scene.meshes[0].positions[0]) + scene.centre[0], 800000.0123456,
+                1e-7);
+    const SceneData quad = read(kQuad + "f 1 2 3 4\n");
+    EXPECT_EQ(quad.meshes[0].faceSizes, std::vector<std::uint32_t>{4});
+}
+
+TEST(Obj, boundsLeaveOutVerticesThatNoFaceHas) {
+    const SceneData scene = read(kQuad + "v 1000 0 0\nf 1 2 3\n");
+    EXPECT_EQ(scene.bounds.high[0], 1.0);
+    EXPECT_EQ(scene.meshes[0].positions.size(), 9u);
+}
+
+TEST(Obj, refusesIndicesOutOfRangeWithTheLine) {
+    EXPECT_EQ(refusal(kQuad + "f 1 2 9001\n"), "3 scene.obj:5: face refers to vertex 9001 of 4");
+    EXPECT_EQ(refusal(kQuad + "f 1 2 -5\n"), "3 scene.obj:5: face refers to vertex -5 of 4 so far");
+    EXPECT_EQ(refusal(kQuad + "f 1/1 2/1 3/1\n"),
+              "3 scene.obj:5: face refers to texture coordinate 1 of 0");
+    EXPECT_EQ(refusal(kQuad + "vn 0 0 1\n\nf 1//1 2//1 3//2\n"),
+              "3 scene.obj:7: face refers to normal 2 of 1");
+    EXPECT_EQ(refusal(kQuad + "f 0 1 2\n"),
+              "3 scene.obj:5: face refers to vertex 0; the first is 1 (or -1, counted back)");
+}
+
+TEST(Obj, indicesMayPointForward) {
+    const SceneData scene = read(std::string("f 1 2 3\n") + kQuad);
+    EXPECT_EQ(scene.faceCount, 1u);
+}
+
+TEST(Obj, refusesVerticesThatAreNotFinite) {
+    for (const std::string bad : {"nan", "-nan", "inf", "1e400", "1e30", "1.#IND", "abc"}) {
+        const std::string text =
+            refusal(std::string("# head\nv 0 ") + bad + " 0\n" + kQuad + "f 1 2 3\n");
+        EXPECT_TRUE(text.starts_with("3 scene.obj:2: vertex coordinate")) << text;
+    }
+    EXPECT_TRUE(refusal("v 1 2\nv 0 0 0\nv 1 0 0\nf 1 2 3\n").starts_with("3 scene.obj:1:"));
+    EXPECT_EQ(read("v 1e-400 +0 0\nv 1 0 0\nv .5 5. 1E0\nf 1 2 3\n").faceCount, 1u);
+}
+
+TEST(Obj, refusesCornersThatAreNone) {
+    const std::string text = refusal(kQuad + "f 1 2x 3\n");
+    EXPECT_TRUE(text.starts_with("3 scene.obj:5: '2x' is not a face corner")) << text;
+    EXPECT_TRUE(refusal(kQuad + "f 1/1/1/1 2 3\n").starts_with("3 scene.obj:5:"));
+    EXPECT_TRUE(refusal(kQuad + "f 1 2 \xE9\n").starts_with("3 scene.obj:5:"));
+}
+
+TEST(Obj, saysThatThereIsNoGeometry) {
+    for (const std::string& text :
+         {std::string(), kQuad, std::string("\xFE\xFF\0v\0 \0001", 8), std::string("f\n")}) {
+        EXPECT_NE(refusal(text).find("3 scene.obj: no geometry"), std::string::npos);
+    }
+}
+
+TEST(Obj, readsWhatTheParserWouldRejectOrMisread) {
+    EXPECT_EQ(read(std::string("\xEF\xBB\xBF").append(kQuad).append("f 1 2 3\n")).faceCount, 1u);
+    const SceneData slashes = read(kQuad + "vt 0 0\nf 1/1/ 2/1/ 3/1/ # comment\nf 1// 2// 3//\n");
+    EXPECT_EQ(slashes.faceCount, 2u);
+    EXPECT_EQ(slashes.meshes[0].uvIndices[0], 0u);
+    EXPECT_EQ(slashes.meshes[0].uvIndices[3], kNoIndex);
+    EXPECT_EQ(read(kQuad + "f 1 2 \\\n3 \\\n4").meshes[0].faceSizes[0], 4u);
+    EXPECT_EQ(read("v 0 0 0\r\nv 1 0 0\r\nv 1 1 0\r\nf 1 2 3\r\n").faceCount, 1u);
+}
+
+TEST(Obj, keepsPolygonsOfMoreThan255Corners) {
+    std::string text, face = "f";
+    for (int i = 1; i <= 300; ++i) {
+        text.append("v ").append(std::to_string(i)).append(" 0 0\n");
+        face.append(" ").append(std::to_string(i));
+    }
+    const SceneData scene = read(text + face + "\nf 1 2 3\n");
+    EXPECT_EQ(scene.meshes[0].faceSizes, (std::vector<std::uint32_t>{300, 3}));
+    EXPECT_EQ(scene.meshes[0].indices.size(), 303u);
+}
+
+TEST(Obj, countsWhatIsLeftOut) {
+    Heard heard;
+    const SceneData scene =
+        readObj(kQuad + "l 1 2\np 1\nf 1 2\nf 1 2 3\nvn nan 0 0\n", "scene.obj", ".", heard.sink);
+    EXPECT_EQ(scene.faceCount, 1u);
+    EXPECT_TRUE(heard.has(Warning::kGeometry, "scene.obj:5: 2 lines, points"));
+    EXPECT_TRUE(heard.has(Warning::kGeometry, "scene.obj:7: 1 faces of fewer than 3 corners"));
+    EXPECT_TRUE(heard.has(Warning::kGeometry, "scene.obj:9: 1 normals"));
+}
+
+TEST(Obj, aNormalOfLengthZeroIsNone) {
+    const SceneData scene = read(kQuad + "vn 0 0 0\nvn 0 0 1\nf 1//1 2//2 3//2\n");
+    EXPECT_EQ(scene.meshes[0].normalIndices, (std::vector<std::uint32_t>{kNoIndex, 0, 0}));
+}
+
+TEST(Obj, groupsBecomeMeshesWithMaterialSlots) {
+    Heard heard;
+    const SceneData scene =
+        readObj(kQuad + "o a\nusemtl red one\nf 1 2 3\nusemtl b\nf 1 3 4\ng c\nf 2 3 4\n",
+                "scene.obj", ".", heard.sink);
+    ASSERT_EQ(scene.meshes.size(), 2u);
+    EXPECT_EQ(scene.meshes[0].slotMaterials, (std::vector<std::uint32_t>{0, 1}));
+    EXPECT_EQ(scene.meshes[0].faceSlots, (std::vector<std::uint32_t>{0, 1}));
+    EXPECT_EQ(scene.meshes[1].slotMaterials, std::vector<std::uint32_t>{1});
+    EXPECT_EQ(scene.materials[0].name, "red one");
+    EXPECT_TRUE(heard.has(Warning::kMaterialName, "'red one'"));
+}
+
+TEST(Obj, tagsBelongToTheirGroup) {
+    const SceneData scene = read(kQuad +
+                                 "g plain\nf 1 2 3\ng tagged\nf 1 2 3 4\n"
+                                 "t crease 3/1/0 0 1 2 2.5\nt corner 1/1/0 3 20\n"
+                                 "t interpolateboundary 1/0/0 2\nt hole 1/0/0 1\n");
+    ASSERT_EQ(scene.meshes.size(), 2u);
+    EXPECT_FALSE(scene.meshes[0].tags);
+    ASSERT_TRUE(scene.meshes[1].tags);
+    const CageTags& tags = *scene.meshes[1].tags;
+    EXPECT_EQ(tags.creases, (std::vector<std::uint32_t>{0, 1, 1, 2}));
+    EXPECT_EQ(tags.creaseSharpness, (std::vector<float>{2.5f, 2.5f}));
+    EXPECT_EQ(tags.corners, std::vector<std::uint32_t>{3});
+    EXPECT_EQ(tags.cornerSharpness, std::vector<float>{10.0f});
+    EXPECT_EQ(tags.holes, std::vector<std::uint32_t>{0});
+    EXPECT_EQ(tags.boundary, 2);
+}
+
+TEST(Obj, refusesTagsOutOfRange) {
+    EXPECT_TRUE(refusal(kQuad + "f 1 2 3\nt crease 2/1/0 0 3 1\n").starts_with("3 scene.obj:6:"));
+    EXPECT_TRUE(refusal(kQuad + "f 1 2 3\nt hole 1/0/0 7\n").starts_with("3 scene.obj:6:"));
+    EXPECT_TRUE(refusal(kQuad + "f 1 2 3\nt corner 1/x/0 7\n").starts_with("3 scene.obj:6:"));
+}
+
+TEST(Obj, aCommaLocaleChangesNothing) {
+    const std::string before = std::setlocale(LC_ALL, nullptr);
+    for (const char* name : {"de_DE.UTF-8", "fr_FR.UTF-8", "de_DE"}) {
+        if (std::setlocale(LC_ALL, name) != nullptr) break;
+    }
+    const std::locale old = std::locale::global(std::locale(std::locale(), new CommaPoint));
+    const SceneData scene = read("v 0.5 0 0\nv 1.25 0 0\nv 1 1.75 2345\nf 1 2 3\n");
+    std::locale::global(old);
+    std::setlocale(LC_ALL, before.c_str());
+    // The parser is off by a last bit here and there.
+    EXPECT_DOUBLE_EQ(scene.bounds.high[0], 1.25);
+    EXPECT_DOUBLE_EQ(scene.bounds.high[1], 1.75);
+    EXPECT_DOUBLE_EQ(scene.bounds.high[2], 2345);
+}
+
+TEST(Obj, missingFilesAreErrorsThatNameThem) {
+    Heard heard;
+    EXPECT_EQ(errorOf([&] { readObjFile("no/such.obj", heard.sink); }),
+              "4 no/such.obj: can't be read: No such file or directory");
+    EXPECT_NE(errorOf([&] { readObjFile("/", heard.sink); }).find("3 /: no geometry"),
+              std::string::npos);
+}
+
+}  // namespace
+}  // namespace pm::host::test

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// The photon integrator against the path integrator, layer by layer and region by region: the test
+// against lost or doubled light. The bias of density estimates that is allowed is stated with each.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/integrator/scene_maker.h"
+
+namespace pm::test {
+namespace {
+
+constexpr auto kPhoton = IntegratorKind::kPhoton;
+constexpr auto kPath = IntegratorKind::kPath;
+
+// A box of 2 x 2 x 2 open towards the camera, lit from its ceiling.
+SceneMaker cornellBox(std::uint32_t lampDivisions = 1, Rgb lamp = Rgb(8.0f)) {
+    SceneMaker maker;
+    const auto white = maker.diffuse(Rgb(0.7f));
+    maker.quad({-1, -1, 1}, {2, 0, 0}, {0, 0, -2}, white);                             // floor
+    maker.quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, white);                              // ceiling
+    maker.quad({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, white);                             // back
+    maker.quad({-1, -1, 1}, {0, 0, -2}, {0, 2, 0}, maker.diffuse({0.6f, 0.1f, 0.1f}));  // left
+    maker.quad({1, -1, -1}, {0, 0, 2}, {0, 2, 0}, maker.diffuse({0.1f, 0.5f, 0.1f}));   // right
+    maker.quad({-0.5, 0.95, -0.5}, {1, 0, 0}, {0, 0, 1}, maker.diffuse({}, lamp), lampDivisions);
+    maker.camera({0, 0, 4.2}, {0, 0, 0}, {0, 1, 0}, 36);
+    return maker;
+}
+
+MaterialDescription glass() {
+    MaterialDescription m;
+    m.kind = MaterialKind::kDielectric;
+    return m;
+}
+
+// With a glossy box, a mirror and a glass sphere.
+SceneMaker mixedBox() {
+    SceneMaker maker = cornellBox();
+    MaterialDescription glossy;
+    glossy.diffuse = Rgb(0.3f, 0.3f, 0.1f);
+    glossy.glossy = Rgb(0.4f);
+    glossy.glossyExponent = 20;
+    maker.box({-0.8, -1, -0.8}, {-0.2, 0, -0.2}, maker.material(glossy), false);
+    MaterialDescription mirror;
+    mirror.kind = MaterialKind::kMirror;
+    mirror.glossy = Rgb(0.9f);
+    maker.sphere({0.5, -0.6, -0.4}, 0.4, maker.material(mirror));
+    maker.sphere({0.1, -0.65, 0.4}, 0.35, maker.material(glass()));
+    return maker;
+}
+
+double zScore(const Measured& a, const Measured& b, double bias) {
+    double worst = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const double error = std::hypot(a.standardError[c], b.standardError[c]);
+        const double off =
+            std::max(0.0, std::abs(a.mean[c] - b.mean[c]) - bias - 1e-6 * b.mean[c]);
+        if (off > 0) worst = std::max(worst, off / std::max(error, 1e-12));
+    }
+    return worst;
+}
+
+// Largest z over 8 x 8 regions of a layer. Sixteen passes have fifteen degrees of freedom: |t| > 6
+// comes once in 40 000, and there are 4 x 16 x 3 of them.
+constexpr double kLargestT = 6;
+
+void expectRegionsAgree(const std::vector<MeasuredLayers>& a, const std::vector<MeasuredLayers>& b,
+                        Measured MeasuredLayers::*layer, const char* name, double bias) {
+    double worst = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        const double z = zScore(a[i].*layer, b[i].*layer, bias);
+        worst = std::max(worst, z);
+        EXPECT_LT(z, kLargestT) << name << " in region " << i << ": photon "
+                                << (a[i].*layer).mean[1] << " +- " << (a[i].*layer).standardError[1]
+                                << ", path " << (b[i].*layer).mean[1] << " +- "
+                                << (b[i].*layer).standardError[1];
+    }
+    fmt::print("    {}: largest |t| over regions {:.2f} beside a bias of {:g}\n", name, worst, bias);
+}
+
+// Every class of light in every region, and over the whole frame. Biases allowed, of radiances
+// about 0.5: indirect 1 % (the estimate's disc reaches round corners), caustics 3 % of the brightest
+// (a disc as wide as its radius blurs it).
+TEST(Agreement, EveryLayerOfTheMixedBox) {
+    const auto scene = mixedBox().build();
+    std::vector<Rect> regions;
+    for (int y = 0; y < 32; y += 8)
+        for (int x = 0; x < 32; x += 8) regions.push_back({x, y, x + 8, y + 8});
+    regions.push_back({0, 0, 32, 32});
+    const auto render = [&](IntegratorKind integrator, std::uint32_t level) {
+        return measureRegions(scene, smallFrame(32, 32, integrator, 16, level), {0, 0, 32, 32},
+                              regions);
+    };
+    const std::vector<MeasuredLayers> photon = render(kPhoton, 4), path = render(kPath, 5);
+    expectRegionsAgree(photon, path, &MeasuredLayers::emission, "emission", 0);
+    expectRegionsAgree(photon, path, &MeasuredLayers::direct, "direct", 0);
+    expectRegionsAgree(photon, path, &MeasuredLayers::indirect, "indirect", 0.005);
+    expectRegionsAgree(photon, path, &MeasuredLayers::caustic, "caustic", 0.015);
+    const MeasuredLayers &a = photon.back(), &b = path.back();
+    EXPECT_TRUE(agree(a.indirect, b.indirect, 0.01));
+    EXPECT_TRUE(agree(a.caustic, b.caustic, 0.03));
+    EXPECT_TRUE(agree(a.beauty, b.beauty, 0.005));
+    // The classes sum to beauty.
+    for (const MeasuredLayers& m : {a, b})
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(m.beauty.mean[c],
+                        m.direct.mean[c] + m.indirect.mean[c] + m.caustic.mean[c] +
+                            m.emission.mean[c],
+                        1e-6 * m.beauty.mean[c]);
+    EXPECT_GT(b.caustic.mean[1], 0.01);
+}
+
+TEST(Agreement, MeanOfTheDiffuseBox) {
+    const auto scene = cornellBox().build();
+    const MeasuredLayers photon = measure(scene, smallFrame(32, 32, kPhoton, 8, 4));
+    const MeasuredLayers path = measure(scene, smallFrame(32, 32, kPath, 8, 4));
+    for (std::size_t c = 0; c < 3; ++c)
+        EXPECT_NEAR(photon.beauty.mean[c] / path.beauty.mean[c], 1, 0.01);
+    EXPECT_TRUE(agree(photon.direct, path.direct, 0));
+    EXPECT_TRUE(agree(photon.indirect, path.indirect, 0.01));
+}
+
+// A floor whose shading normals lean, under a lamp, between walls (hard cases S2).
+TEST(Agreement, BentShadingNormals) {
+    SceneMaker maker = cornellBox();
+    maker.quad({-1, -0.98, 1}, {2, 0, 0}, {0, 0, -2}, maker.diffuse(Rgb(0.7f)));
+    maker.bendNormals({0.3, 1, 0.2});
+    const auto scene = maker.build();
+    const MeasuredLayers photon = measure(scene, smallFrame(24, 24, kPhoton, 8, 4));
+    const MeasuredLayers path = measure(scene, smallFrame(24, 24, kPath, 8, 5));
+    EXPECT_TRUE(agree(photon.direct, path.direct, 0));
+    // Photons that would leave below the shading normal but above the surface are lost; see
+    // Bsdf.PhotonsAreTheAdjointOfTheCamera.
+    EXPECT_TRUE(agree(photon.indirect, path.indirect, 0.015));
+    // As many gather rays as one likes.
+    RenderSettings settings = smallFrame(24, 24, kPhoton, 8, 4);
+    settings.gatherRays = 4;
+    const MeasuredLayers four = measure(scene, settings);
+    EXPECT_TRUE(agree(four.indirect, photon.indirect, 0));
+    EXPECT_TRUE(agree(four.direct, path.direct, 0));
+}
+
+// Light seen through glass and in mirrors lights diffuse surfaces: the floor under a glass sphere
+// in a dark room shows nothing but its caustic, the same by both integrators (analytic D11).
+TEST(Agreement, CausticOfASphere) {
+    for (const bool isGlass : {true, false}) {
+        SceneMaker maker;
+        maker.quad({-1.5, 0, 1.5}, {3, 0, 0}, {0, 0, -3}, maker.diffuse(Rgb(0.8f)));
+        maker.quad({-1, 3, -0.5}, {1, 0, 0}, {0, 0, 1}, maker.diffuse({}, Rgb(5.0f)));
+        MaterialDescription mirror;
+        mirror.kind = MaterialKind::kMirror;
+        mirror.glossy = Rgb(1.0f);
+        maker.sphere({0, 0.8, 0}, 0.5, maker.material(isGlass ? glass() : mirror));
+        maker.camera({0, 2.2, 5}, {0, 0, 0}, {0, 1, 0}, 36);
+        const auto scene = maker.build();
+        const MeasuredLayers photon = measure(scene, smallFrame(32, 32, kPhoton, 8, 4));
+        const MeasuredLayers path = measure(scene, smallFrame(32, 32, kPath, 8, 5));
+        // Of the disc's part beyond the floor's edge nothing is left: at most 2 %.
+        EXPECT_TRUE(agree(photon.caustic, path.caustic, 0.02)) << (isGlass ? "glass" : "mirror");
+        EXPECT_GT(path.caustic.mean[0], 10 * path.caustic.standardError[0]);
+    }
+}
+
+// Four times the light is four times the picture, bit for bit; two lamps are the sum of each (B8).
+TEST(Agreement, Linearity) {
+    for (const auto integrator : {kPhoton, kPath}) {
+        RenderSettings settings = smallFrame(16, 16, integrator, 4, 3);
+        settings.photons = 20'000;
+        const auto picture = [&](const SceneMaker& maker) {
+            return measure(maker.build(), settings).beauty;
+        };
+        const Measured one = picture(cornellBox(1, Rgb(8.0f)));
+        const Measured four = picture(cornellBox(1, Rgb(32.0f)));
+        for (std::size_t c = 0; c < 3; ++c) EXPECT_EQ(four.mean[c], 4 * one.mean[c]);
+        const auto lamps = [&](double left, double right) {
+            SceneMaker maker = cornellBox(1, Rgb(0.0f));
+            maker.pointLight({-0.5, 0.5, 0.5}, Rgb(static_cast<float>(left)));
+            maker.pointLight({0.6, 0.2, 0.1}, Rgb(static_cast<float>(right)));
+            return picture(maker);
+        };
+        const Measured left = lamps(1, 0), right = lamps(0, 2), both = lamps(1, 2);
+        Measured sum = left;
+        for (std::size_t c = 0; c < 3; ++c) {
+            sum.mean[c] += right.mean[c];
+            sum.standardError[c] = std::hypot(left.standardError[c], right.standardError[c]);
+        }
+        EXPECT_TRUE(agree(both, sum, integrator == kPhoton ? 0.01 : 0));
+    }
+}
+
+// One quad or a hundred (B9); 4 sigma with seven degrees of freedom wants some room: 6.
+TEST(Agreement, LampTessellation) {
+    for (const auto integrator : {kPhoton, kPath}) {
+        const RenderSettings settings = smallFrame(24, 24, integrator, 8, 4);
+        const MeasuredLayers one = measure(cornellBox(1).build(), settings);
+        const MeasuredLayers hundred = measure(cornellBox(10).build(), settings);
+        EXPECT_TRUE(agree(hundred.direct, one.direct, 0, 6));
+        EXPECT_TRUE(agree(hundred.indirect, one.indirect, 0, 6));
+        EXPECT_TRUE(agree(hundred.emission, one.emission, 0, 6));
+    }
+}
+
+// Sample counts change the noise, not the brightness (P12).
+TEST(Agreement, BrightnessDoesNotDependOnSampleCounts) {
+    const auto scene = mixedBox().build();
+    const auto with = [&](std::uint32_t gatherRays, std::uint32_t level, std::uint64_t photons) {
+        RenderSettings settings = smallFrame(24, 24, kPhoton, 8, level);
+        settings.gatherRays = gatherRays;
+        settings.photons = photons;
+        return measure(scene, settings);
+    };
+    const MeasuredLayers reference = with(1, 4, 0);
+    const auto check = [&](const MeasuredLayers& m, double bias, const char* what) {
+        EXPECT_TRUE(agree(m.direct, reference.direct, 0, 6)) << what;
+        EXPECT_TRUE(agree(m.indirect, reference.indirect, bias, 6)) << what;
+        EXPECT_TRUE(agree(m.caustic, reference.caustic, 2 * bias, 6)) << what;
+        EXPECT_TRUE(agree(m.emission, reference.emission, 0, 6)) << what;
+    };
+    check(with(4, 3, 0), 0, "4 gather rays");
+    check(with(1, 1, 0), 0, "level 1");
+    check(with(1, 2, 0), 0, "level 2");
+    check(with(1, 3, 0), 0, "level 3");
+    // Fewer photons, wider discs: the bias round corners grows.
+    check(with(1, 4, 30'000), 0.015, "30 000 photons");
+}
+
+}  // namespace
+}  // namespace pm::test

@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// The photon map against a search through all photons.
+#include "integrator/photons/photon_map.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <vector>
+
+#include "integrator/sampling/warps.h"
+#include "tests/integrator/statistics.h"
+
+namespace pm::test {
+namespace {
+
+Photon photonAt(Vec3f position, Vec3f normal = {0, 0, 1}, Rgb flux = Rgb(1.0f)) {
+    return {position, flux, PackedNormal(normal)};
+}
+
+// On the plane z = 0, each of a flux of its own, so that it can be told apart.
+std::vector<Photon> onPlane(std::uint32_t count, std::uint64_t seed, float grid) {
+    Random random(seed);
+    std::vector<Photon> photons;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        Vec2f p = random.next2D();
+        // On a grid there are ties and duplicates.
+        if (grid > 0.0f) p = {std::floor(p.x * grid) / grid, std::floor(p.y * grid) / grid};
+        photons.push_back(photonAt({p.x, p.y, 0}, {0, 0, 1}, Rgb(static_cast<float>(i + 1))));
+    }
+    return photons;
+}
+
+// Nearest in the order of distance, then of index in the map.
+std::vector<NearestPhotons::Found> bruteForce(const PhotonMap& map, const PhotonQuery& query) {
+    std::vector<NearestPhotons::Found> all;
+    for (std::uint32_t i = 0; i < map.size(); ++i) {
+        const float d2 = lengthSquared(map.photon(i).position - query.position);
+        if (d2 <= query.maxRadius * query.maxRadius && i != query.leaveOut &&
+            map.photon(i).normal.dotWith(query.normal) > 0.9f)
+            all.push_back({d2, i});
+    }
+    std::sort(all.begin(), all.end());
+    all.resize(std::min<std::size_t>(all.size(), query.count));
+    return all;
+}
+
+void expectNearest(const PhotonMap& map, const PhotonQuery& query, NearestPhotons& scratch) {
+    map.findNearest(query, scratch);
+    std::vector<NearestPhotons::Found> found = scratch.found();
+    if (!found.empty() && found.size() == query.count) {
+        EXPECT_FALSE(found.front() < *std::max_element(found.begin(), found.end()));
+    }
+    std::sort(found.begin(), found.end());
+    const std::vector<NearestPhotons::Found> expected = bruteForce(map, query);
+    ASSERT_EQ(found.size(), expected.size());
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(found[i].index, expected[i].index);
+        EXPECT_EQ(found[i].distanceSquared, expected[i].distanceSquared);
+    }
+}
+
+TEST(PhotonMap, FindsTheNearest) {
+    NearestPhotons scratch;
+    for (const std::uint32_t count : {1u, 2u, 15u, 16u, 17u, 33u, 1000u, 20'000u})
+        for (const float grid : {0.0f, 8.0f}) {
+            const PhotonMap map(onPlane(count, count, grid));
+            Random random(1);
+            for (int n = 0; n < 40; ++n) {
+                const Vec2f at = random.next2D();
+                PhotonQuery query{{at.x, at.y, 0}, {0, 0, 1}};
+                if (n % 2) query.position = {std::floor(at.x * 8) / 8, std::floor(at.y * 8) / 8, 0};
+                query.count = n % 4 == 0 ? 2 * count : 1 + static_cast<std::uint32_t>(n);
+                query.maxRadius = n % 3 == 0 ? 10.0f : 0.2f;
+                if (n % 5 == 0) query.leaveOut = 0;
+                expectNearest(map, query, scratch);
+            }
+        }
+}
+
+TEST(PhotonMap, EmptyAndZero) {
+    NearestPhotons scratch;
+    const PhotonMap map(std::vector<Photon>{});
+    EXPECT_TRUE(map.empty());
+    map.findNearest({{0, 0, 0}, {0, 0, 1}, 5, 10.0f}, scratch);
+    EXPECT_TRUE(scratch.found().empty());
+    EXPECT_EQ(map.fluxWithin({0, 0, 0}, {0, 0, 1}, 10.0f), Rgb());
+    EXPECT_GT(map.typicalRadius(50), 0.0f);
+    const PhotonMap one(onPlane(1, 1, 0));
+    one.findNearest({{0, 0, 0}, {0, 0, 1}, 0, 10.0f}, scratch);
+    EXPECT_TRUE(scratch.found().empty());
+}
+
+TEST(PhotonMap, FluxWithinARadius) {
+    for (const float grid : {0.0f, 8.0f}) {
+        const PhotonMap map(onPlane(5000, 3, grid));
+        Random random(2);
+        for (int n = 0; n < 200; ++n) {
+            const Vec2f at = random.next2D();
+            const Vec3f position{at.x, at.y, 0};
+            const float radius = n % 2 ? 0.125f : 0.3f * random.next();
+            double expected = 0;
+            for (std::uint32_t i = 0; i < map.size(); ++i)
+                if (lengthSquared(map.photon(i).position - position) <= radius * radius)
+                    expected += static_cast<double>(map.photon(i).flux.g);
+            EXPECT_EQ(map.fluxWithin(position, {0, 0, 1}, radius).g, static_cast<float>(expected));
+        }
+    }
+}
+
+// The photons of a laser, all at one point: built and asked without trouble.
+TEST(PhotonMap, ManyPhotonsAtOnePoint) {
+    std::vector<Photon> photons(100'000, photonAt({0.3f, 0.2f, 0.1f}));
+    for (int i = 0; i < 10; ++i) photons.push_back(photonAt({static_cast<float>(i), 0.2f, 0.1f}));
+    const PhotonMap map(std::move(photons));
+    NearestPhotons scratch;
+    for (int n = 0; n < 20; ++n) {
+        map.findNearest({{0.3f, 0.2f, 0.1f}, {0, 0, 1}, 50, 1.0f}, scratch);
+        ASSERT_EQ(scratch.found().size(), 50u);
+        EXPECT_EQ(scratch.found().front().distanceSquared, 0.0f);
+    }
+    EXPECT_EQ(map.fluxWithin({0.3f, 0.2f, 0.1f}, {0, 0, 1}, 0.1f).r, 100'000.0f);
+    EXPECT_GT(map.typicalRadius(50), 0.0f);
+}
+
+TEST(PhotonMap, TheSameTreeForAnyThreads) {
+    const auto build = [](int threads) {
+        std::unique_ptr<PhotonMap> map;
+        tbb::task_arena(threads).execute(
+            [&] { map = std::make_unique<PhotonMap>(onPlane(60'000, 4, 64)); });
+        return map;
+    };
+    const tbb::global_control allow(tbb::global_control::max_allowed_parallelism, 5);
+    const auto one = build(1);
+    for (const int threads : {2, 5}) {
+        const auto many = build(threads);
+        ASSERT_EQ(many->size(), one->size());
+        for (std::uint32_t i = 0; i < one->size(); ++i)
+            ASSERT_EQ(std::memcmp(&one->photon(i), &many->photon(i), sizeof(Photon)), 0);
+        Random random(5);
+        for (int n = 0; n < 200; ++n) {
+            const Vec2f at = random.next2D();
+            EXPECT_EQ(one->fluxWithin({at.x, at.y, 0}, {0, 0, 1}, 0.05f),
+                      many->fluxWithin({at.x, at.y, 0}, {0, 0, 1}, 0.05f));
+        }
+    }
+}
+
+TEST(PhotonMap, OtherSidesAndNormalsDoNotCount) {
+    std::vector<Photon> photons;
+    photons.push_back(photonAt({0.01f, 0, 0}, {0, 0, -1}));            // the other side
+    photons.push_back(photonAt({0, 0, 0.01f}, {1, 0, 0}));             // a wall
+    photons.push_back(photonAt({0, 0.01f, 0.05f}, {0, 0, 1}));         // a shelf above
+    photons.push_back(photonAt({0.02f, 0, 0}, {0, 0, 1}));             // counts
+    photons.push_back(photonAt({0, 0.02f, 0}, {0.1f, 0, 0.995f}));     // counts: almost flat
+    const PhotonMap map(std::move(photons));
+    EXPECT_EQ(map.fluxWithin({0, 0, 0}, {0, 0, 1}, 1).r, 2.0f);
+    EXPECT_EQ(map.fluxWithin({0, 0, 0}, {0, 0, -1}, 1).r, 1.0f);
+    EXPECT_EQ(map.fluxWithin({0, 0, 0}, {1, 0, 0}, 1).r, 1.0f);
+    NearestPhotons scratch;
+    map.findNearest({{0, 0, 0}, {0, 0, 1}, 2, 1.0f}, scratch);
+    EXPECT_EQ(scratch.found().size(), 2u);
+    // Refused photons do not shrink the radius either (P1).
+    EXPECT_NEAR(scratch.found().front().distanceSquared, 0.0004f, 1e-6f);
+}
+
+TEST(PackedNormal, WithinHalfADegree) {
+    Random random(6);
+    float worst = 1;
+    for (int i = 0; i < 100'000; ++i) {
+        const Vec3f n = sampleUniformSphere(random.next2D());
+        worst = std::min(worst, dot(PackedNormal(n).unpack(), n));
+    }
+    EXPECT_GT(worst, std::cos(0.5 * std::numbers::pi / 180));
+}
+
+}  // namespace
+}  // namespace pm::test

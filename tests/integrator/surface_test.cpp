@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Points on surfaces and the rays that leave them: never back into what they left, at any size and
+// place; fronts under mirroring; the same picture wherever the scene stands.
+#include "integrator/scene/surface.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "integrator/sampling/sampler.h"
+#include "integrator/scene/camera.h"
+#include "integrator/scene/light_sampler.h"
+#include "integrator/transport/path_integrator.h"
+#include "tests/integrator/scene_maker.h"
+#include "tests/integrator/statistics.h"
+
+namespace pm::test {
+namespace {
+
+// Directions on both sides, one in two within 1e-4 of the surface's plane.
+Vec3f leaving(const Surface& surface, Random& random) {
+    const Frame frame(surface.geometricNormal);
+    Vec3f d = sampleUniformSphere(random.next2D());
+    if (random.next() < 0.5f) d.z *= 1e-4f * random.next();
+    return normalize(frame.toWorld(d));
+}
+
+void addTriangle(SceneMaker& maker, Vec3d a, Vec3d b, Vec3d c, std::uint32_t material) {
+    maker.quad(a, b - a, c - a, material);
+    auto mesh = *std::get<std::shared_ptr<const TriangleMesh>>(
+        maker.description.instances.back().shape);
+    mesh.positions = {Vec3f(a), Vec3f(b), Vec3f(c)};
+    mesh.triangles = {{0, 1, 2}};
+    mesh.materials.resize(1);
+    mesh.faces.resize(1);
+    maker.description.instances.back().shape =
+        std::make_shared<const TriangleMesh>(std::move(mesh));
+}
+
+// Triangles of sizes 1e-4 to 1e3, fat to 1 : 1e4, anywhere within 10 units of the origin.
+TEST(SurfaceOffset, TrianglesAreLeft) {
+    Random random(1);
+    SceneMaker maker;
+    const auto lamp = maker.diffuse({}, Rgb(1.0f));
+    const auto direction = [&] { return Vec3d(sampleUniformSphere(random.next2D())); };
+    for (int i = 0; i < 400; ++i) {
+        const double size = std::pow(10.0, -4 + 7 * static_cast<double>(random.next()));
+        const double thin = std::pow(10.0, -4 * static_cast<double>(random.next()));
+        const Vec3d at = direction() * 10.0, along = direction() * size;
+        addTriangle(maker, at, at + along, at + along * 0.3 + direction() * (size * thin), lamp);
+    }
+    const auto scene = maker.build();
+    int met = 0;
+    for (const Light& light : scene->lights())
+        for (int n = 0; n < 1000; ++n) {
+            const Surface from = scene->pointOnLight(light, random.next2D());
+            Surface to;
+            met += scene->intersect(rayFrom(from, leaving(from, random)), to) &&
+                   to.shape == from.shape;
+        }
+    EXPECT_EQ(met, 0);
+}
+
+// Without the offset they would be met: the test can see it.
+TEST(SurfaceOffset, IsNeeded) {
+    Random random(2);
+    SceneMaker maker;
+    addTriangle(maker, {1, 2, 3}, {2, 2.5, 3.3}, {1.2, 3, 4}, maker.diffuse({}, Rgb(1.0f)));
+    const auto scene = maker.build();
+    int met = 0;
+    for (int n = 0; n < 10'000; ++n) {
+        Surface from = scene->pointOnLight(scene->lights()[0], random.next2D());
+        from.offset = 0.0f;
+        Surface to;
+        met += scene->intersect(rayFrom(from, leaving(from, random)), to);
+    }
+    EXPECT_GT(met, 100);
+}
+
+// Spheres of radius .015 and 1e-4 (hard cases R7) to 1e5, some through the origin: outwards
+// nothing, inwards the far side.
+TEST(SurfaceOffset, SpheresAreLeft) {
+    Random random(3);
+    for (const double radius : {1e-4, 0.015, 1.0, 1e5})
+        for (const Vec3d centre : {Vec3d{3, -2, 1}, Vec3d{0, -radius, 0}, Vec3d{0, 0, 0}}) {
+            SceneMaker maker;
+            maker.sphere(centre, radius, maker.diffuse({}, Rgb(1.0f)));
+            // Something that keeps the scene's centre near the origin.
+            const double reach = 2 * radius + 5;
+            maker.box({-reach, -reach, -reach}, {reach, reach, reach},
+                      maker.diffuse(Rgb(0.5f)), true);
+            const auto scene = maker.build();
+            int wrong = 0;
+            for (int n = 0; n < 20'000; ++n) {
+                const Surface from = scene->pointOnLight(scene->lights()[0], random.next2D());
+                const Vec3f d = leaving(from, random);
+                Surface to;
+                if (!scene->intersect(rayFrom(from, d), to)) continue;
+                const float cosine = dot(d, from.geometricNormal);
+                const double chord = -2 * static_cast<double>(cosine) * radius;
+                const auto travelled = static_cast<double>(length(to.position - from.position));
+                wrong += cosine >= 0.0f
+                             ? to.shape == from.shape
+                             : to.shape != from.shape ||
+                                   travelled < 0.9 * chord - 8 * static_cast<double>(from.offset);
+            }
+            EXPECT_EQ(wrong, 0) << "radius " << radius << " centre " << centre.x << " " << centre.y;
+        }
+}
+
+// A point of a big sphere that happens to lie at the origin has no float rounding to hide behind.
+TEST(SurfaceOffset, SphereThroughTheOrigin) {
+    SceneMaker maker;
+    maker.sphere({0, -1e5, 0}, 1e5, maker.diffuse(Rgb(0.5f)));
+    maker.sphere({0, 1e5 + 2, 0}, 1e5, maker.diffuse(Rgb(0.5f)));
+    const auto scene = maker.build();  // its centre is (0, 1, 0)
+    Random random(4);
+    int met = 0;
+    for (int n = 0; n < 100'000; ++n) {
+        const float span = std::pow(10.0f, -8.0f + 8.0f * random.next());
+        Surface from, to;
+        const Vec3f above{span * (random.next() - 0.5f), 0, span * (random.next() - 0.5f)};
+        ASSERT_TRUE(scene->intersect({above, {0, -1, 0}}, from));
+        Vec3f d = leaving(from, random);
+        if (dot(d, from.geometricNormal) < 0.0f) d = -d;
+        met += scene->intersect(rayFrom(from, d), to) && to.shape == from.shape;
+    }
+    EXPECT_EQ(met, 0);
+}
+
+// A mirroring transform keeps the emitting side.
+TEST(Surface, MirroredInstanceEmitsFromItsFront) {
+    for (const double sx : {1.0, -1.0})
+        for (const double sy : {1.0, -1.0}) {
+            SceneMaker maker;
+            maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.diffuse({}, Rgb(1.0f)));
+            maker.description.instances[0].transform = {sx, 0, 0, 3, 0, sy, 0, 0, 0, 0, 1, 0};
+            maker.camera({3, 0, 4}, {3, 0, 0}, {0, 1, 0}, 20);
+            EXPECT_TRUE(agrees(measure(maker.build(), smallFrame(8, 8, IntegratorKind::kPath, 1, 2))
+                                   .emission,
+                               Rgb(1.0f), 0));
+            maker.camera({3, 0, -4}, {3, 0, 0}, {0, 1, 0}, 20);
+            EXPECT_TRUE(agrees(measure(maker.build(), smallFrame(8, 8, IntegratorKind::kPath, 1, 2))
+                                   .emission,
+                               Rgb(0.0f), 0));
+        }
+}
+
+// A two-sided quad between two lamps shows both sides lit (hard cases P2): E = pi L sin^2 each.
+TEST(Surface, BothSidesAreLit) {
+    for (const double side : {1.0, -1.0})
+        for (const auto integrator : {IntegratorKind::kPhoton, IntegratorKind::kPath}) {
+            SceneMaker maker;
+            maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.diffuse(Rgb(0.5f)));
+            const auto lamp = maker.diffuse({}, Rgb(1.0f));
+            maker.sphere({0, 0, 2}, 0.5, lamp);
+            maker.sphere({0, 0, -2}, 0.5, lamp);
+            maker.camera({0.5, 0, side}, {0, 0, 0}, {0, 1, 0}, 0.2);
+            EXPECT_TRUE(
+                agrees(measure(maker.build(), smallFrame(8, 8, integrator, 4, 4)).beauty,
+                       Rgb(0.5f / 16), 1e-3));
+        }
+}
+
+// Covered pixels of a unit sphere seen from so many radii, the view angle to match (R6).
+double discShare(double distance) {
+    SceneMaker maker;
+    maker.sphere({0, 0, 0}, 1, maker.diffuse({}, Rgb(1.0f)));
+    const double visible = std::asin(1 / distance);
+    maker.camera({0, 0, distance}, {0, 0, 0}, {0, 1, 0},
+                 2 * 180 / std::numbers::pi * std::atan(1.25 * std::tan(visible)));
+    const auto scene = maker.build();
+    const Camera camera(*scene, 512, 512);
+    int covered = 0;
+    Surface surface;
+    for (int y = 0; y < 512; ++y)
+        for (int x = 0; x < 512; ++x)
+            covered += scene->intersect(camera.ray(x + 0.5, y + 0.5), surface);
+    return covered / (512.0 * 512.0);
+}
+
+TEST(Surface, TheSameDiscFromAnyDistance) {
+    const double expected = std::numbers::pi / 4 / (1.25 * 1.25);
+    for (const double distance : {10.0, 100.0, 1000.0, 1e5})
+        EXPECT_NEAR(discShare(distance), expected, 3e-4) << distance;
+}
+
+std::vector<float> picture(Vec3d shift) {
+    SceneMaker maker;
+    const auto grey = maker.diffuse(Rgb(0.6f));
+    maker.quad({-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, grey);
+    maker.meshSphere({-1, 1, 0}, 0.75, grey, false, 12);
+    maker.sphere({1, 1, 0}, 0.75, grey);
+    maker.quad({-1, 4, -1}, {2, 0, 0}, {0, 0, 2}, maker.diffuse({}, Rgb(5.0f)));
+    maker.camera({0, 2, 6}, {0, 1, 0}, {0, 1, 0}, 45);
+    for (auto& instance : maker.description.instances)
+        for (int axis = 0; axis < 3; ++axis)
+            instance.transform[static_cast<std::size_t>(4 * axis + 3)] = shift[axis];
+    for (int axis = 0; axis < 3; ++axis)
+        maker.description.camera->cameraToWorld[static_cast<std::size_t>(4 * axis + 3)] +=
+            shift[axis];
+    const auto scene = maker.build();
+    const LightSampler lights(*scene);
+    const Camera camera(*scene, 32, 24);
+    std::vector<float> pixels;
+    for (std::uint64_t i = 0; i < 32 * 24; ++i) {
+        Sampler sampler(1, 0, i, 0);
+        const Ray ray = camera.ray(static_cast<double>(i % 32) + 0.5,
+                                   static_cast<double>(i / 32) + 0.5);
+        const SampleRadiance s = PathIntegrator(*scene, lights).sample(ray, sampler);
+        pixels.push_back((s.direct + s.indirect + s.emission).g);
+    }
+    return pixels;
+}
+
+// Wherever the scene stands in the world (R5): the same paths, the same values to float rounding
+// of the instances' transform.
+TEST(Surface, TheSamePictureFarFromTheOrigin) {
+    const std::vector<float> home = picture({0, 0, 0});
+    for (const double far : {8e5, 8e6}) {
+        const std::vector<float> away = picture({far, -far, far});
+        int different = 0;
+        for (std::size_t i = 0; i < home.size(); ++i)
+            different += !(std::abs(home[i] - away[i]) <= 1e-4f * (1.0f + home[i]));
+        EXPECT_LE(different, 3) << far;  // paths on a limb or a shadow's edge
+    }
+}
+
+}  // namespace
+}  // namespace pm::test

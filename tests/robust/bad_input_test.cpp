@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Bad input to the real pm_host: the right exit code and one line that says what, where and what is
+// allowed; nothing half-written.
+#include "tests/robust/host_process.h"
+
+#include <nlohmann/json.hpp>
+
+namespace pm::host::test {
+namespace {
+
+class BadInput : public HostProcess {
+  protected:
+    Outcome runScene(const std::string& text) const {
+        write("bad.obj", text);
+        return run({"bad.obj", "--size", "16x16"});
+    }
+};
+
+const std::string kTriangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+
+TEST_F(BadInput, scenes) {
+    expectRefusal(run({"none.obj"}), 4, {"none.obj", "No such file"});
+    expectRefusal(runScene(kTriangle + "f 1 2 9001\n"), 3,
+                  {"pm_host: bad.obj:4: face refers to vertex 9001 of 3"});
+    expectRefusal(runScene(kTriangle + "f 0 1 2\n"), 3, {"bad.obj:4:"});
+    expectRefusal(runScene("v 0 nan 0\n" + kTriangle + "f 1 2 3\n"), 3, {"bad.obj:1:", "'nan'"});
+    expectRefusal(runScene(""), 3, {"bad.obj: no geometry"});
+    expectRefusal(runScene(std::string("\xFE\xFF\0v\0 ", 6)), 3, {"bad.obj: no geometry"});
+    expectRefusal(run({"/"}), 3, {"no geometry"});
+    write("scene.txt", "x");
+    expectRefusal(run({"scene.txt"}), 3, {"scene.txt", ".obj"});
+}
+
+TEST_F(BadInput, aMissingLibraryIsAWarningAndADefaultMaterial) {
+    fs::remove(path("box.mtl"));
+    const Outcome outcome = render({});
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_NE(outcome.err.find("warning: box.obj: material library missing: box.mtl"),
+              std::string::npos)
+        << outcome.err;
+    EXPECT_NE(outcome.err.find("'wall', 'light'"), std::string::npos) << outcome.err;
+    EXPECT_NE(outcome.err.find("a point light at the camera"), std::string::npos) << outcome.err;
+    EXPECT_TRUE(fs::exists(path("box.exr")));
+}
+
+TEST_F(BadInput, options) {
+    expectRefusal(run({}), 2, {"SCENE"});
+    expectRefusal(run({"box.obj", "--bogus"}), 2, {"--bogus"});
+    expectRefusal(run({"box.obj", "--checkpoint", "f"}), 2, {"--checkpoint: not available yet"});
+    expectRefusal(run({"merge", "a"}), 2, {"merge: not available yet"});
+    expectRefusal(run({"box.obj", "--bucket-size", "12"}), 2, {"--bucket-size", "12", "8"});
+    expectRefusal(run({"box.obj", "--integrator", "magic"}), 2, {"--integrator", "magic", "path"});
+    expectRefusal(run({"box.obj", "--aov", "smell"}), 2, {"--aov", "smell", "albedo"});
+    expectRefusal(run({"box.obj", "--isa", "z80"}), 2, {"--isa", "z80", "avx2"});
+    expectRefusal(run({"box.obj", "--passes", "-3"}), 2, {"--passes", "-3"});
+    expectRefusal(run({"box.obj", "--memory-limit", "0.000001"}), 5, {"memory"});
+}
+
+TEST_F(BadInput, colour) {
+    expectRefusal(run({"box.obj", "-o", "a.png", "--view", "Moonlight"}), 3,
+                  {"Moonlight", "ACES SDR"});
+    expectRefusal(run({"box.obj", "--rendering-space", "nowhere"}), 3, {"nowhere"});
+    expectRefusal(run({"box.obj", "--ocio", "none.ocio"}), 3, {"none.ocio"});
+}
+
+TEST_F(BadInput, plugins) {
+    const Outcome none = run({"box.obj", "--plugin", "none.so"});
+    expectRefusal(none, 1, {"no plugin", "none.so"});
+    // Never the working folder.
+    write("libpm_plugin.so", "not a library");
+    expectRefusal(run({"box.obj", "--plugin", "libpm_plugin.so"}), 1, {"no plugin"});
+    EXPECT_EQ(render({}).exitCode, 0);
+    const Outcome variable = run({"box.obj"}, nullptr, {{"PM_PLUGIN_PATH", "/nowhere/x.so"}});
+    EXPECT_EQ(variable.exitCode, 1);
+}
+
+TEST_F(BadInput, references) {
+    expectRefusal(run({"box.obj", "--reference", "none.exr"}), 4, {"none.exr"});
+    write("broken.exr", "not a picture");
+    const Outcome broken = run({"box.obj", "--reference", "broken.exr"});
+    EXPECT_EQ(broken.exitCode, 3) << broken.err;
+    ASSERT_EQ(render({"-o", "reference.exr"}).exitCode, 0);
+    const Outcome other = run({"box.obj", "--size", "8x8", "--reference", "reference.exr"});
+    EXPECT_EQ(other.exitCode, 3);
+    EXPECT_NE(other.err.find("16x16"), std::string::npos) << other.err;
+    EXPECT_NE(other.err.find("8x8"), std::string::npos) << other.err;
+}
+
+TEST_F(BadInput, statisticsAreWrittenOnFailureToo) {
+    write("bad.obj", kTriangle + "f 1 2 4\n");
+    const Outcome outcome = run({"bad.obj", "--stats", "stats.json"});
+    EXPECT_EQ(outcome.exitCode, 3);
+    const auto json = nlohmann::json::parse(readText(path("stats.json")));
+    EXPECT_EQ(json.at("schema"), "pm-stats/1");
+    EXPECT_EQ(json.at("exitCode"), 3);
+    EXPECT_EQ(json.at("stopReason"), "failed");
+    EXPECT_EQ(json.at("error"), "bad.obj:4: face refers to vertex 4 of 3");
+    EXPECT_EQ(json.at("commandLine").at(1), "bad.obj");
+    EXPECT_EQ(run({"none.obj", "--stats", "none.json"}).exitCode, 4);
+    EXPECT_EQ(nlohmann::json::parse(readText(path("none.json"))).at("exitCode"), 4);
+}
+
+}  // namespace
+}  // namespace pm::host::test
