@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace pm::host {
 namespace {
@@ -144,7 +143,8 @@ void PluginScene::addMesh(const MeshData& mesh, const SceneData& data, const std
     }
 }
 
-// Bright enough that a white wall at the middle of the scene, facing the camera, looks white.
+// Irradiance 1 on what faces the camera at the middle of the scene: a white wall there reflects a
+// radiance of 1/pi, and light from wall to wall still fits below 1.
 void PluginScene::addDefaultLight(const CameraPose& camera, const Bounds& bounds) {
     double squaredDistance = 0;
     const auto centre = bounds.centre();
@@ -156,8 +156,7 @@ void PluginScene::addDefaultLight(const CameraPose& camera, const Bounds& bounds
     light.kind = PMR_LIGHT_POINT;
     light.transforms = transform.data();
     light.transformCount = 1;
-    const double intensity =
-        std::numbers::pi * (squaredDistance > 0 ? squaredDistance : 1.0);  // W/sr
+    const double intensity = squaredDistance > 0 ? squaredDistance : 1.0;  // W/sr
     std::ranges::fill(light.emission, static_cast<float>(intensity));
     light.name = "default light";
     m_context.check(m_context.api().addLight(m_handle, &light), "default light");

@@ -52,38 +52,43 @@ SceneMaker mixedBox() {
     return maker;
 }
 
-double zScore(const Measured& a, const Measured& b, double bias) {
+// Difference over its standard error, beyond a bias allowed relative to `scale`; the largest of the
+// channels.
+double studentT(const Measured& a, const Measured& b, double relativeBias, const Measured& scale) {
     double worst = 0;
     for (std::size_t c = 0; c < 3; ++c) {
         const double error = std::hypot(a.standardError[c], b.standardError[c]);
-        const double off =
-            std::max(0.0, std::abs(a.mean[c] - b.mean[c]) - bias - 1e-6 * b.mean[c]);
+        const double allowed = relativeBias * std::max(b.mean[c], scale.mean[c]) + 1e-6 * b.mean[c];
+        const double off = std::abs(a.mean[c] - b.mean[c]) - allowed;
         if (off > 0) worst = std::max(worst, off / std::max(error, 1e-12));
     }
     return worst;
 }
 
-// Largest z over 8 x 8 regions of a layer. Sixteen passes have fifteen degrees of freedom: |t| > 6
-// comes once in 40 000, and there are 4 x 16 x 3 of them.
+// Sixteen passes have fifteen degrees of freedom: |t| > 6 comes once in 40 000, and there are some
+// 200 of them.
 constexpr double kLargestT = 6;
 
 void expectRegionsAgree(const std::vector<MeasuredLayers>& a, const std::vector<MeasuredLayers>& b,
                         Measured MeasuredLayers::*layer, const char* name, double bias) {
-    double worst = 0;
+    double worst = 0, unbiased = 0;
+    const Measured& frame = b.back().*layer;
     for (std::size_t i = 0; i < a.size(); ++i) {
-        const double z = zScore(a[i].*layer, b[i].*layer, bias);
-        worst = std::max(worst, z);
-        EXPECT_LT(z, kLargestT) << name << " in region " << i << ": photon "
-                                << (a[i].*layer).mean[1] << " +- " << (a[i].*layer).standardError[1]
-                                << ", path " << (b[i].*layer).mean[1] << " +- "
-                                << (b[i].*layer).standardError[1];
+        const Measured &x = a[i].*layer, &y = b[i].*layer;
+        const double t = studentT(x, y, bias, frame);
+        worst = std::max(worst, t);
+        unbiased = std::max(unbiased, studentT(x, y, 0, frame));
+        EXPECT_LT(t, kLargestT) << name << " in region " << i << ": photon " << x.mean[1] << " +- "
+                                << x.standardError[1] << ", path " << y.mean[1] << " +- "
+                                << y.standardError[1];
     }
-    fmt::print("    {}: largest |t| over regions {:.2f} beside a bias of {:g}\n", name, worst, bias);
+    fmt::print("    {}: largest |t| over regions {:.2f}; beyond a bias of {:g} %: {:.2f}\n", name,
+               unbiased, 100 * bias, worst);
 }
 
-// Every class of light in every region, and over the whole frame. Biases allowed, of radiances
-// about 0.5: indirect 1 % (the estimate's disc reaches round corners), caustics 3 % of the brightest
-// (a disc as wide as its radius blurs it).
+// Every class of light in every region, and over the whole frame. Biases allowed: indirect light
+// 1.5 % (the estimate's disc reaches round corners), caustics 5 % (a disc as wide as its radius
+// blurs them from one region into the next).
 TEST(Agreement, EveryLayerOfTheMixedBox) {
     const auto scene = mixedBox().build();
     std::vector<Rect> regions;
@@ -91,17 +96,18 @@ TEST(Agreement, EveryLayerOfTheMixedBox) {
         for (int x = 0; x < 32; x += 8) regions.push_back({x, y, x + 8, y + 8});
     regions.push_back({0, 0, 32, 32});
     const auto render = [&](IntegratorKind integrator, std::uint32_t level) {
-        return measureRegions(scene, smallFrame(32, 32, integrator, 16, level), {0, 0, 32, 32},
-                              regions);
+        RenderSettings settings = smallFrame(32, 32, integrator, 16, level);
+        settings.photons = 60'000;
+        return measureRegions(scene, settings, {0, 0, 32, 32}, regions);
     };
     const std::vector<MeasuredLayers> photon = render(kPhoton, 4), path = render(kPath, 5);
     expectRegionsAgree(photon, path, &MeasuredLayers::emission, "emission", 0);
     expectRegionsAgree(photon, path, &MeasuredLayers::direct, "direct", 0);
-    expectRegionsAgree(photon, path, &MeasuredLayers::indirect, "indirect", 0.005);
-    expectRegionsAgree(photon, path, &MeasuredLayers::caustic, "caustic", 0.015);
+    expectRegionsAgree(photon, path, &MeasuredLayers::indirect, "indirect", 0.015);
+    expectRegionsAgree(photon, path, &MeasuredLayers::caustic, "caustic", 0.05);
     const MeasuredLayers &a = photon.back(), &b = path.back();
     EXPECT_TRUE(agree(a.indirect, b.indirect, 0.01));
-    EXPECT_TRUE(agree(a.caustic, b.caustic, 0.03));
+    EXPECT_TRUE(agree(a.caustic, b.caustic, 0.02));
     EXPECT_TRUE(agree(a.beauty, b.beauty, 0.005));
     // The classes sum to beauty.
     for (const MeasuredLayers& m : {a, b})
@@ -115,8 +121,11 @@ TEST(Agreement, EveryLayerOfTheMixedBox) {
 
 TEST(Agreement, MeanOfTheDiffuseBox) {
     const auto scene = cornellBox().build();
-    const MeasuredLayers photon = measure(scene, smallFrame(32, 32, kPhoton, 8, 4));
-    const MeasuredLayers path = measure(scene, smallFrame(32, 32, kPath, 8, 4));
+    RenderSettings settings = smallFrame(32, 32, kPhoton, 8, 4);
+    settings.photons = 60'000;
+    const MeasuredLayers photon = measure(scene, settings);
+    settings.integrator = kPath;
+    const MeasuredLayers path = measure(scene, settings);
     for (std::size_t c = 0; c < 3; ++c)
         EXPECT_NEAR(photon.beauty.mean[c] / path.beauty.mean[c], 1, 0.01);
     EXPECT_TRUE(agree(photon.direct, path.direct, 0));
@@ -129,14 +138,15 @@ TEST(Agreement, BentShadingNormals) {
     maker.quad({-1, -0.98, 1}, {2, 0, 0}, {0, 0, -2}, maker.diffuse(Rgb(0.7f)));
     maker.bendNormals({0.3, 1, 0.2});
     const auto scene = maker.build();
-    const MeasuredLayers photon = measure(scene, smallFrame(24, 24, kPhoton, 8, 4));
+    RenderSettings settings = smallFrame(24, 24, kPhoton, 8, 4);
+    settings.photons = 60'000;
+    const MeasuredLayers photon = measure(scene, settings);
     const MeasuredLayers path = measure(scene, smallFrame(24, 24, kPath, 8, 5));
     EXPECT_TRUE(agree(photon.direct, path.direct, 0));
     // Photons that would leave below the shading normal but above the surface are lost; see
     // Bsdf.PhotonsAreTheAdjointOfTheCamera.
     EXPECT_TRUE(agree(photon.indirect, path.indirect, 0.015));
     // As many gather rays as one likes.
-    RenderSettings settings = smallFrame(24, 24, kPhoton, 8, 4);
     settings.gatherRays = 4;
     const MeasuredLayers four = measure(scene, settings);
     EXPECT_TRUE(agree(four.indirect, photon.indirect, 0));
@@ -149,18 +159,24 @@ TEST(Agreement, CausticOfASphere) {
     for (const bool isGlass : {true, false}) {
         SceneMaker maker;
         maker.quad({-1.5, 0, 1.5}, {3, 0, 0}, {0, 0, -3}, maker.diffuse(Rgb(0.8f)));
-        maker.quad({-1, 3, -0.5}, {1, 0, 0}, {0, 0, 1}, maker.diffuse({}, Rgb(5.0f)));
+        maker.quad({-2, 3, -2}, {4, 0, 0}, {0, 0, 4}, maker.diffuse({}, Rgb(1.0f)));
         MaterialDescription mirror;
         mirror.kind = MaterialKind::kMirror;
         mirror.glossy = Rgb(1.0f);
         maker.sphere({0, 0.8, 0}, 0.5, maker.material(isGlass ? glass() : mirror));
         maker.camera({0, 2.2, 5}, {0, 0, 0}, {0, 1, 0}, 36);
         const auto scene = maker.build();
-        const MeasuredLayers photon = measure(scene, smallFrame(32, 32, kPhoton, 8, 4));
+        RenderSettings settings = smallFrame(32, 32, kPhoton, 8, 3);
+        settings.photons = 100'000;
+        const MeasuredLayers photon = measure(scene, settings);
         const MeasuredLayers path = measure(scene, smallFrame(32, 32, kPath, 8, 5));
+        fmt::print("    caustic flux by photons over by paths: {:.4f} +- {:.4f}\n",
+                   photon.caustic.mean[0] / path.caustic.mean[0],
+                   std::hypot(photon.caustic.standardError[0], path.caustic.standardError[0]) /
+                       path.caustic.mean[0]);
         // Of the disc's part beyond the floor's edge nothing is left: at most 2 %.
         EXPECT_TRUE(agree(photon.caustic, path.caustic, 0.02)) << (isGlass ? "glass" : "mirror");
-        EXPECT_GT(path.caustic.mean[0], 10 * path.caustic.standardError[0]);
+        EXPECT_GT(path.caustic.mean[0], 50 * path.caustic.standardError[0]);
     }
 }
 
@@ -194,7 +210,8 @@ TEST(Agreement, Linearity) {
 // One quad or a hundred (B9); 4 sigma with seven degrees of freedom wants some room: 6.
 TEST(Agreement, LampTessellation) {
     for (const auto integrator : {kPhoton, kPath}) {
-        const RenderSettings settings = smallFrame(24, 24, integrator, 8, 4);
+        RenderSettings settings = smallFrame(24, 24, integrator, 8, 4);
+        settings.photons = 60'000;
         const MeasuredLayers one = measure(cornellBox(1).build(), settings);
         const MeasuredLayers hundred = measure(cornellBox(10).build(), settings);
         EXPECT_TRUE(agree(hundred.direct, one.direct, 0, 6));
@@ -212,19 +229,19 @@ TEST(Agreement, BrightnessDoesNotDependOnSampleCounts) {
         settings.photons = photons;
         return measure(scene, settings);
     };
-    const MeasuredLayers reference = with(1, 4, 0);
+    const MeasuredLayers reference = with(1, 4, 60'000);
     const auto check = [&](const MeasuredLayers& m, double bias, const char* what) {
         EXPECT_TRUE(agree(m.direct, reference.direct, 0, 6)) << what;
         EXPECT_TRUE(agree(m.indirect, reference.indirect, bias, 6)) << what;
         EXPECT_TRUE(agree(m.caustic, reference.caustic, 2 * bias, 6)) << what;
         EXPECT_TRUE(agree(m.emission, reference.emission, 0, 6)) << what;
     };
-    check(with(4, 3, 0), 0, "4 gather rays");
-    check(with(1, 1, 0), 0, "level 1");
-    check(with(1, 2, 0), 0, "level 2");
-    check(with(1, 3, 0), 0, "level 3");
+    check(with(4, 3, 60'000), 0, "4 gather rays");
+    check(with(1, 1, 60'000), 0, "level 1");
+    check(with(1, 2, 60'000), 0, "level 2");
+    check(with(1, 3, 60'000), 0, "level 3");
     // Fewer photons, wider discs: the bias round corners grows.
-    check(with(1, 4, 30'000), 0.015, "30 000 photons");
+    check(with(1, 4, 15'000), 0.015, "15 000 photons");
 }
 
 }  // namespace
