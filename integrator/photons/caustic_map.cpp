@@ -16,21 +16,22 @@ constexpr std::uint32_t kFewestPilotPhotons = 4;
 // Where the pilot has less than 1/64 of its typical density the estimate grows no wider: what is
 // thinner than that is too dim to matter, and too wide a disc reaches round corners.
 constexpr float kLargestRadius = 8.0f;
+constexpr float kSmallestRadius = 1e-3f;
 
 }  // namespace
 
-CausticRadius::CausticRadius(std::vector<Photon> pilot, std::uint32_t estimatePhotons)
+PilotRadius::PilotRadius(std::vector<Photon> pilot, std::uint32_t estimatePhotons, float fallback)
     : m_pilot(std::move(pilot)),
       m_count(std::max(kFewestPilotPhotons, estimatePhotons / kPilotShare)),
-      m_largest(kLargestRadius * m_pilot.typicalRadius(m_count)) {}
+      m_typical(m_pilot.size() > m_count ? m_pilot.typicalRadius(m_count) : fallback) {}
 
 float CausticRadius::at(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const {
-    m_pilot.findNearest({position, normal, m_count, m_largest}, scratch);
-    if (scratch.found().size() < m_count) return m_largest;
-    // A thousandth of what is typical of the scene: photons in one point leave no area to divide
-    // by.
-    const float smallest = 1e-4f * m_largest;
-    return std::max(smallest, std::sqrt(scratch.found().front().distanceSquared));
+    const float largest = kLargestRadius * m_typical;
+    m_pilot.findNearest({position, normal, m_count, largest}, scratch);
+    if (scratch.found().size() < m_count) return largest;
+    // Photons in one point leave no area to divide by.
+    return std::max(kSmallestRadius * m_typical,
+                    std::sqrt(scratch.found().front().distanceSquared));
 }
 
 Rgb CausticMap::irradiance(const Vec3f& position, const Vec3f& normal,

@@ -10,27 +10,36 @@
 
 namespace pm {
 
-// How wide caustic estimates are, from point to point: narrow where light is focused, wide where it
-// is thin. Found once a render, from a small pilot of photons that enter no estimate: a radius that
-// depended on the photons it counts would bias what it counts.
+// How wide estimates are: found once a render from a small pilot of photons that enter no estimate,
+// since a radius that depended on the photons it counts would bias what it counts.
 // Threads: const functions from any, at once.
-class CausticRadius {
+class PilotRadius {
   public:
+    static constexpr std::uint32_t kPilotShare = 8;
+
     // pilot: photons as the map's, 1/kPilotShare as many of them emitted, so that a radius with
     // estimatePhotons / kPilotShare of the pilot's holds about estimatePhotons of the map's.
-    CausticRadius(std::vector<Photon> pilot, std::uint32_t estimatePhotons);
+    // fallback: the typical radius where the pilot found too little; scene units, > 0.
+    PilotRadius(std::vector<Photon> pilot, std::uint32_t estimatePhotons, float fallback);
 
-    static constexpr std::uint32_t kPilotShare = 8;
+    // What half of the pilot's photons need; scene units, > 0.
+    float typical() const { return m_typical; }
+
+  protected:
+    PhotonMap m_pilot;
+    std::uint32_t m_count;
+    float m_typical;
+};
+
+// From point to point: narrow where light is focused, wide where it is thin.
+class CausticRadius : public PilotRadius {
+  public:
+    using PilotRadius::PilotRadius;
 
     // Radius for the first pass, scene units, > 0.
     float at(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const;
 
     std::uint64_t memoryBytes() const { return m_pilot.memoryBytes(); }
-
-  private:
-    PhotonMap m_pilot;
-    std::uint32_t m_count;
-    float m_largest;  // scene units
 };
 
 // Caustics of one pass, estimated straight at the surfaces that the camera sees.

@@ -105,11 +105,11 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
 }
 
 std::uint64_t Plan::globalPilotPhotons() const {
-    return globalPhotons / CausticRadius::kPilotShare + 1;
+    return globalPhotons / PilotRadius::kPilotShare + 1;
 }
 
 std::uint64_t Plan::causticPilotPhotons() const {
-    return causticPhotons / CausticRadius::kPilotShare + 1;
+    return causticPhotons / PilotRadius::kPilotShare + 1;
 }
 
 std::string Plan::explain() const {

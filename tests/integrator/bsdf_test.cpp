@@ -202,8 +202,7 @@ TEST(Fresnel, HemisphericalMean) {  // analytic D4
 // Slab of n = 1.5 at an angle, polarisations averaged at each surface: T = (1-R)/(1+R). D2, D3.
 TEST(Fresnel, SlabTransmittance) {
     const auto transmittance = [](double degrees) {
-        const float r = fresnelDielectric(
-            static_cast<float>(std::cos(degrees * kPiD / 180)), 1.5f);
+        const float r = fresnelDielectric(static_cast<float>(std::cos(degrees * kPiD / 180)), 1.5f);
         return static_cast<double>((1 - r) / (1 + r));
     };
     EXPECT_NEAR(transmittance(0), 0.9230769, 1e-6);

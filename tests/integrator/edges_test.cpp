@@ -44,9 +44,10 @@ Estimates estimate(const Scene& scene, const PhotonMap& map, Vec3d at, Vec3d ste
     const int n = 16;
     for (int i = 0; i < n; ++i) {
         const Vec3f position(at + step * i);
-        mean.corrected += static_cast<double>(
-                              sites.estimate(position, {0, 0, 1}, static_cast<std::uint32_t>(i)).r) /
-                          n;
+        mean.corrected +=
+            static_cast<double>(
+                sites.estimate(position, {0, 0, 1}, static_cast<std::uint32_t>(i)).r) /
+            n;
         mean.plain += static_cast<double>(map.fluxWithin(position, {0, 0, 1}, kRadius).r /
                                           (kPi * kRadius * kRadius)) /
                       n;

@@ -64,8 +64,8 @@ TEST(LightSampler, ChoosesByTheProbabilitiesItStates) {
         inverse[static_cast<std::size_t>(on.light)] += 1 / static_cast<double>(pdf) / n;
     }
     // E[1 / pdf] over a light is the solid angle it fills; of the sphere that is known.
-    const Vec3d toCentre = lamps.scene->sphere(lamps.light(2).shape).centre -
-                           Vec3d(lamps.floor.position);
+    const Vec3d toCentre =
+        lamps.scene->sphere(lamps.light(2).shape).centre - Vec3d(lamps.floor.position);
     const double sin2 = 0.49 / lengthSquared(toCentre);
     EXPECT_NEAR(inverse[2], 2 * kPiD * (1 - std::sqrt(1 - sin2)), 0.02 * inverse[2]);
     double power = 0;
@@ -79,8 +79,8 @@ TEST(LightSampler, ChoosesByTheProbabilitiesItStates) {
 TEST(LightSampler, SphereDensity) {
     const Lamps lamps;
     Random random(2);
-    const Vec3d toCentre = lamps.scene->sphere(lamps.light(2).shape).centre -
-                           Vec3d(lamps.floor.position);
+    const Vec3d toCentre =
+        lamps.scene->sphere(lamps.light(2).shape).centre - Vec3d(lamps.floor.position);
     DirectionTest test;
     test.axis = Vec3f(normalize(toCentre));
     test.smallestCosine = std::sqrt(1 - 0.49 / lengthSquared(toCentre));
@@ -141,8 +141,7 @@ TEST(LightSampler, TriangleDensity) {
             const double d2 = lengthSquared(toLight);
             const Vec3f direction(toLight / std::sqrt(d2));
             const auto cosine = static_cast<double>(std::abs(dot(direction, on.geometricNormal)));
-            return static_cast<double>(
-                       lamps.lights->pdfSolidAngle(lamps.floor, direction, on)) *
+            return static_cast<double>(lamps.lights->pdfSolidAngle(lamps.floor, direction, on)) *
                    cosine / d2 * twiceArea * (1 - b1) * (1 + tilt * (b1 - 1.0 / 3));
         };
     };
@@ -225,8 +224,8 @@ TEST(LightSampler, ExtremeTrianglesAreFinite) {
         const auto scene = maker.build();
         const LightSampler lights(*scene);
         Surface floor;
-        ASSERT_TRUE(scene->intersect(
-            {Vec3f(Vec3d{0, 0.5, 0.5} - scene->centre()), {0, 0, -1}}, floor));
+        ASSERT_TRUE(
+            scene->intersect({Vec3f(Vec3d{0, 0.5, 0.5} - scene->centre()), {0, 0, -1}}, floor));
         floor.position.x = Vec3f(-scene->centre()).x;  // in the lamp's own plane
         Random random(6);
         for (int i = 0; i < 10'000; ++i) {

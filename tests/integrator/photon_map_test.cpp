@@ -152,11 +152,11 @@ TEST(PhotonMap, TheSameTreeForAnyThreads) {
 
 TEST(PhotonMap, OtherSidesAndNormalsDoNotCount) {
     std::vector<Photon> photons;
-    photons.push_back(photonAt({0.01f, 0, 0}, {0, 0, -1}));            // the other side
-    photons.push_back(photonAt({0, 0, 0.01f}, {1, 0, 0}));             // a wall
-    photons.push_back(photonAt({0, 0.01f, 0.05f}, {0, 0, 1}));         // a shelf above
-    photons.push_back(photonAt({0.02f, 0, 0}, {0, 0, 1}));             // counts
-    photons.push_back(photonAt({0, 0.02f, 0}, {0.1f, 0, 0.995f}));     // counts: almost flat
+    photons.push_back(photonAt({0.01f, 0, 0}, {0, 0, -1}));         // the other side
+    photons.push_back(photonAt({0, 0, 0.01f}, {1, 0, 0}));          // a wall
+    photons.push_back(photonAt({0, 0.01f, 0.05f}, {0, 0, 1}));      // a shelf above
+    photons.push_back(photonAt({0.02f, 0, 0}, {0, 0, 1}));          // counts
+    photons.push_back(photonAt({0, 0.02f, 0}, {0.1f, 0, 0.995f}));  // counts: almost flat
     const PhotonMap map(std::move(photons));
     EXPECT_EQ(map.fluxWithin({0, 0, 0}, {0, 0, 1}, 1).r, 2.0f);
     EXPECT_EQ(map.fluxWithin({0, 0, 0}, {0, 0, -1}, 1).r, 1.0f);

@@ -133,9 +133,8 @@ TEST(Photons, ParallelRectangles) {  // analytic A1
 }
 
 TEST(Photons, PerpendicularRectangles) {  // analytic A2: W of the emitter, H of the receiver
-    for (const auto& [w, h, expected] : {std::tuple{1.0, 1.0, 0.20004378},
-                                         {1.0, 2.0, 0.23285260},
-                                         {2.0, 1.0, 0.11642630}}) {
+    for (const auto& [w, h, expected] :
+         {std::tuple{1.0, 1.0, 0.20004378}, {1.0, 2.0, 0.23285260}, {2.0, 1.0, 0.11642630}}) {
         SceneMaker maker;
         maker.quad({0, 0, 0}, {w, 0, 0}, {0, 1, 0}, maker.diffuse({}, Rgb(1.0f)));
         maker.quad({0, 0, 0}, {0, 1, 0}, {0, 0, h}, maker.diffuse(Rgb(0.5f)));

@@ -55,8 +55,7 @@ TEST(Sampler, EveryPairOfDimensionsIsANet) {
 TEST(Sampler, LaterBlocksAreNets) {
     const std::vector<Vec2f> points = pairOfDimensions(5, 1, 256);
     for (std::ptrdiff_t block = 0; block < 4; ++block)
-        EXPECT_TRUE(
-            isNet({points.begin() + 64 * block, points.begin() + 64 * (block + 1)}, 6));
+        EXPECT_TRUE(isNet({points.begin() + 64 * block, points.begin() + 64 * (block + 1)}, 6));
 }
 
 TEST(Sampler, IndependentPointsAreNoNet) {

@@ -178,8 +178,7 @@ struct RenderedPass {
         double weight = 0;
         for (std::int32_t y = region.y0; y < region.y1; ++y)
             for (std::int32_t x = region.x0; x < region.x1; ++x) {
-                const auto i =
-                    static_cast<std::size_t>((y - area.y0) * area.width() + x - area.x0);
+                const auto i = static_cast<std::size_t>((y - area.y0) * area.width() + x - area.x0);
                 weight += static_cast<double>(weights[i]);
                 for (std::size_t c = 0; c < 3; ++c)
                     mean[c] += static_cast<double>(weights[i]) *

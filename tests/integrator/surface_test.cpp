@@ -28,8 +28,8 @@ Vec3f leaving(const Surface& surface, Random& random) {
 
 void addTriangle(SceneMaker& maker, Vec3d a, Vec3d b, Vec3d c, std::uint32_t material) {
     maker.quad(a, b - a, c - a, material);
-    auto mesh = *std::get<std::shared_ptr<const TriangleMesh>>(
-        maker.description.instances.back().shape);
+    auto mesh =
+        *std::get<std::shared_ptr<const TriangleMesh>>(maker.description.instances.back().shape);
     mesh.positions = {Vec3f(a), Vec3f(b), Vec3f(c)};
     mesh.triangles = {{0, 1, 2}};
     mesh.materials.resize(1);
@@ -88,8 +88,8 @@ TEST(SurfaceOffset, SpheresAreLeft) {
             maker.sphere(centre, radius, maker.diffuse({}, Rgb(1.0f)));
             // Something that keeps the scene's centre near the origin.
             const double reach = 2 * radius + 5;
-            maker.box({-reach, -reach, -reach}, {reach, reach, reach},
-                      maker.diffuse(Rgb(0.5f)), true);
+            maker.box({-reach, -reach, -reach}, {reach, reach, reach}, maker.diffuse(Rgb(0.5f)),
+                      true);
             const auto scene = maker.build();
             int wrong = 0;
             for (int n = 0; n < 20'000; ++n) {
@@ -137,13 +137,13 @@ TEST(Surface, MirroredInstanceEmitsFromItsFront) {
             maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.diffuse({}, Rgb(1.0f)));
             maker.description.instances[0].transform = {sx, 0, 0, 3, 0, sy, 0, 0, 0, 0, 1, 0};
             maker.camera({3, 0, 4}, {3, 0, 0}, {0, 1, 0}, 20);
-            EXPECT_TRUE(agrees(measure(maker.build(), smallFrame(8, 8, IntegratorKind::kPath, 1, 2))
-                                   .emission,
-                               Rgb(1.0f), 0));
+            EXPECT_TRUE(agrees(
+                measure(maker.build(), smallFrame(8, 8, IntegratorKind::kPath, 1, 2)).emission,
+                Rgb(1.0f), 0));
             maker.camera({3, 0, -4}, {3, 0, 0}, {0, 1, 0}, 20);
-            EXPECT_TRUE(agrees(measure(maker.build(), smallFrame(8, 8, IntegratorKind::kPath, 1, 2))
-                                   .emission,
-                               Rgb(0.0f), 0));
+            EXPECT_TRUE(agrees(
+                measure(maker.build(), smallFrame(8, 8, IntegratorKind::kPath, 1, 2)).emission,
+                Rgb(0.0f), 0));
         }
 }
 
@@ -157,9 +157,8 @@ TEST(Surface, BothSidesAreLit) {
             maker.sphere({0, 0, 2}, 0.5, lamp);
             maker.sphere({0, 0, -2}, 0.5, lamp);
             maker.camera({0.5, 0, side}, {0, 0, 0}, {0, 1, 0}, 0.2);
-            EXPECT_TRUE(
-                agrees(measure(maker.build(), smallFrame(8, 8, integrator, 4, 4)).beauty,
-                       Rgb(0.5f / 16), 1e-3));
+            EXPECT_TRUE(agrees(measure(maker.build(), smallFrame(8, 8, integrator, 4, 4)).beauty,
+                               Rgb(0.5f / 16), 1e-3));
         }
 }
 
@@ -206,8 +205,8 @@ std::vector<float> picture(Vec3d shift) {
     std::vector<float> pixels;
     for (std::uint64_t i = 0; i < 32 * 24; ++i) {
         Sampler sampler(1, 0, i, 0);
-        const Ray ray = camera.ray(static_cast<double>(i % 32) + 0.5,
-                                   static_cast<double>(i / 32) + 0.5);
+        const Ray ray =
+            camera.ray(static_cast<double>(i % 32) + 0.5, static_cast<double>(i / 32) + 0.5);
         const SampleRadiance s = PathIntegrator(*scene, lights).sample(ray, sampler);
         pixels.push_back((s.direct + s.indirect + s.emission).g);
     }

@@ -53,8 +53,7 @@ TEST(Warps, UniformCone) {
         const auto sample = [&] { return sampleUniformCone(random.next2D(), oneMinusCos); };
         const double density = 0.5 / kPiD / static_cast<double>(oneMinusCos);
         EXPECT_GT(test.pValue(sample, [&](const Vec3f&) { return density; }), kSignificance);
-        EXPECT_LT(test.pValue(sample, [&](const Vec3f&) { return density * 0.98; }),
-                  kSignificance);
+        EXPECT_LT(test.pValue(sample, [&](const Vec3f&) { return density * 0.98; }), kSignificance);
     }
 }
 

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Three scenes against pictures that other renderers agree on. They lie outside the repository;
+// without them the tests are skipped. The references are 256 x 256; they are compared at half of
+// it, where a pixel is the mean of four of theirs.
+#include "host_shim/pictures/picture_io.h"
+#include "tests/scene/host_test.h"
+#include "tests/scene/picture_measures.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+namespace pm::host::test {
+namespace {
+
+const fs::path kPeers = PM_SHARED_PEERS;
+
+class NeutralScenes : public HostTest {
+  protected:
+    void SetUp() override {
+        if (!fs::exists(kPeers)) GTEST_SKIP() << "no optional data at " << kPeers.string();
+        HostTest::SetUp();
+        const std::string maker = (kPeers / "neutral_to_obj.py").string();
+        const std::string command =
+            fmt::format("python3 -B '{}' '{}' '{}' 4 >/dev/null", maker,
+                        (kPeers / "scenes.json").string(), m_folder.string());
+        ASSERT_EQ(std::system(command.c_str()), 0) << command;
+    }
+
+    Picture render(const std::string& scene, const Arguments& more) {
+        const Arguments shared{scene + ".obj",   "--size", "128x128", "--eye", "0,1,3.9",
+                               "--look-at",      "0,1,0",  "--fov",   "37",    "--rendering-space",
+                               "Linear Rec.709", "--aov",  "stderr"};
+        return renderExr(scene, shared + more);
+    }
+
+    // The error may be the predicted noise times factor plus the reference's own noise; the mean is
+    // off by at most meanBound.
+    struct Bounds {
+        double factor{}, referenceNoise{}, meanBound{}, dropped{};
+    };
+    void hold(const std::string& scene, const Arguments& more, const Bounds& bounds) {
+        const Picture picture = render(scene, more);
+        ASSERT_TRUE(allFinite(picture));
+        const Picture reference = halved(readExr(kPeers / (scene + ".exr")));
+        const ReferenceError error = errorAgainst(reference, picture, bounds.dropped);
+        std::cout << fmt::format(
+            "{}: relMSE {:.3e}, {:.2f} times the predicted noise; mean {:+.2f} %\n", scene,
+            error.relMse, error.relMse / error.predicted, 100.0 * (error.meanRatio - 1.0));
+        EXPECT_LT(error.relMse, bounds.factor * error.predicted + bounds.referenceNoise);
+        EXPECT_NEAR(error.meanRatio, 1.0, bounds.meanBound);
+    }
+};
+
+const Arguments kPath{"--integrator", "path", "--passes", "16"};
+const Arguments kPhoton{"--integrator", "photon", "--passes", "8"};
+
+// No bias is to be seen beside the noise.
+TEST_F(NeutralScenes, DiffuseByPath) {
+    hold("cornell-diffuse", kPath, {1.1, 3e-5, 0.005});
+}
+TEST_F(NeutralScenes, DiffuseByPhotons) {
+    hold("cornell-diffuse", kPhoton, {1.1, 3e-5, 0.01});
+}
+
+// Caustics are blurred at their outlines and the balls have corners, which the prediction from the
+// spread between passes knows nothing of.
+TEST_F(NeutralScenes, CausticByPath) {
+    hold("cornell-caustic", kPath, {1.2, 9e-5, 0.01});
+}
+TEST_F(NeutralScenes, CausticByPhotons) {
+    hold("cornell-caustic", kPhoton, {1.4, 9e-5, 0.01});
+}
+
+// The lamp is half a pixel wide; what shows it, straight or in the glass, is noise without bound.
+TEST_F(NeutralScenes, SdsByPhotons) {
+    hold("sds", kPhoton + Arguments{"--passes", "16"}, {1.2, 2e-4, 0.01, 0.001});
+}
+
+// A path tracer finds the tiny lamp through the glass once in a blue moon, so there is no picture
+// to compare. What it can do is the direct light, which must be that of the photon integrator.
+TEST_F(NeutralScenes, SdsDirectLightByPath) {
+    const Picture path = render("sds", {"--integrator", "path", "--passes", "4"});
+    const Picture photon = render("sds", {"--integrator", "photon", "--passes", "4"});
+    ASSERT_TRUE(allFinite(path));
+    ASSERT_TRUE(allFinite(photon));
+    const Means byPath = meansOf(path, "direct."), byPhotons = meansOf(photon, "direct.");
+    for (std::size_t c = 0; c < 3; ++c) {
+        EXPECT_GT(byPhotons[c], 0.01);
+        EXPECT_NEAR(byPath[c] / byPhotons[c], 1.0, 0.005);
+    }
+}
+
+}  // namespace
+}  // namespace pm::host::test
