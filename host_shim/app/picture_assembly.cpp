@@ -3,6 +3,7 @@
 #include "host_shim/app/picture_assembly.h"
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include <cstddef>
 #include <string_view>
@@ -49,6 +50,15 @@ void addSettings(const RenderRun& run, Picture& picture) {
     }
 }
 
+// Checksums by which a later run tells whether it may go on with this render.
+void addHashes(const RenderRun& run, Picture& picture) {
+    const auto json = nlohmann::json::parse(run.statistics(), nullptr, false);
+    if (!json.is_object() || !json.contains("hashes")) return;
+    for (const auto& [name, value] : json["hashes"].items())
+        if (value.is_string())
+            picture.attributes[fmt::format("pm:{}Hash", name)] = value.get<std::string>();
+}
+
 }  // namespace
 
 Picture assemblePicture(const RenderRun& run, const Options& options, const ColourPipeline& colour,
@@ -72,6 +82,7 @@ Picture assemblePicture(const RenderRun& run, const Options& options, const Colo
         picture.attributes["colorInteropID"] = colour.colorInteropId();
     }
     addSettings(run, picture);
+    addHashes(run, picture);
     picture.attributes["pm:complete"] = std::int32_t{complete ? 1 : 0};
     picture.attributes["pm:version"] = std::string(run.api().versionText());
     picture.attributes["pm:renderingSpace"] = colour.renderingSpace();

@@ -88,9 +88,9 @@ void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive
     Vec3d n = cross(e1, e2);
     if (record.mirrored) n = -n;
     const double nLength = length(n);
-    surface.offset = surfaceOffset(
-        surface.position,
-        static_cast<float>(std::sqrt(farthest) * normalCondition(e1, e2, nLength)));
+    surface.offset =
+        surfaceOffset(surface.position,
+                      static_cast<float>(std::sqrt(farthest) * normalCondition(e1, e2, nLength)));
     surface.geometricNormal = nLength > 0 ? Vec3f(n / nLength) : Vec3f{0.0f, 1.0f, 0.0f};
     surface.shadingNormal = surface.geometricNormal;
     const auto f1 = static_cast<float>(b1), f2 = static_cast<float>(b2);

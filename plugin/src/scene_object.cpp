@@ -12,6 +12,7 @@
 
 #include "plugin/src/call_error.h"
 #include "plugin/src/entry.h"
+#include "plugin/src/identity.h"
 #include "plugin/src/transform_reader.h"
 #include "scheduler/worker_arena.h"
 
@@ -192,13 +193,22 @@ void SceneObject::commit() {
     description.textures = m_textures;
     const auto start = std::chrono::steady_clock::now();
     WorkerArena arena(m_context->threads());
-    m_scene = arena.execute([&] { return Scene::build(std::move(description), m_context->isa()); });
+    auto built =
+        arena.execute([&] { return Scene::build(std::move(description), m_context->isa()); });
+    m_hash = sceneHash(*built, *m_textures);
+    m_scene = std::move(built);
     m_buildSeconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     m_description = {};
     const std::shared_ptr<const Scene> scene = m_scene;
     lock.unlock();  // the host's function may ask for the bounds
     for (const Notice& notice : scene->notices()) m_context->sendNotice(notice);
+}
+
+std::string SceneObject::hash() const {
+    const std::lock_guard lock(m_mutex);
+    if (!m_scene) throw CallError(PMR_ERROR_STATE, "the scene is not committed yet");
+    return m_hash;
 }
 
 std::shared_ptr<const Scene> SceneObject::built() const {

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <string>
 #include <unordered_map>
 #include <vector>
 
@@ -42,6 +43,8 @@ class SceneObject {
     std::shared_ptr<const Scene> built() const;
     // World space: min x, y, z, max x, y, z.
     std::array<double, 6> bounds() const;
+    // See sceneHash; CallError(STATE) before commit.
+    std::string hash() const;
     double buildSeconds() const;
     std::uint64_t textureFailures() const;
 
@@ -57,6 +60,7 @@ class SceneObject {
     std::unordered_map<const MaterialObject*, std::uint32_t> m_materialIndices;
     std::vector<std::shared_ptr<MaterialObject>> m_materials;  // keeps the keys above alive
     std::shared_ptr<const Scene> m_scene;
+    std::string m_hash;
     double m_buildSeconds = 0;
 };
 

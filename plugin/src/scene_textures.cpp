@@ -14,6 +14,12 @@ std::int32_t SceneTextures::add(const std::shared_ptr<TextureObject>& texture) {
     return index;
 }
 
+std::vector<const TexturePicture*> SceneTextures::pictures() const {
+    std::vector<const TexturePicture*> pictures;
+    for (const auto& texture : m_textures) pictures.push_back(&texture->picture());
+    return pictures;
+}
+
 Texel SceneTextures::lookUp(std::int32_t index, Vec2f uv, float width) const {
     Texel texel;
     const TextureObject& texture = *m_textures[static_cast<std::size_t>(index)];

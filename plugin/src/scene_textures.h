@@ -18,6 +18,9 @@ class SceneTextures final : public TextureSource {
     // The number of a texture here, given on first sight; kNoTexture for null. One thread.
     std::int32_t add(const std::shared_ptr<TextureObject>& texture);
 
+    // In the order of their numbers.
+    std::vector<const TexturePicture*> pictures() const;
+
     Texel lookUp(std::int32_t index, Vec2f uv, float width) const override;
     std::uint64_t failureCount() const override;
 

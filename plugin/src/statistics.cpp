@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "plugin/src/call_error.h"
+#include "plugin/src/identity.h"
 #include "plugin/src/memory_limit.h"
 #include "plugin/src/render.h"
 #include "plugin/src/version.h"
@@ -120,6 +121,7 @@ std::string Render::statisticsJson() const {
     Json json;
     json["schema"] = "pm-stats/1";
     json["versions"] = versionsJson();
+    json["hashes"] = {{"scene", m_scene->hash()}, {"settings", settingsHash(settings())}};
     json["isa"] = running->scene().isa();
     json["stopReason"] = stopReason(state, status);
     json["status"] = status;

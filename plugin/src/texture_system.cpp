@@ -2,11 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "plugin/src/texture_system.h"
 
+#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <vector>
 
 #include "plugin/src/call_error.h"
 
@@ -45,6 +49,10 @@ float orOne(float value) {
     return value == 0.0f ? 1.0f : value;
 }
 
+[[noreturn]] void throwUnreadable(const std::string& fileName, const std::string& why) {
+    throw CallError(PMR_ERROR_IO, fmt::format("texture {} can't be read: {}", fileName, why));
+}
+
 Texel toTexel(const std::array<float, 4>& values, int channelCount) {
     switch (channelCount) {
         case 1:
@@ -64,6 +72,20 @@ bool isFinite(const Texel& texel) {
 }
 
 }  // namespace
+
+std::array<std::uint64_t, 2> texelHash(const std::string& fileName) {
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(fileName);
+    if (!input) throwUnreadable(fileName, OIIO::geterror());
+    const OIIO::ImageSpec& spec = input->spec();
+    const std::array<std::int64_t, 4> shape = {spec.width, spec.height, spec.nchannels,
+                                               spec.format.basetype};
+    std::vector<std::byte> texels(spec.image_bytes(true));
+    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UNKNOWN, texels.data()))
+        throwUnreadable(fileName, input->geterror());
+    const XXH128_hash_t ofShape = XXH3_128bits(shape.data(), sizeof shape);
+    const XXH128_hash_t hash = XXH3_128bits_withSeed(texels.data(), texels.size(), ofShape.low64);
+    return {hash.low64, hash.high64};
+}
 
 TextureSystem::~TextureSystem() {
     if (m_system != nullptr) OIIO::TextureSystem::destroy(m_system);

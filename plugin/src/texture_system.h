@@ -4,6 +4,7 @@
 
 #include <OpenImageIO/texture.h>
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -27,6 +28,10 @@ struct TexturePicture {
     float gain = 1.0f;
     float base = 0.0f;
 };
+
+// Checksum (XXH3, 128 bits) of a picture's size, channels and finest level, texel by texel: the
+// same picture in another file or of another date has the same. Throws CallError(IO).
+std::array<std::uint64_t, 2> texelHash(const std::string& fileName);
 
 // A texture cache of our own: neither its contents nor its options mix with another user of the
 // same library in this process. Options that change values are all set here, so that what the

@@ -32,17 +32,21 @@ struct Options {
 
 // One row of the table, and what the summary is made of.
 struct Measurement {
-    double seconds, error;
+    double seconds, processorSeconds, error;
 };
 
-// Seconds to an error, along a straight line between the logarithms of the measurements.
+// Seconds to an error, and processor seconds in brackets, along a straight line between the
+// logarithms of the measurements.
 std::string secondsTo(double wanted, const std::vector<Measurement>& measured) {
     for (std::size_t i = 0; i < measured.size(); ++i) {
-        if (measured[i].error > wanted) continue;
-        if (i == 0) return "< " + show(measured[0].seconds);
-        const Measurement &a = measured[i - 1], &b = measured[i];
+        const Measurement& b = measured[i];
+        if (b.error > wanted) continue;
+        if (i == 0) return fmt::format("< {} ({})", show(b.seconds), show(b.processorSeconds));
+        const Measurement& a = measured[i - 1];
         const double t = std::log(a.error / wanted) / std::log(a.error / b.error);
-        return show(a.seconds * std::pow(b.seconds / a.seconds, t));
+        const auto between = [t](double from, double to) { return from * std::pow(to / from, t); };
+        return fmt::format("{} ({})", show(between(a.seconds, b.seconds)),
+                           show(between(a.processorSeconds, b.processorSeconds)));
     }
     return "-";
 }
@@ -66,7 +70,7 @@ class ErrorBench {
                 for (const std::uint32_t level : m_options.levels)
                     measure(scene, integrator, level);
         }
-        m_report.table("Seconds to a relMSE",
+        m_report.table("Seconds (processor seconds) to a relMSE",
                        {"scene", "integrator", "samples a pass", "1e-2", "5e-3", "2e-3", "1e-3"});
         for (auto& row : m_summary) m_report.row(std::move(row));
         m_report.publish(m_options.csvFile, m_options.docsFile);
@@ -88,7 +92,7 @@ class ErrorBench {
             m_report.row({name, fmt::format("{} x {}", so.passes, samples), show(error),
                           show(error * so.passes * samples), so.passes < 2 ? "" : show(bias),
                           meanRatio(so.mean), show(so.wallSeconds), show(so.processorSeconds)});
-            measured.push_back({so.wallSeconds, error});
+            measured.push_back({so.wallSeconds, so.processorSeconds, error});
             if (!m_options.picturesFolder.empty())
                 writePictures(fmt::format("{}_{}_{}x{}", scene.name, name, so.passes, samples),
                               so.mean);
@@ -112,16 +116,18 @@ class ErrorBench {
     void writePictures(const std::string& name, const std::vector<double>& mean) const {
         const std::filesystem::path folder = m_options.picturesFolder;
         const Picture picture{m_reference.width, m_reference.height, mean};
+        writeExr(folder / (name + ".exr"), picture);
         writePng(folder / (name + ".png"), picture, 1.0);
         writePng(folder / (name + "_difference.png"),
                  differencePicture(picture, m_reference, 0, 2.0), 1.0);
         writePng(folder / (name + "_difference_blurred.png"),
                  differencePicture(picture, m_reference, 4, 10.0), 1.0);
-        writePng(folder / "reference.png", m_reference, 1.0);
+        writePng(folder / (m_name + "_reference.png"), m_reference, 1.0);
     }
 
     Options m_options;
     Report m_report{"pm_bench_speed_error"};
+    std::string m_name;  // of the scene
     Picture m_reference;
     double m_dropped = 0;
     std::vector<std::vector<std::string>> m_summary;

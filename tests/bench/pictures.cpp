@@ -22,6 +22,15 @@ double linearOf(double srgb) {
     return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
 }
 
+void write(const std::filesystem::path& file, const Picture& picture, OIIO::TypeDesc type,
+           const void* values) {
+    const auto output = OIIO::ImageOutput::create(file.string());
+    const OIIO::ImageSpec spec(picture.width, picture.height, 3, type);
+    if (!output || !output->open(file.string(), spec) || !output->write_image(type, values) ||
+        !output->close())
+        throw Error(Status::kIo, file.string() + ": can't be written");
+}
+
 }  // namespace
 
 Picture readPicture(const std::filesystem::path& file) {
@@ -40,11 +49,13 @@ void writePng(const std::filesystem::path& file, const Picture& picture, double 
     std::vector<unsigned char> bytes;
     for (const double v : picture.rgb)
         bytes.push_back(static_cast<unsigned char>(255 * srgbOf(v * exposure) + 0.5));
-    const auto output = OIIO::ImageOutput::create(file.string());
-    const OIIO::ImageSpec spec(picture.width, picture.height, 3, OIIO::TypeDesc::UINT8);
-    if (!output || !output->open(file.string(), spec) ||
-        !output->write_image(OIIO::TypeDesc::UINT8, bytes.data()) || !output->close())
-        throw Error(Status::kIo, file.string() + ": can't be written");
+    write(file, picture, OIIO::TypeDesc::UINT8, bytes.data());
+}
+
+void writeExr(const std::filesystem::path& file, const Picture& picture) {
+    std::vector<float> values;
+    for (const double v : picture.rgb) values.push_back(static_cast<float>(v));
+    write(file, picture, OIIO::TypeDesc::FLOAT, values.data());
 }
 
 Picture differencePicture(const Picture& picture, const Picture& reference, int blur,

@@ -18,6 +18,9 @@ Picture readPicture(const std::filesystem::path& file);
 // 8 bits, sRGB, clipped, each value times `exposure` first. Throws Error(kIo).
 void writePng(const std::filesystem::path& file, const Picture& picture, double exposure);
 
+// 32-bit float, linear. Throws Error(kIo).
+void writeExr(const std::filesystem::path& file, const Picture& picture);
+
 // Where a picture is wrong: mid grey is right, brighter is too bright, darker too dark; each
 // channel is (x - r) / sqrt(r^2 + 0.01) averaged over a square of 2 * blur + 1 pixels, times
 // `scale`, plus 1/2.

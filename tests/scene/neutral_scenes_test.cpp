@@ -54,7 +54,7 @@ class NeutralScenes : public HostTest {
 };
 
 const Arguments kPath{"--integrator", "path", "--passes", "16"};
-const Arguments kPhoton{"--integrator", "photon", "--passes", "8"};
+const Arguments kPhoton{"--integrator", "photon", "--passes", "4"};
 
 // No bias is to be seen beside the noise.
 TEST_F(NeutralScenes, DiffuseByPath) {
@@ -70,19 +70,20 @@ TEST_F(NeutralScenes, CausticByPath) {
     hold("cornell-caustic", kPath, {1.2, 9e-5, 0.01});
 }
 TEST_F(NeutralScenes, CausticByPhotons) {
-    hold("cornell-caustic", kPhoton, {1.4, 9e-5, 0.01});
+    hold("cornell-caustic", kPhoton, {1.2, 9e-5, 0.01});
 }
 
-// The lamp is half a pixel wide; what shows it, straight or in the glass, is noise without bound.
+// The lamp is half a pixel wide; what shows it, straight or in the glass, is noise without bound. A
+// ball of triangles throws a caustic that is not quite that of the reference's true ball.
 TEST_F(NeutralScenes, SdsByPhotons) {
-    hold("sds", kPhoton + Arguments{"--passes", "16"}, {1.2, 2e-4, 0.01, 0.001});
+    hold("sds", kPhoton, {1.2, 2e-4, 0.015, 0.001});
 }
 
 // A path tracer finds the tiny lamp through the glass once in a blue moon, so there is no picture
 // to compare. What it can do is the direct light, which must be that of the photon integrator.
 TEST_F(NeutralScenes, SdsDirectLightByPath) {
-    const Picture path = render("sds", {"--integrator", "path", "--passes", "4"});
-    const Picture photon = render("sds", {"--integrator", "photon", "--passes", "4"});
+    const Picture path = render("sds", {"--integrator", "path", "--passes", "2"});
+    const Picture photon = render("sds", {"--integrator", "photon", "--passes", "2"});
     ASSERT_TRUE(allFinite(path));
     ASSERT_TRUE(allFinite(photon));
     const Means byPath = meansOf(path, "direct."), byPhotons = meansOf(photon, "direct.");
