@@ -82,13 +82,17 @@ class FrameStore {
     // window and where fewer than two passes had samples.
     std::optional<std::array<float, 3>> standardError(std::int32_t x, std::int32_t y) const;
 
-    // An estimate of relMSE without a reference: the mean of (variance of the mean) /
-    // (mean^2 + 0.01) over the beauty channels of the pixels with at least two passes with
-    // samples, summed in pixel order; nothing where there is no such pixel. It knows noise only,
-    // not bias.
+    // An estimate of relMSE without a reference: the mean of (variance of the mean) / (m^2 + 0.01)
+    // over the beauty channels of the pixels with at least two passes with samples, summed in pixel
+    // order; nothing where there is no such pixel. m, which stands for the reference, is the median
+    // of the 3 x 3 pixels around: divided by its own square, a pixel that came out far too bright
+    // would excuse itself. It knows noise only, not bias.
     std::optional<double> estimatedRelMse() const;
 
   private:
+    // The means of the beauty channels of a row of the window; NaN where there are no samples, and
+    // for rows outside.
+    std::vector<double> beautyRow(std::int32_t y) const;
     // Reads one pixel, index in the window, to floats; called under its band's lock.
     template <typename ReadPixel>
     void readRows(const Rect& rect, std::int32_t floatsPerPixel, float* destination,

@@ -43,6 +43,34 @@ TEST(Statistics, OfAFinishedRender) {
     EXPECT_EQ(PMR_OK, api().destroyRender(render));
 }
 
+// Checksums tell renders apart that have other pixels, and none that have not.
+TEST(Statistics, HashesNameTheRender) {
+    using Settings = std::map<std::string, std::string>;
+    const BoxHost host;
+    const auto hashes = [&](const Settings& settings) {
+        const PmrRender render = host.makeRender(settings);
+        EXPECT_EQ(PMR_OK, api().startRender(render));
+        EXPECT_EQ(PMR_OK, api().waitRender(render, -1.0));
+        const nlohmann::json json = statistics(render)["hashes"];
+        EXPECT_EQ(PMR_OK, api().destroyRender(render));
+        return json;
+    };
+    const nlohmann::json first = hashes({{"passes", "1"}});
+    EXPECT_EQ(32u, first["scene"].get<std::string>().size());
+    EXPECT_EQ(
+        first,
+        hashes({{"passes", "2"}, {"threads", "1"}, {"bucketSize", "16"}, {"bucketOrder", "row"}}));
+    const nlohmann::json other = hashes({{"passes", "1"}, {"seed", "7"}});
+    EXPECT_EQ(first["scene"], other["scene"]);
+    EXPECT_NE(first["settings"], other["settings"]);
+    const BoxHost again;
+    const PmrRender render = again.makeRender({{"passes", "1"}});
+    EXPECT_EQ(PMR_OK, api().startRender(render));
+    EXPECT_EQ(PMR_OK, api().waitRender(render, -1.0));
+    EXPECT_EQ(first["scene"], statistics(render)["hashes"]["scene"]) << "the same scene, made anew";
+    EXPECT_EQ(PMR_OK, api().destroyRender(render));
+}
+
 TEST(Statistics, OnePassCannotTellItsError) {
     const BoxHost host;
     const PmrRender render = host.makeRender({{"passes", "1"}});

@@ -59,6 +59,7 @@ class ErrorBench {
         for (const char key : m_options.scenes) {
             const NeutralScene scene =
                 readNeutralScene(m_options.peers / "scenes.json", std::string(1, key));
+            m_name = scene.name;
             m_reference = readPicture(m_options.peers / (scene.name + ".exr"));
             // The third scene's few pixels of unbounded variance say nothing about the rest.
             m_dropped = scene.name == "sds" ? 0.001 : 0.0;

@@ -24,8 +24,9 @@ struct GoldenBounds {
 // 8 x 8 pixels, and over the whole, the mean of R, G and B is off by at most
 //     bias * golden + sigmas * sqrt(golden's variance + runs' variance).
 // The runs' variance of a region comes from their spread, since what photons bring is shared by
-// neighbours. NaN and infinity fail first; then frame, data window, channels and attributes of the
-// first run must be the golden's. The failure names the worst region; success tells its sigmas.
+// neighbours. NaN and infinity fail first; then the first run must have the golden's frame, data
+// window, channels and attributes, and may have more attributes. The failure names the worst
+// region; success tells its sigmas.
 testing::AssertionResult agreesWithGolden(const Picture& golden, const std::vector<Picture>& runs,
                                           const GoldenBounds& bounds);
 
