@@ -38,6 +38,13 @@ void checkLayout(const Rect& window, std::int32_t channels, std::int32_t beautyF
 
 }  // namespace
 
+namespace {
+
+// The offset of relMSE's denominator, as in design and documentation.
+constexpr double kRelMseOffset = 0.01;
+
+}  // namespace
+
 FrameStore::FrameStore(const Rect& window, std::int32_t channels, std::int32_t beautyFirst)
     : m_window(window), m_channels(channels), m_beautyFirst(beautyFirst) {
     checkLayout(window, channels, beautyFirst);
@@ -46,6 +53,7 @@ FrameStore::FrameStore(const Rect& window, std::int32_t channels, std::int32_t b
         m_sums.resize(pixels * static_cast<std::size_t>(channels));
         m_weights.resize(pixels);
         m_deviations.resize(pixels * kBeautyChannels);
+        m_relativeDeviations.resize(pixels);
         m_passes.resize(pixels);
         m_bandLocks = std::make_unique<std::mutex[]>(bandCount(window));
     } catch (const std::exception&) {  // bad_alloc, or length_error for sizes beyond any memory
@@ -59,7 +67,7 @@ FrameStore::FrameStore(const Rect& window, std::int32_t channels, std::int32_t b
 std::uint64_t FrameStore::memoryBytes(const Rect& window, std::int32_t channels) {
     if (window.empty() || channels < 0) return sizeof(FrameStore);
     const std::uint64_t pixelBytes =
-        (static_cast<std::uint64_t>(channels) + 1 + kBeautyChannels) * sizeof(double) +
+        (static_cast<std::uint64_t>(channels) + 2 + kBeautyChannels) * sizeof(double) +
         sizeof(std::uint32_t);
     return sizeof(FrameStore) + static_cast<std::uint64_t>(window.area()) * pixelBytes +
            bandCount(window) * sizeof(std::mutex);
@@ -104,7 +112,9 @@ void FrameStore::addPixel(std::size_t pixel, const float* values, double weight)
         const double sum = sums[m_beautyFirst + i];
         const double oldMean = sum / oldWeight;
         const double newMean = (sum + weight * value) / newWeight;
-        deviations[i] += weight * (value - oldMean) * (value - newMean);
+        const double share = weight * (value - oldMean) * (value - newMean);
+        deviations[i] += share;
+        m_relativeDeviations[pixel] += share / (oldMean * oldMean + kRelMseOffset);
     }
     for (std::int32_t c = 0; c < m_channels; ++c) {
         sums[c] += weight * static_cast<double>(values[c]);

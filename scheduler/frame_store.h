@@ -84,15 +84,13 @@ class FrameStore {
 
     // An estimate of relMSE without a reference: the mean of (variance of the mean) / (m^2 + 0.01)
     // over the beauty channels of the pixels with at least two passes with samples, summed in pixel
-    // order; nothing where there is no such pixel. m, which stands for the reference, is the median
-    // of the 3 x 3 pixels around: divided by its own square, a pixel that came out far too bright
-    // would excuse itself. It knows noise only, not bias.
+    // order; nothing where there is no such pixel. The variance is that of the standard error; m,
+    // which stands for the reference, is for each pass's share of it the mean of the passes before:
+    // divided by a mean that contains it, a pass that came out far too bright would excuse itself.
+    // It knows noise only, not bias.
     std::optional<double> estimatedRelMse() const;
 
   private:
-    // The means of the beauty channels of a row of the window; NaN where there are no samples, and
-    // for rows outside.
-    std::vector<double> beautyRow(std::int32_t y) const;
     // Reads one pixel, index in the window, to floats; called under its band's lock.
     template <typename ReadPixel>
     void readRows(const Rect& rect, std::int32_t floatsPerPixel, float* destination,
@@ -109,10 +107,11 @@ class FrameStore {
     std::int32_t m_channels{};
     std::int32_t m_beautyFirst{};
 
-    std::vector<double> m_sums;           // sum w_k x_k, for each pixel and channel
-    std::vector<double> m_weights;        // W, for each pixel
-    std::vector<double> m_deviations;     // M2, for each pixel and beauty channel
-    std::vector<std::uint32_t> m_passes;  // n, for each pixel
+    std::vector<double> m_sums;                // sum w_k x_k, for each pixel and channel
+    std::vector<double> m_weights;             // W, for each pixel
+    std::vector<double> m_deviations;          // M2, for each pixel and beauty channel
+    std::vector<double> m_relativeDeviations;  // shares of M2 over (mean before)^2 + 0.01
+    std::vector<std::uint32_t> m_passes;       // n, for each pixel
 
     // One for each row of atoms on the frame's grid: buckets of one row of buckets share a few,
     // which are held for microseconds; others share none.

@@ -10,7 +10,6 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <limits>
 #include <vector>
 
 #include "integrator/values/error.h"
@@ -34,9 +33,6 @@ class CompensatedSum {
   private:
     double m_sum{}, m_lost{};
 };
-
-// The constant of relMSE = mean of (x - r)^2 / (r^2 + 0.01), which keeps black pixels finite.
-constexpr double kRelMseOffset = 0.01;
 
 }  // namespace
 
@@ -138,66 +134,22 @@ std::optional<std::array<float, 3>> FrameStore::standardError(std::int32_t x,
     return error;
 }
 
-std::vector<double> FrameStore::beautyRow(std::int32_t y) const {
-    const auto width = static_cast<std::size_t>(m_window.width());
-    std::vector<double> row(width * kBeautyChannels, std::numeric_limits<double>::quiet_NaN());
-    if (y < m_window.y0 || y >= m_window.y1) return row;
-    const std::lock_guard lock(bandLock(y));
-    for (std::size_t x = 0; x < width; ++x) {
-        const std::size_t pixel = pixelIndex(m_window.x0 + static_cast<std::int32_t>(x), y);
-        if (m_passes[pixel] == 0) continue;
-        for (std::int32_t i = 0; i < kBeautyChannels; ++i)
-            row[x * kBeautyChannels + static_cast<std::size_t>(i)] = mean(pixel, m_beautyFirst + i);
-    }
-    return row;
-}
-
-namespace {
-
-// The median of a channel over a pixel and its neighbours, those without samples (NaN) left out.
-double medianAround(const std::array<std::vector<double>, 3>& rows, std::size_t x,
-                    std::size_t channel, std::size_t channels) {
-    std::array<double, 9> values;
-    std::size_t count = 0;
-    const std::size_t width = rows[1].size() / channels;
-    for (const std::vector<double>& row : rows)
-        for (std::size_t at = x > 0 ? x - 1 : 0; at < std::min(x + 2, width); ++at) {
-            const double value = row[at * channels + channel];
-            if (!std::isnan(value)) values[count++] = value;
-        }
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(count / 2);
-    std::nth_element(values.begin(), middle, values.begin() + static_cast<std::ptrdiff_t>(count));
-    return *middle;
-}
-
-}  // namespace
-
 std::optional<double> FrameStore::estimatedRelMse() const {
     const FpEnvironment guard;
     CompensatedSum sum;
-    std::uint64_t terms = 0;
-    std::array<std::vector<double>, 3> rows = {beautyRow(m_window.y0 - 1), beautyRow(m_window.y0),
-                                               beautyRow(m_window.y0 + 1)};
+    std::uint64_t pixels = 0;
     for (std::int32_t y = m_window.y0; y < m_window.y1; ++y) {
-        {
-            const std::lock_guard lock(bandLock(y));
-            for (std::int32_t x = m_window.x0; x < m_window.x1; ++x) {
-                const std::size_t pixel = pixelIndex(x, y);
-                if (m_passes[pixel] < 2) continue;
-                for (std::int32_t i = 0; i < kBeautyChannels; ++i) {
-                    const double level =
-                        medianAround(rows, static_cast<std::size_t>(x - m_window.x0),
-                                     static_cast<std::size_t>(i), kBeautyChannels);
-                    sum.add(varianceOfMean(pixel, i) / (level * level + kRelMseOffset));
-                }
-                terms += kBeautyChannels;
-            }
+        const std::lock_guard lock(bandLock(y));
+        for (std::int32_t x = m_window.x0; x < m_window.x1; ++x) {
+            const std::size_t pixel = pixelIndex(x, y);
+            if (m_passes[pixel] < 2) continue;
+            sum.add(m_relativeDeviations[pixel] /
+                    (static_cast<double>(m_passes[pixel] - 1) * m_weights[pixel]));
+            ++pixels;
         }
-        std::rotate(rows.begin(), rows.begin() + 1, rows.end());
-        rows[2] = beautyRow(y + 2);
     }
-    if (terms == 0) return std::nullopt;
-    return sum.value() / static_cast<double>(terms);
+    if (pixels == 0) return std::nullopt;
+    return sum.value() / (static_cast<double>(pixels) * kBeautyChannels);
 }
 
 }  // namespace pm

@@ -155,6 +155,26 @@ TEST(Agreement, BentShadingNormals) {
     EXPECT_TRUE(agree(four.direct, path.direct, 0));
 }
 
+// Gather rays that start below the surface have no value; the others of the same sample keep
+// theirs. In a furnace, where there is little noise to hide in.
+TEST(Agreement, GatherRaysOverABentFloor) {
+    SceneMaker maker;
+    const auto warm = maker.diffuse(Rgb(0.5f), Rgb(0.5f));
+    maker.box({-1, -1, -1}, {1, 1, 1}, warm, true);
+    maker.quad({-1, -0.9, 1}, {2, 0, 0}, {0, 0, -2}, warm);
+    maker.bendNormals({0.6, 1, 0});
+    maker.camera({0, 0.5, 0}, {0, -1, 0}, {0, 0, -1}, 40);
+    const auto scene = maker.build();
+    RenderSettings settings = smallFrame(16, 16, kPhoton, 8, 4);
+    settings.photons = 50'000;
+    const MeasuredLayers one = measure(scene, settings);
+    settings.gatherRays = 4;
+    const MeasuredLayers four = measure(scene, settings);
+    EXPECT_TRUE(agree(four.indirect, one.indirect, 0));
+    EXPECT_TRUE(agree(four.direct, one.direct, 0));
+    EXPECT_LT(one.indirect.standardError[0], 0.005 * one.indirect.mean[0]);
+}
+
 // Under a glass sphere, and beside a mirror sphere, in the light of a lamp: flux of the caustic
 // photons in a square of the floor, caustic layer of the photon integrator and of the path
 // integrator (analytic D11). A camera that looks straight down sees equal areas in equal pixels.
