@@ -5,6 +5,10 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <string_view>
+#include <vector>
+
 #include <cstddef>
 #include <string_view>
 
@@ -88,6 +92,23 @@ Picture assemblePicture(const RenderRun& run, const Options& options, const Colo
     picture.attributes["pm:renderingSpace"] = colour.renderingSpace();
     picture.attributes["pm:ocioCacheId"] = colour.cacheId();
     return picture;
+}
+
+bool isBlackThoughHit(const Picture& picture) {
+    const auto channel = [&](std::string_view name) -> const std::vector<float>& {
+        static const std::vector<float> kNone;
+        const auto found = std::ranges::find(picture.channels, name, &Channel::name);
+        return found == picture.channels.end() ? kNone : found->values;
+    };
+    const auto &r = channel("R"), &g = channel("G"), &b = channel("B"), &a = channel("A");
+    if (r.size() != a.size() || g.size() != a.size() || b.size() != a.size()) return false;
+    std::size_t covered = 0, lit = 0;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        if (!(a[i] > 0.0f)) continue;
+        ++covered;
+        if (r[i] != 0.0f || g[i] != 0.0f || b[i] != 0.0f) ++lit;
+    }
+    return covered > 0 && 100 * lit <= covered;
 }
 
 }  // namespace pm::host

@@ -13,4 +13,7 @@ namespace pm::host {
 Picture assemblePicture(const RenderRun& run, const Options& options, const ColourPipeline& colour,
                         bool complete);
 
+// Whether something is covered (A above 0) and, but for one pixel in a hundred, exactly black.
+bool isBlackThoughHit(const Picture& picture);
+
 }  // namespace pm::host

@@ -204,6 +204,11 @@ int Session::finish(RenderRun& run, PmrStatus status, const ColourPipeline& colo
         throw HostError(static_cast<ExitCode>(exitCodeOf(status)), "the render was cancelled");
     }
     m_statistics.stopReason = "finished";
+    if (isBlackThoughHit(picture))
+        warn(Warning::kBlackPicture,
+             "the picture is black though it shows surfaces: no light reaches their seen side; a "
+             "room "
+             "that is closed all round is seen from inside with --eye and --look-at only");
     if (m_options.onlyPixel) printPixel(picture);
     return m_reference ? compareWithReference(picture) : 0;
 }

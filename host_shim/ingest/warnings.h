@@ -19,6 +19,7 @@ enum class Warning : int {
     kDefaultLight = 1008,   // the scene has no light: one was added
     kCamera = 1009,         // the camera was changed
     kOutput = 1010,         // something of an output could not be had
+    kBlackPicture = 1011,   // surfaces are seen, and no light on them
 };
 
 using WarningSink = std::function<void(Warning code, const std::string& text)>;

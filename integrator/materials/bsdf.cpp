@@ -100,12 +100,12 @@ void Bsdf::setSurface(const Scene& scene, const Surface& surface, float opacity)
 
 void Bsdf::setMirror(const Scene& scene, const Surface& surface, float opacity) {
     Rgb colour = clamp01(textured(scene, m_material.glossy, m_material.glossyTexture, surface));
-    if (m_material.fresnelMirror) {
+    const bool rough = m_material.glossyExponent > 0.0f;
+    if (m_material.fresnelMirror && !rough) {
         // Schlick 1994: the reflectance rises to 1 at grazing angles.
         const float m = 1.0f - clamp01(dot(m_out, m_ns));
         colour += (Rgb(1.0f) - colour) * (m * m * m * m * m);
     }
-    const bool rough = m_material.glossyExponent > 0.0f;
     m_exponent = m_material.glossyExponent;
     m_reflectance[index(rough ? Lobe::kGlossy : Lobe::kReflection)] = colour * opacity;
 }
@@ -180,7 +180,7 @@ float Bsdf::pdfSolidAngle(Lobe lobe, const Vec3f& in) const {
            pinnedPow(std::min(cosAlpha, 1.0f), m_exponent);
 }
 
-bool Bsdf::refract(Vec3f& direction) const {
+bool Bsdf::refract(Vec3f& direction, float& correction) const {
     // With the shading normal first, with the geometric one where that leads to the wrong side.
     for (const Vec3f& n : {m_ns, m_ng}) {
         const float cosine = dot(m_out, n);
@@ -188,6 +188,7 @@ bool Bsdf::refract(Vec3f& direction) const {
         if (sin2Inside >= 1.0f) continue;
         const float cosineInside = std::sqrt(1.0f - sin2Inside);
         direction = normalize(n * (cosine / m_eta - cosineInside) - m_out * (1.0f / m_eta));
+        correction = n == m_ns ? adjointCorrection(direction) : 1.0f;
         if (dot(direction, m_ng) < 0.0f) return true;
     }
     return false;
@@ -226,12 +227,14 @@ bool Bsdf::sample(float uLobe, Vec2f u, BsdfSample& sample) const {
             else
                 sample.weight *= adjointCorrection(sample.direction);
             return true;
-        case Lobe::kRefraction:
-            if (!refract(sample.direction)) return false;
+        case Lobe::kRefraction: {
+            float correction;
+            if (!refract(sample.direction, correction)) return false;
             // Radiance is squeezed into a narrower cone of a denser medium; flux is not changed.
             if (m_transport == Transport::kRadiance) sample.weight *= 1.0f / (m_eta * m_eta);
-            sample.weight *= adjointCorrection(sample.direction);
+            sample.weight *= correction;
             return true;
+        }
         case Lobe::kStraight:
             sample.direction = -m_out;
             return true;

@@ -83,7 +83,8 @@ class Bsdf {
     void limitEnergy();
     void chooseProbabilities(const Rgb& carried);
     bool isReflection(const Vec3f& in) const;
-    bool refract(Vec3f& direction) const;
+    // correction: of the normal that was used, see adjointCorrection.
+    bool refract(Vec3f& direction, float& correction) const;
     float adjointCorrection(const Vec3f& in) const;
 
     const MaterialDescription& m_material;

@@ -3,6 +3,7 @@
 #include "integrator/photons/irradiance_sites.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "integrator/sampling/sampler.h"
@@ -22,8 +23,10 @@ constexpr std::uint32_t kRimRays = 8;
 constexpr std::uint32_t kAreaRays = 32;
 // The share of the disc in the sharpest corner that is still told apart; a square one has 1/4.
 constexpr float kSmallestShare = 0.1f;
-// A site farther away than this, in radii, says too little about a point.
-constexpr float kSiteReach = 2.0f;
+// A site farther away than this, in radii, says too little about a point. Where light is, about
+// twelve sites share a disc of one radius; where it is not, bright values from across a shadow's
+// edge must not be taken for the dark one's.
+constexpr float kSiteReach = 0.6f;
 // Cosine of how far the surface may turn away within the disc; as the map's photons.
 constexpr float kNormalCosine = 0.9f;
 
@@ -87,8 +90,12 @@ Rgb IrradianceSites::estimate(const Vec3f& position, const Vec3f& normal,
 
 Rgb IrradianceSites::at(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const {
     m_sites.findNearest({position, normal, 1, kSiteReach * m_radius}, scratch);
-    if (scratch.found().empty())
-        return m_map.fluxWithin(position, normal, m_radius) / (kPi * m_radius * m_radius);
+    if (scratch.found().empty()) {
+        // Any pattern that depends on the point alone.
+        const auto pattern = std::bit_cast<std::uint32_t>(position.x) ^
+                             std::bit_cast<std::uint32_t>(position.y + position.z);
+        return estimate(position, normal, pattern);
+    }
     const std::uint32_t index = scratch.found().front().index;
     Kept& kept = m_kept[index];
     if (kept.ready.load(std::memory_order_acquire))

@@ -29,7 +29,7 @@ class IrradianceSites {
                     float radius);
 
     // Irradiance, W m^-2, at the site nearest to the point on the side of the normal; estimated at
-    // the point itself where no site is within two radii.
+    // the point itself where no site is near.
     Rgb at(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const;
 
     // Irradiance at a point, computed now. pattern turns the rays about the normal.

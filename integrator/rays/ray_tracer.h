@@ -32,7 +32,7 @@ struct RayHit {
 
 // Nearest hits and visibility among triangle meshes and spheres, by Embree in its robust mode.
 // Every ray is checked first for what would end the process inside Embree: NaN, infinity, distances
-// beyond kLargestCoordinate; such a ray meets nothing and is counted by the caller.
+// beyond kLargestCoordinate; such a ray meets nothing, and as a shadow ray it is occluded.
 class RayTracer {
   public:
     static constexpr float kLargestCoordinate = 1e18f;

@@ -37,14 +37,21 @@ LightSampler::LightSampler(const Scene& scene) : m_scene(scene) {
     for (const Light& light : lights) m_totalPower += light.powerMean;
     if (lights.empty() || !(m_totalPower > 0)) return;
     const double even = kEvenShare / static_cast<double>(lights.size());
-    double sum = 0;
+    // A light is taken with the probability that the rounded sums leave it, whatever was meant:
+    // sums in steps of the random numbers, 2^-24. One whose share is less than a step could get
+    // none, so each gets at least one; with 2^24 lights and more that would be all there is.
+    constexpr double kSteps = 0x1p24;
+    const double atLeast = 1.0 / kSteps;
+    const double scale = 1.0 - atLeast * static_cast<double>(lights.size());
+    double sum = 0, before = 0;
     for (const Light& light : lights) {
-        const double p = even + (1 - kEvenShare) * light.powerMean / m_totalPower;
-        sum += p;
-        m_probabilities.push_back(static_cast<float>(p));
-        m_cumulative.push_back(static_cast<float>(sum));
+        sum += atLeast + scale * (even + (1 - kEvenShare) * light.powerMean / m_totalPower);
+        const double rounded =
+            &light == &lights.back() ? 1.0 : std::min(1.0, std::round(sum * kSteps) / kSteps);
+        m_probabilities.push_back(static_cast<float>(rounded - before));
+        m_cumulative.push_back(static_cast<float>(rounded));
+        before = rounded;
     }
-    m_cumulative.back() = 1.0f;
 }
 
 std::uint32_t LightSampler::choose(float u, float& probability) const {

@@ -18,7 +18,7 @@ namespace {
 constexpr std::uint64_t kAutoGlobalPhotons = 200'000;
 constexpr std::uint64_t kAutoCausticPhotons = 1'000'000;
 // Irradiance is kept at one place for so many photons of the global map.
-constexpr std::uint64_t kPhotonsPerSite = 4;
+constexpr std::uint64_t kPhotonsPerSite = 2;
 // Arrivals a photon: 1/(1 - albedo) for an albedo of 0.75.
 constexpr std::uint64_t kExpectedArrivals = 4;
 
@@ -27,7 +27,7 @@ struct SceneTraits {
     bool specular = false;  // some surface has another lobe
     bool glossy = false;
     bool lights = false;
-    bool areaLights = false;
+    bool pointLights = false;
     bool flat = false;  // all in one plane: no light from surface to surface
 };
 
@@ -46,7 +46,7 @@ SceneTraits findTraits(const Scene& scene) {
         }
     traits.lights = !scene.lights().empty();
     for (const Light& light : scene.lights())
-        traits.areaLights |= light.kind != Light::Kind::kPoint;
+        traits.pointLights |= light.kind == Light::Kind::kPoint;
     traits.flat = scene.isFlat();
     return traits;
 }
@@ -56,13 +56,13 @@ SceneTraits findTraits(const Scene& scene) {
 Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     Plan plan;
     const SceneTraits traits = findTraits(scene);
-    if (traits.glossy && !traits.areaLights && traits.lights)
+    if (traits.glossy && traits.pointLights)
         plan.notices.push_back({NoticeCode::kNotCovered,
                                 "light of point lights that reaches a glossy lobe by way of a "
                                 "mirror, glass or another glossy surface is not rendered"});
     if (settings.integrator == IntegratorKind::kPath) {
         plan.reasons.push_back("path tracing: asked for by --integrator path; no photons");
-        if (traits.specular && traits.diffuse && !traits.areaLights && traits.lights)
+        if (traits.specular && traits.diffuse && traits.pointLights)
             plan.notices.push_back({NoticeCode::kNotCovered,
                                     "caustics of point lights can't be found by path tracing"});
         return plan;

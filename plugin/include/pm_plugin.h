@@ -224,7 +224,7 @@ typedef struct PmrMaterialDesc {
     uint64_t size;
     const char* name; /* for messages; may be null */
     int32_t kind;
-    int32_t fresnel; /* mirrors: 1 = Schlick's Fresnel with the glossy colour at normal incidence */
+    int32_t fresnel;      /* perfect mirrors: 1 = Schlick's Fresnel from the glossy colour */
     float diffuse[3];     /* SURFACE: Lambertian reflectance */
     float glossy[3];      /* SURFACE: reflectance of the Phong lobe at normal incidence; MIRROR */
     float glossyExponent; /* SURFACE: exponent of the Phong lobe, >= 0; MIRROR: 0 = perfect */

@@ -44,6 +44,24 @@ TEST_F(BadInput, aMissingLibraryIsAWarningAndADefaultMaterial) {
     EXPECT_TRUE(fs::exists(path("box.exr")));
 }
 
+// A room that is closed all round, seen from outside; the same from inside says nothing.
+TEST_F(BadInput, aBlackPictureIsAWarning) {
+    write("room.mtl", "newmtl lamp\nKd 0.5 0.5 0.5\nKe 1 1 1\n");
+    write("room.obj",
+          "mtllib room.mtl\nusemtl lamp\n"
+          "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+          "f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 4 3 7 8\nf 1 4 8 5\nf 2 6 7 3\n");
+    const std::vector<std::string> small = {"room.obj", "--size", "16x16", "--passes", "1"};
+    const Outcome outside = run(small);
+    EXPECT_EQ(outside.exitCode, 0) << outside.err;
+    EXPECT_NE(outside.err.find("the picture is black"), std::string::npos) << outside.err;
+    std::vector<std::string> within = small;
+    within.insert(within.end(), {"--eye", ".5,.5,.9", "--look-at", ".5,.5,0"});
+    const Outcome inside = run(within);
+    EXPECT_EQ(inside.exitCode, 0) << inside.err;
+    EXPECT_EQ(inside.err.find("the picture is black"), std::string::npos) << inside.err;
+}
+
 TEST_F(BadInput, options) {
     expectRefusal(run({}), 2, {"SCENE"});
     expectRefusal(run({"box.obj", "--bogus"}), 2, {"--bogus"});

@@ -19,6 +19,9 @@ struct Box {
     Arguments camera;
     bool dark{};  // the automatic camera sees a closed room from outside
 };
+void PrintTo(const Box& box, std::ostream* out) {
+    *out << box.file;
+}
 
 std::vector<Box> boxes() {
     const Arguments front{"--eye", "0,1,3.8", "--look-at", "0,1,0", "--fov", "35"};
