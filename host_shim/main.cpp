@@ -4,9 +4,25 @@
 #include "host_shim/app/interrupt.h"
 
 #include <csignal>
+#include <cstdlib>
+
+namespace {
+
+// Of the environment pm_host reads $OCIO and what its config names, and a few of its own. Its
+// libraries would read more, and the same command line would then give another picture.
+void forgetForeignVariables() {
+    for (const char* name :
+         {"OCIO_ACTIVE_DISPLAYS", "OCIO_ACTIVE_VIEWS", "OCIO_INACTIVE_COLORSPACES",
+          "OCIO_OPTIMIZATION_FLAGS", "OPENIMAGEIO_OPTIONS", "OPENIMAGEIO_IMAGECACHE_OPTIONS",
+          "OPENIMAGEIO_TEXTURE_OPTIONS"})
+        unsetenv(name);
+}
+
+}  // namespace
 
 // pm_host: renders a scene file through libpm_plugin.so.
 int main(int argc, char** argv) {
+    forgetForeignVariables();
     std::signal(SIGPIPE, SIG_IGN);
     pm::host::installInterruptHandlers();
     return pm::host::runHost({argv + 1, argv + argc});

@@ -80,6 +80,17 @@ TEST_F(Outputs, theSameBytesTwiceAndInAnyLocale) {
     EXPECT_EQ(readText(path("a.exr")), first);
 }
 
+// OpenColorIO would take another default view from this variable.
+TEST_F(Outputs, foreignVariablesChangeNothing) {
+    const std::vector<std::string> arguments = {"box.obj", "--size", "16x16", "--passes",
+                                                "1",       "-q",     "-o",    "x.png"};
+    ASSERT_EQ(run(arguments).exitCode, 0);
+    const std::string before = readText(path("x.png"));
+    const Outcome outcome = run(arguments, nullptr, {{"OCIO_ACTIVE_VIEWS", "raw"}});
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    EXPECT_EQ(readText(path("x.png")), before);
+}
+
 TEST_F(Outputs, resultsGoToStandardOutputOnly) {
     EXPECT_NE(run({"--list", "settings"}).out.find("bucketOrder"), std::string::npos);
     EXPECT_EQ(run({"--list", "orders"}).out, "hilbert\nrow\n");
