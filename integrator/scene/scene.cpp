@@ -274,26 +274,38 @@ std::array<double, 6> Scene::bounds() const {
 }
 
 bool Scene::isFlat() const {
-    const double tolerance = 1e-6 * m_radius;
-    Vec3d origin, normal;
-    bool havePlane = false;
-    for (const ShapeRecord& record : m_shapes) {
+    // The plane's normal is the sum over all triangles: what rounding does to inner vertices
+    // cancels.
+    Vec3d normal, origin;
+    const auto forEachTriangle = [&](const auto& visit) {
+        for (const ShapeRecord& record : m_shapes)
+            for (const auto& triangle : record.mesh->triangles)
+                if (!visit(Vec3d(record.positions[triangle[0]]),
+                           Vec3d(record.positions[triangle[1]]),
+                           Vec3d(record.positions[triangle[2]])))
+                    return false;
+        return true;
+    };
+    for (const ShapeRecord& record : m_shapes)
         if (!record.mesh) return false;
-        for (const auto& triangle : record.mesh->triangles) {
-            const Vec3d v0(record.positions[triangle[0]]), v1(record.positions[triangle[1]]),
-                v2(record.positions[triangle[2]]);
-            if (!havePlane) {
-                const Vec3d n = cross(v1 - v0, v2 - v0);
-                if (!(length(n) > 0)) continue;
-                origin = v0;
-                normal = normalize(n);
-                havePlane = true;
-            }
-            for (const Vec3d& v : {v0, v1, v2})
-                if (std::abs(dot(v - origin, normal)) > tolerance) return false;
+    forEachTriangle([&](const Vec3d& v0, const Vec3d& v1, const Vec3d& v2) {
+        const Vec3d n = cross(v1 - v0, v2 - v0);
+        normal += dot(n, normal) < 0 ? -n : n;
+        origin = v0;
+        return true;
+    });
+    if (!(length(normal) > 0)) return false;
+    normal = normalize(normal);
+    return forEachTriangle([&](const Vec3d& v0, const Vec3d& v1, const Vec3d& v2) {
+        const double size = maxAbsComponent(v1 - v0) + maxAbsComponent(v2 - v0);
+        for (const Vec3d& v : {v0, v1, v2}) {
+            // As much as rounding to float may lift this triangle's vertices, and not what it may
+            // lift the farthest: a huge ground must not swallow what stands on it.
+            const double tolerance = 32 * 0x1p-24 * (length(v) + size);
+            if (std::abs(dot(v - origin, normal)) > tolerance) return false;
         }
-    }
-    return true;
+        return true;
+    });
 }
 
 std::uint64_t Scene::memoryBytes() const {

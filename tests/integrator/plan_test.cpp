@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// What a scene has no need of is not planned.
+#include "integrator/transport/plan.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/integrator/scene_maker.h"
+
+namespace pm::test {
+namespace {
+
+Plan planOf(const SceneMaker& maker, RenderSettings settings = {}) {
+    return makePlan(*maker.build(), settings);
+}
+
+bool hasNotice(const Plan& plan, NoticeCode code) {
+    return std::ranges::any_of(plan.notices, [&](const Notice& n) { return n.code == code; });
+}
+
+// A grey floor under a lamp that faces it.
+SceneMaker litFloor() {
+    SceneMaker maker;
+    maker.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, maker.diffuse(Rgb(0.5f)));
+    maker.quad({-0.5, 1, -0.5}, {1, 0, 0}, {0, 0, 1}, maker.diffuse({}, Rgb(1.0f)));
+    return maker;
+}
+
+TEST(Plan, ADiffuseSceneHasNoCausticMap) {
+    const Plan plan = planOf(litFloor());
+    EXPECT_TRUE(plan.tracePhotons);
+    EXPECT_TRUE(plan.globalMap);
+    EXPECT_FALSE(plan.causticMap);
+    EXPECT_EQ(plan.causticPhotons, 0u);
+    EXPECT_TRUE(plan.notices.empty());
+}
+
+TEST(Plan, AMirrorWantsACausticMap) {
+    SceneMaker maker = litFloor();
+    MaterialDescription mirror;
+    mirror.kind = MaterialKind::kMirror;
+    mirror.glossy = Rgb(1.0f);
+    maker.sphere({0, 0.3, 0}, 0.2, maker.material(mirror));
+    EXPECT_TRUE(planOf(maker).causticMap);
+    RenderSettings settings;
+    settings.photons = 1234;
+    EXPECT_EQ(planOf(maker, settings).globalPhotons, 1234u);
+    EXPECT_EQ(planOf(maker, settings).causticPhotons, 1234u);
+    settings.integrator = IntegratorKind::kPath;
+    EXPECT_FALSE(planOf(maker, settings).tracePhotons);
+}
+
+TEST(Plan, NothingThatEmitsOrNothingDiffuseWantsNoPhotons) {
+    SceneMaker dark;
+    dark.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, dark.diffuse(Rgb(0.5f)));
+    EXPECT_FALSE(planOf(dark).tracePhotons);
+    SceneMaker black;
+    black.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, black.diffuse({}, Rgb(1.0f)));
+    EXPECT_FALSE(planOf(black).tracePhotons);
+}
+
+// Also where the plane is no coordinate plane; and a step on it, however huge the plane, is none.
+TEST(Plan, OneFlatSurfaceWantsNoFinalGather) {
+    for (const double size : {2.0, 1e4, 1e9}) {
+        SceneMaker maker;
+        const auto grey = maker.diffuse(Rgb(0.5f));
+        maker.quad({-size / 2, 0.1, size / 2}, {size, 0, 0}, {0, 0, -size}, grey);
+        maker.pointLight({0, 1, 0}, Rgb(1.0f));
+        EXPECT_FALSE(planOf(maker).tracePhotons) << size;
+        maker.box({-0.25, 0.1, -0.25}, {0.25, 0.6, 0.25}, grey, false);
+        EXPECT_TRUE(planOf(maker).globalMap) << size;
+    }
+    SceneMaker tilted;
+    const auto grey = tilted.diffuse(Rgb(0.5f));
+    tilted.quad({1, 2, 3}, {1, 0.5, 0.25}, {-0.3, 0.7, 0.1}, grey, 4);
+    tilted.pointLight({0, 9, 0}, Rgb(1.0f));
+    EXPECT_FALSE(planOf(tilted).tracePhotons);
+}
+
+TEST(Plan, PathsThatNoEstimatorCoversAreNamed) {
+    SceneMaker maker = litFloor();
+    maker.pointLight({0, 0.5, 0}, Rgb(1.0f));
+    EXPECT_FALSE(hasNotice(planOf(maker), NoticeCode::kNotCovered));
+    MaterialDescription glossy;
+    glossy.glossy = Rgb(0.5f);
+    glossy.glossyExponent = 50;
+    maker.quad({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, maker.material(glossy));
+    EXPECT_TRUE(hasNotice(planOf(maker), NoticeCode::kNotCovered));
+}
+
+}  // namespace
+}  // namespace pm::test
