@@ -24,6 +24,7 @@ void forgetForeignVariables() {
 int main(int argc, char** argv) {
     forgetForeignVariables();
     std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit then fails like on a full disk
     pm::host::installInterruptHandlers();
     return pm::host::runHost({argv + 1, argv + argc});
 }

@@ -80,11 +80,15 @@ int runOptions(const Options& options, Log& log) {
 
 int runHost(const std::vector<std::string>& arguments) {
     Log log({});
-    return guarded(log, [&] {
+    const int code = guarded(log, [&] {
         Options options = parseCommandLine(arguments);
         options.commandLine = arguments;
         return runOptions(options, log);
     });
+    // A result that did not get out is no result.
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+    log.message(Level::kError, "standard output can't be written");
+    return code != 0 ? code : static_cast<int>(ExitCode::kFile);
 }
 
 }  // namespace pm::host

@@ -54,11 +54,17 @@ void addSettings(const RenderRun& run, Picture& picture) {
     }
 }
 
-// Checksums by which a later run tells whether it may go on with this render.
-void addHashes(const RenderRun& run, Picture& picture) {
+// What was really done, and checksums by which a later run tells whether it may go on with it.
+void addStatistics(const RenderRun& run, Picture& picture) {
     const auto json = nlohmann::json::parse(run.statistics(), nullptr, false);
-    if (!json.is_object() || !json.contains("hashes")) return;
-    for (const auto& [name, value] : json["hashes"].items())
+    if (!json.is_object()) return;
+    if (const auto isa = json.find("isa"); isa != json.end() && isa->is_string())
+        picture.attributes["pm:isa"] = isa->get<std::string>();
+    if (const auto done = json.find("passesDone"); done != json.end() && done->is_number_integer())
+        picture.attributes["pm:passesDone"] = done->dump();
+    const auto hashes = json.find("hashes");
+    if (hashes == json.end()) return;
+    for (const auto& [name, value] : hashes->items())
         if (value.is_string())
             picture.attributes[fmt::format("pm:{}Hash", name)] = value.get<std::string>();
 }
@@ -70,7 +76,7 @@ Picture assemblePicture(const RenderRun& run, const Options& options, const Colo
     Picture picture;
     picture.width = options.width;
     picture.height = options.height;
-    picture.dataWindow = options.crop.value_or(PixelRect{0, 0, options.width, options.height});
+    picture.dataWindow = dataWindowOf(options);
     uint32_t count = 0;
     run.context().check(run.api().renderLayerCount(run.handle(), &count), "layers");
     for (uint32_t i = 0; i < count; ++i) {
@@ -86,12 +92,21 @@ Picture assemblePicture(const RenderRun& run, const Options& options, const Colo
         picture.attributes["colorInteropID"] = colour.colorInteropId();
     }
     addSettings(run, picture);
-    addHashes(run, picture);
+    addStatistics(run, picture);
     picture.attributes["pm:complete"] = std::int32_t{complete ? 1 : 0};
     picture.attributes["pm:version"] = std::string(run.api().versionText());
     picture.attributes["pm:renderingSpace"] = colour.renderingSpace();
     picture.attributes["pm:ocioCacheId"] = colour.cacheId();
     return picture;
+}
+
+PixelRect dataWindowOf(const Options& options) {
+    return options.crop.value_or(PixelRect{0, 0, options.width, options.height});
+}
+
+const std::string* renderingSpaceOf(const Picture& picture) {
+    const auto found = picture.attributes.find("pm:renderingSpace");
+    return found == picture.attributes.end() ? nullptr : std::get_if<std::string>(&found->second);
 }
 
 bool isBlackThoughHit(const Picture& picture) {

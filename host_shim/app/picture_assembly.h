@@ -13,6 +13,12 @@ namespace pm::host {
 Picture assemblePicture(const RenderRun& run, const Options& options, const ColourPipeline& colour,
                         bool complete);
 
+// The window that a render with these options fills.
+PixelRect dataWindowOf(const Options& options);
+
+// The space that an EXR of ours names; null where none is named.
+const std::string* renderingSpaceOf(const Picture& picture);
+
 // Whether something is covered (A above 0) and, but for one pixel in a hundred, exactly black.
 bool isBlackThoughHit(const Picture& picture);
 

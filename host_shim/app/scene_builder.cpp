@@ -143,8 +143,8 @@ void PluginScene::addMesh(const MeshData& mesh, const SceneData& data, const std
     }
 }
 
-// Irradiance 1 on what faces the camera at the middle of the scene: a white wall there reflects a
-// radiance of 1/pi, and light from wall to wall still fits below 1.
+// Irradiance 2 on what faces the camera at the middle of the scene: a white wall there reflects a
+// radiance of 2/pi, and light from wall to wall adds to that.
 void PluginScene::addDefaultLight(const CameraPose& camera, const Bounds& bounds) {
     double squaredDistance = 0;
     const auto centre = bounds.centre();
@@ -156,7 +156,7 @@ void PluginScene::addDefaultLight(const CameraPose& camera, const Bounds& bounds
     light.kind = PMR_LIGHT_POINT;
     light.transforms = transform.data();
     light.transformCount = 1;
-    const double intensity = squaredDistance > 0 ? squaredDistance : 1.0;  // W/sr
+    const double intensity = 2 * (squaredDistance > 0 ? squaredDistance : 1.0);  // W/sr
     std::ranges::fill(light.emission, static_cast<float>(intensity));
     light.name = "default light";
     m_context.check(m_context.api().addLight(m_handle, &light), "default light");

@@ -103,6 +103,7 @@ int Session::render() {
     m_statistics.colourConfig = colour.configName();
     m_statistics.renderingSpace = colour.renderingSpace();
     for (const std::string& text : colour.warnings()) warn(Warning::kOutput, text);
+    if (!m_options.reference.empty()) readReference(colour);
     const Plugin plugin(m_options.plugin);
     m_statistics.pluginFile = plugin.file().string();
     m_statistics.pluginVersion = plugin.api().versionText();
@@ -112,6 +113,10 @@ int Session::render() {
     desc.isa = m_options.isa.empty() ? nullptr : m_options.isa.c_str();
     desc.threads = m_options.threads;
     const PluginContext context(plugin, desc);
+    m_log.message(Level::kDebug,
+                  fmt::format("{}: {}; colour config {}, rendering space {}",
+                              m_statistics.pluginFile, m_statistics.pluginVersion,
+                              m_statistics.colourConfig, m_statistics.renderingSpace));
     return renderScene(colour, context);
 }
 
@@ -127,13 +132,20 @@ void Session::checkBeforeReading() {
                         fmt::format("{}: '{}' is no scene format that can be read; allowed is .obj",
                                     scene.string(), scene.extension().string()));
     }
+    const bool toExr = std::ranges::any_of(m_options.outputs, [](const fs::path& file) {
+        return !isDisplayReferred(pictureFormat(file));
+    });
+    if (!m_options.layers.empty() && !toExr && !m_options.onlyPixel && !m_options.explain) {
+        throw HostError(ExitCode::kUsage,
+                        fmt::format("--aov {}: layers go into an .exr, and no output is one",
+                                    m_options.layers));
+    }
     checkOutputs(m_options.explain ? std::vector<fs::path>{} : m_options.outputs,
                  textOutputs(m_options), m_options.makeOutputPath);
     if (!m_options.log.empty()) m_log.openFile(m_options.log);
-    if (!m_options.reference.empty()) readReference();
 }
 
-void Session::readReference() {
+void Session::readReference(const ColourPipeline& colour) {
     m_reference = readExr(m_options.reference);
     for (const char* channel : {"R", "G", "B"}) {
         if (m_reference->find(channel) == nullptr) {
@@ -143,11 +155,18 @@ void Session::readReference() {
                             m_options.reference.string(), channel));
         }
     }
-    if (m_reference->width != m_options.width || m_reference->height != m_options.height) {
+    try {
+        checkWindows(*m_reference, m_options.width, m_options.height, dataWindowOf(m_options));
+    } catch (const HostError& fault) {
         throw HostError(ExitCode::kBadInput,
-                        fmt::format("{}: the reference is {}x{}, the picture {}x{} (--size)",
-                                    m_options.reference.string(), m_reference->width,
-                                    m_reference->height, m_options.width, m_options.height));
+                        fmt::format("{}: {}", m_options.reference.string(), fault.what()));
+    }
+    if (const std::string* space = renderingSpaceOf(*m_reference);
+        space != nullptr && *space != colour.renderingSpace()) {
+        throw HostError(ExitCode::kBadInput,
+                        fmt::format("{}: the reference is in rendering space '{}', the picture in "
+                                    "'{}'; they must be the same (--rendering-space)",
+                                    m_options.reference.string(), *space, colour.renderingSpace()));
     }
 }
 
@@ -174,6 +193,13 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
         if (camera.upWasReplaced) {
             warn(Warning::kCamera, "--up is parallel to the view; another direction is taken");
         }
+        m_log.message(
+            Level::kDebug,
+            fmt::format("{} meshes, {} faces, {} materials from {} libraries; eye {:g}, "
+                        "{:g}, {:g}, looking at {:g}, {:g}, {:g}",
+                        data.meshes.size(), data.faceCount, data.materials.size(),
+                        data.materialFiles.size(), camera.eye[0], camera.eye[1], camera.eye[2],
+                        camera.lookAt[0], camera.lookAt[1], camera.lookAt[2]));
         phase("buildSceneSeconds", [&] {
             scene.build(data, m_options.scene.string(), m_options.subdivide, camera, colour,
                         materials, sink);
@@ -207,8 +233,7 @@ int Session::finish(RenderRun& run, PmrStatus status, const ColourPipeline& colo
     if (isBlackThoughHit(picture))
         warn(Warning::kBlackPicture,
              "the picture is black though it shows surfaces: no light reaches their seen side; a "
-             "room "
-             "that is closed all round is seen from inside with --eye and --look-at only");
+             "room that is closed all round is seen from inside with --eye and --look-at only");
     if (m_options.onlyPixel) printPixel(picture);
     return m_reference ? compareWithReference(picture) : 0;
 }
@@ -222,12 +247,21 @@ void Session::writeOutputs(const Picture& picture, bool complete,
                        "included)",
                        *estimate)
                  : "";
+    // One that fails must not take the others with it.
+    std::optional<HostError> failure;
     for (const fs::path& output : m_options.outputs) {
         const fs::path file = complete ? output : partialName(output);
-        writeOutput(file, picture, display);
+        try {
+            writeOutput(file, picture, display);
+        } catch (const HostError& fault) {
+            if (failure) m_log.message(Level::kError, failure->what());
+            failure = fault;
+            continue;
+        }
         m_statistics.outputs.push_back(file.string());
         m_log.info(fmt::format("wrote {}{}", file.string(), error));
     }
+    if (failure) throw *failure;
 }
 
 void Session::writeOutput(const fs::path& file, const Picture& picture,

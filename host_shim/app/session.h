@@ -26,7 +26,7 @@ class Session {
   private:
     int render();
     void checkBeforeReading();
-    void readReference();
+    void readReference(const ColourPipeline& colour);
     int renderScene(const ColourPipeline& colour, const PluginContext& context);
     int finish(RenderRun& run, PmrStatus status, const ColourPipeline& colour,
                const std::optional<DisplayTransform>& display);

@@ -206,7 +206,7 @@ void readSettings(const Typed& typed, std::optional<std::int64_t> frame, Options
             {setting.option, setting.setting, settingValue(setting.option, text, frame)});
         if (std::string_view(setting.setting) == "threads") {
             options.threads =
-                static_cast<std::uint32_t>(integerValue(setting.option, text, 0, 65536));
+                static_cast<std::uint32_t>(integerValue(setting.option, text, 0, 1024));
         }
     }
 }

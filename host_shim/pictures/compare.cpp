@@ -25,24 +25,6 @@ Beauty beautyOf(const Picture& picture, const char* which) {
     return beauty;
 }
 
-void checkWindows(const Picture& reference, const Picture& picture) {
-    if (reference.width != picture.width || reference.height != picture.height) {
-        throw HostError(
-            ExitCode::kBadInput,
-            fmt::format("the reference has {} x {} pixels, the picture {} x {}; they "
-                        "must be the same",
-                        reference.width, reference.height, picture.width, picture.height));
-    }
-    const PixelRect& r = reference.dataWindow;
-    const PixelRect& p = picture.dataWindow;
-    if (p.empty() || p.x0 < r.x0 || p.y0 < r.y0 || p.x1 > r.x1 || p.y1 > r.y1) {
-        throw HostError(ExitCode::kBadInput,
-                        fmt::format("the picture's data window {},{},{},{} must lie inside the "
-                                    "reference's {},{},{},{}",
-                                    p.x0, p.y0, p.x1, p.y1, r.x0, r.y0, r.x1, r.y1));
-    }
-}
-
 // Calls use(reference value, picture value) for every value of the picture's data window.
 template <typename Use>
 void forEachPair(const Picture& reference, const Picture& picture, const Use& use) {
@@ -65,8 +47,26 @@ void forEachPair(const Picture& reference, const Picture& picture, const Use& us
 
 }  // namespace
 
+void checkWindows(const Picture& reference, std::int32_t width, std::int32_t height,
+                  const PixelRect& dataWindow) {
+    if (reference.width != width || reference.height != height) {
+        throw HostError(ExitCode::kBadInput,
+                        fmt::format("the reference is {}x{}, the picture {}x{}; they "
+                                    "must be the same (--size)",
+                                    reference.width, reference.height, width, height));
+    }
+    const PixelRect& r = reference.dataWindow;
+    const PixelRect& p = dataWindow;
+    if (p.empty() || p.x0 < r.x0 || p.y0 < r.y0 || p.x1 > r.x1 || p.y1 > r.y1) {
+        throw HostError(ExitCode::kBadInput,
+                        fmt::format("the picture's data window {},{},{},{} must lie inside the "
+                                    "reference's {},{},{},{} (--crop)",
+                                    p.x0, p.y0, p.x1, p.y1, r.x0, r.y0, r.x1, r.y1));
+    }
+}
+
 ErrorReport compareRelMse(const Picture& reference, const Picture& picture) {
-    checkWindows(reference, picture);
+    checkWindows(reference, picture.width, picture.height, picture.dataWindow);
     ErrorReport report;
     forEachPair(reference, picture, [&](float r, float x) {
         report.badInReference += std::isfinite(r) ? 0 : 1;

@@ -18,6 +18,11 @@ struct ErrorReport {
     std::optional<double> relMse;
 };
 
+// Throws HostError(kBadInput), naming both, unless the reference's display window is width x height
+// and its data window holds `dataWindow`.
+void checkWindows(const Picture& reference, std::int32_t width, std::int32_t height,
+                  const PixelRect& dataWindow);
+
 // relMSE = mean over the pixels of the picture's data window and the channels R, G, B of
 // (x - r)^2 / (r^2 + 0.01), r the reference, in scene-linear values. A picture of a crop is held
 // against the same pixels of the whole.

@@ -15,20 +15,22 @@ namespace {
 
 // The rays start this far above the site, in radii: low enough to see little else than the disc.
 constexpr float kApexHeight = 0.3f;
-// A ray has found the surface when it meets it within this of the disc's point, in radii: room for
-// surfaces that curve away.
-constexpr float kMissDistance = 0.4f;
+// A ray goes on this far beyond the disc's point, relative to the way there: room for surfaces that
+// curve away.
+constexpr float kRayReach = 1.5f;
+// The spiral's rays: the first kDiscRays go to equal parts of the disc, the others beyond its rim.
+constexpr std::uint32_t kAreaRays = 40, kDiscRays = 28;
+// Grazing rays see much surface each; more than this is cut, so that one ray can't decide the area.
+constexpr float kLargestAreaRatio = 4.0f;
+constexpr float kFlatTolerance = 0.02f;
 // Rays to the rim; where all of them find the surface, the disc is taken as whole.
 constexpr std::uint32_t kRimRays = 8;
-constexpr std::uint32_t kAreaRays = 32;
 // The share of the disc in the sharpest corner that is still told apart; a square one has 1/4.
 constexpr float kSmallestShare = 0.1f;
 // A site farther away than this, in radii, says too little about a point. Where light is, about
 // twelve sites share a disc of one radius; where it is not, bright values from across a shadow's
 // edge must not be taken for the dark one's.
 constexpr float kSiteReach = 0.6f;
-// Cosine of how far the surface may turn away within the disc; as the map's photons.
-constexpr float kNormalCosine = 0.9f;
 
 }  // namespace
 
@@ -40,15 +42,28 @@ IrradianceSites::IrradianceSites(const Scene& scene, const PhotonMap& map,
       m_kept(std::make_unique<Kept[]>(m_sites.size())),
       m_radius(radius) {}
 
-bool IrradianceSites::onSurface(const Vec3f& position, const Vec3f& normal,
+// Area of surface that a unit of the disc's plane at `inPlane` stands for, seen from the apex: 0
+// where there is none whose photons the map would count, 1 where the surface is the plane.
+float IrradianceSites::areaSeen(const Vec3f& position, const Vec3f& normal,
                                 const Vec3f& inPlane) const {
     const Vec3f apex = position + normal * (kApexHeight * m_radius);
-    const Vec3f target = position + inPlane;
+    const Vec3f ray = position + inPlane - apex;
     Surface surface;
-    if (!m_scene.intersect({apex, target - apex, 1.0f + kMissDistance}, surface)) return false;
-    return std::abs(dot(surface.geometricNormal, normal)) >= kNormalCosine &&
-           lengthSquared(surface.position - target) <=
-               kMissDistance * kMissDistance * m_radius * m_radius;
+    if (!m_scene.intersect({apex, ray, kRayReach}, surface)) return 0.0f;
+    const MaterialDescription& material = m_scene.material(surface.material);
+    if (material.kind != MaterialKind::kSurface || isBlack(material.diffuse)) return 0.0f;
+    const Vec3f facing = dot(surface.geometricNormal, ray) < 0.0f ? surface.geometricNormal
+                                                                  : -surface.geometricNormal;
+    const Vec3f fromSite = surface.position - position;
+    if (!m_map.accepts(fromSite, facing, normal) || lengthSquared(fromSite) > m_radius * m_radius)
+        return 0.0f;
+    // Solid angle is kept: dA cos / d^2 is the same on the plane and on the surface.
+    const float onPlane = -dot(ray, normal) / lengthSquared(ray);
+    const Vec3f seen = surface.position - apex;
+    const float onSurface = -dot(seen, facing) / lengthSquared(seen);
+    const float ratio =
+        onPlane * std::sqrt(lengthSquared(seen)) / (onSurface * std::sqrt(lengthSquared(ray)));
+    return std::min(ratio, kLargestAreaRatio);
 }
 
 float IrradianceSites::surfaceShare(const Vec3f& position, const Vec3f& normal,
@@ -57,21 +72,24 @@ float IrradianceSites::surfaceShare(const Vec3f& position, const Vec3f& normal,
     const float turn = toUnitFloat(static_cast<std::uint32_t>(mixBits(pattern)));
     const auto probe = [&](float turns, float radius) {
         const SinCos phi = sinCosTurns(turns - std::floor(turns));
-        return onSurface(
+        return areaSeen(
             position, normal,
             (frame.tangent * phi.cos + frame.bitangent * phi.sin) * (radius * m_radius));
     };
-    std::uint32_t found = 0;
-    for (std::uint32_t i = 0; i < kRimRays; ++i)
-        found += probe(turn + static_cast<float>(i) / kRimRays, 0.95f);
-    if (found == kRimRays) return 1.0f;
-    // Equal areas on a golden spiral (Vogel 1979).
+    std::uint32_t flat = 0;
+    for (std::uint32_t i = 0; i < kRimRays; ++i) {
+        const float area = probe(turn + static_cast<float>(i) / kRimRays, 0.95f);
+        flat += std::abs(area - 1.0f) < kFlatTolerance;
+    }
+    if (flat == kRimRays) return 1.0f;
+    // Equal areas on a golden spiral (Vogel 1979), wider than the disc: where the surface bends
+    // towards the apex its part within the radius is seen beyond the disc's rim.
     constexpr float kGoldenTurn = 0.381966011f;
-    found = 0;
+    float sum = 0.0f;
     for (std::uint32_t i = 0; i < kAreaRays; ++i)
-        found += probe(turn + kGoldenTurn * static_cast<float>(i),
-                       std::sqrt((static_cast<float>(i) + 0.5f) / kAreaRays));
-    return std::max(kSmallestShare, static_cast<float>(found) / kAreaRays);
+        sum += probe(turn + kGoldenTurn * static_cast<float>(i),
+                     std::sqrt((static_cast<float>(i) + 0.5f) / kDiscRays));
+    return std::max(kSmallestShare, sum / kDiscRays);
 }
 
 Rgb IrradianceSites::estimate(const Vec3f& position, const Vec3f& normal,

@@ -107,6 +107,13 @@ class PhotonMap {
     Rgb fluxWithin(const Vec3f& position, const Vec3f& normal, float radius,
                    const Accept& accept) const;
 
+    // Whether a photon at `fromPoint` from a point with `normal`, on a surface with
+    // `surfaceNormal`, would be counted there; distance aside.
+    bool accepts(const Vec3f& fromPoint, const Vec3f& surfaceNormal, const Vec3f& normal) const {
+        return dot(surfaceNormal, normal) >= kNormalCosine &&
+               isNearPlane(fromPoint, lengthSquared(fromPoint), normal);
+    }
+
     // The radius within which half of the photons find count others; of fewer photons, the size of
     // what they cover. Scene units, > 0.
     float typicalRadius(std::uint32_t count) const;
@@ -126,7 +133,9 @@ class PhotonMap {
     void buildNode(std::vector<Entry>& entries, std::size_t node, std::size_t begin,
                    std::size_t end, std::uint32_t level);
     bool matches(const Photon& photon, const Vec3f& d, float d2, const Vec3f& normal) const {
-        if (photon.normal.dotWith(normal) < kNormalCosine) return false;
+        return photon.normal.dotWith(normal) >= kNormalCosine && isNearPlane(d, d2, normal);
+    }
+    bool isNearPlane(const Vec3f& d, float d2, const Vec3f& normal) const {
         const float height = dot(d, normal);
         return height * height <= kFlatness * kFlatness * d2 + m_planeTolerance * m_planeTolerance;
     }

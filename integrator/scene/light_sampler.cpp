@@ -161,14 +161,27 @@ float LightSampler::pdfSolidAngle(const Surface& from, const Vec3f& direction,
     return probability * lengthSquared(onLight.position - from.position) / (light.area * cosine);
 }
 
+// From outside the scene only the cone that holds all of it is worth a photon; the rest of the
+// light's flux would escape.
+bool LightSampler::emitFromPoint(const Light& light, float probability, Vec2f u,
+                                 EmittedPhoton& photon) const {
+    const double r2 = m_scene.radius() * m_scene.radius() * 1.0001;
+    const double d2 = lengthSquared(light.position);
+    const bool outside = d2 > r2;
+    const float oneMinusCos = outside ? oneMinusCosThetaMax(r2, d2) : 2.0f;
+    const Frame frame(outside ? Vec3f(-light.position / std::sqrt(d2)) : Vec3f{0.0f, 0.0f, 1.0f});
+    photon.ray = {Vec3f(light.position),
+                  normalize(frame.toWorld(sampleUniformCone(u, oneMinusCos)))};
+    photon.flux = light.intensity * (2.0f * kPi * oneMinusCos / probability);
+    return true;
+}
+
 bool LightSampler::emit(float uLight, Vec2f uPoint, Vec2f uDirection, EmittedPhoton& photon) const {
     if (empty()) return false;
     float probability;
     const Light& light = m_scene.lights()[choose(uLight, probability)];
     if (light.kind == Light::Kind::kPoint) {
-        photon.ray = {Vec3f(light.position), sampleUniformSphere(uDirection)};
-        photon.flux = light.intensity * (4.0f * kPi / probability);
-        return true;
+        return emitFromPoint(light, probability, uDirection, photon);
     }
     const Surface point = m_scene.pointOnLight(light, uPoint);
     const Frame frame(point.geometricNormal);

@@ -45,8 +45,9 @@ class LightSampler {
     // along the unit direction `direction`; sr^-1.
     float pdfSolidAngle(const Surface& from, const Vec3f& direction, const Surface& onLight) const;
 
-    // A photon: light by power, point uniform over its area, direction by the cosine. False when it
-    // carries nothing.
+    // A photon: light by power, point uniform over its area, direction by the cosine; of a point
+    // light outside the scene, towards the sphere around it, and with the flux of that cone. False
+    // when it carries nothing.
     bool emit(float uLight, Vec2f uPoint, Vec2f uDirection, EmittedPhoton& photon) const;
 
     // Radiance that leaves a point of the scene along the unit direction: emission of its front.
@@ -63,6 +64,8 @@ class LightSampler {
                       LightSample& sample) const;
     bool samplePoint(const Surface& surface, const Light& light, float probability,
                      LightSample& sample) const;
+
+    bool emitFromPoint(const Light& light, float probability, Vec2f u, EmittedPhoton& photon) const;
 
     const Scene& m_scene;
     std::vector<float> m_cumulative;  // of the probabilities, last is 1

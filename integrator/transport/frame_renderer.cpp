@@ -70,9 +70,7 @@ struct FrameRenderer::Impl {
           plan(makePlan(*scene, settings_)),
           camera(*scene, settings_.width, settings_.height),
           lights(*scene),
-          photons(*scene, lights, plan, settings) {
-        notices = plan.notices;
-    }
+          photons(*scene, lights, plan, settings) {}
 
     SampleRadiance sample(std::int32_t x, std::int32_t y, std::uint32_t index,
                           NearestPhotons& scratch) const;

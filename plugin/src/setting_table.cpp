@@ -37,7 +37,8 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
      true, "photon: photon maps with final gathering; path: the unbiased path tracer, a reference.",
      "path needs no memory for maps, but many more samples where light is indirect or focused."},
     {Setting::kPhotons, "photons", PMR_SETTING_INTEGER, "photons", "0", 0, 4000000000, 1, "", true,
-     "Photons emitted in each pass; 0 = as many as the scene and the frame call for.",
+     "Photons emitted in each pass for each map that the scene needs; 0 = chosen by the plan (see "
+     "--explain).",
      "About 1 us of one thread and up to 64 bytes a photon."},
     {Setting::kEstimatePhotons, "estimatePhotons", PMR_SETTING_INTEGER, "photons", "50", 2, 100000,
      1, "", true, "Photons in each density estimate: fewer are noisier, more are more blurred.",

@@ -103,6 +103,30 @@ TEST_F(BadInput, references) {
     EXPECT_EQ(other.exitCode, 3);
     EXPECT_NE(other.err.find("16x16"), std::string::npos) << other.err;
     EXPECT_NE(other.err.find("8x8"), std::string::npos) << other.err;
+    // Found before the first ray, not after the last.
+    ASSERT_EQ(render({"-o", "part.exr", "--crop", "4,4,8,8"}).exitCode, 0);
+    const Outcome part = render({"-o", "late.exr", "--reference", "part.exr"});
+    EXPECT_EQ(part.exitCode, 3) << part.err;
+    EXPECT_FALSE(fs::exists(path("late.exr")));
+    ASSERT_EQ(render({"-o", "wide.exr", "--rendering-space", "ACEScg"}).exitCode, 0);
+    const Outcome space = render({"-o", "late.exr", "--reference", "wide.exr"});
+    EXPECT_EQ(space.exitCode, 3) << space.err;
+    EXPECT_NE(space.err.find("ACEScg"), std::string::npos) << space.err;
+}
+
+TEST_F(BadInput, resultsThatDoNotGetOut) {
+    const Outcome outcome = run({"--list", "aovs"}, [](pid_t) {});
+    EXPECT_EQ(outcome.exitCode, 0);
+    EXPECT_EQ(std::system((std::string(PM_HOST) + " --list aovs >/dev/full 2>/dev/null").c_str()),
+              4 << 8);
+}
+
+TEST_F(BadInput, layersWantAnExr) {
+    expectRefusal(run({"box.obj", "--aov", "N", "-o", "x.png"}), 2, {"--aov N", ".exr"});
+}
+
+TEST_F(BadInput, aRangeIsToldByTheHost) {
+    expectRefusal(run({"box.obj", "--threads", "3000"}), 2, {"--threads '3000'", "[0, 1024]"});
 }
 
 TEST_F(BadInput, statisticsAreWrittenOnFailureToo) {
