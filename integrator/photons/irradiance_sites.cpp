@@ -14,12 +14,14 @@ namespace pm {
 namespace {
 
 // The rays start this far above the site, in radii: low enough to see little else than the disc.
-constexpr float kApexHeight = 0.3f;
+constexpr float kApexHeight = 0.6f;
+// What starts or ends on a surface is lifted off it by this share of the length it has to go.
+constexpr float kLift = 0.01f;
 // A ray goes on this far beyond the disc's point, relative to the way there: room for surfaces that
 // curve away.
 constexpr float kRayReach = 1.5f;
 // The spiral's rays: the first kDiscRays go to equal parts of the disc, the others beyond its rim.
-constexpr std::uint32_t kAreaRays = 40, kDiscRays = 28;
+constexpr std::uint32_t kAreaRays = 48, kDiscRays = 24;
 // Grazing rays see much surface each; more than this is cut, so that one ray can't decide the area.
 constexpr float kLargestAreaRatio = 4.0f;
 constexpr float kFlatTolerance = 0.02f;
@@ -44,9 +46,9 @@ IrradianceSites::IrradianceSites(const Scene& scene, const PhotonMap& map,
 
 // Area of surface that a unit of the disc's plane at `inPlane` stands for, seen from the apex: 0
 // where there is none whose photons the map would count, 1 where the surface is the plane.
-float IrradianceSites::areaSeen(const Vec3f& position, const Vec3f& normal,
+float IrradianceSites::areaSeen(const Vec3f& position, const Vec3f& normal, float apexHeight,
                                 const Vec3f& inPlane) const {
-    const Vec3f apex = position + normal * (kApexHeight * m_radius);
+    const Vec3f apex = position + normal * apexHeight;
     const Vec3f ray = position + inPlane - apex;
     Surface surface;
     if (!m_scene.intersect({apex, ray, kRayReach}, surface)) return 0.0f;
@@ -66,14 +68,14 @@ float IrradianceSites::areaSeen(const Vec3f& position, const Vec3f& normal,
     return std::min(ratio, kLargestAreaRatio);
 }
 
-float IrradianceSites::surfaceShare(const Vec3f& position, const Vec3f& normal,
+float IrradianceSites::surfaceShare(const Vec3f& position, const Vec3f& normal, float apexHeight,
                                     std::uint32_t pattern) const {
     const Frame frame(normal);
     const float turn = toUnitFloat(static_cast<std::uint32_t>(mixBits(pattern)));
     const auto probe = [&](float turns, float radius) {
         const SinCos phi = sinCosTurns(turns - std::floor(turns));
         return areaSeen(
-            position, normal,
+            position, normal, apexHeight,
             (frame.tangent * phi.cos + frame.bitangent * phi.sin) * (radius * m_radius));
     };
     std::uint32_t flat = 0;
@@ -92,15 +94,26 @@ float IrradianceSites::surfaceShare(const Vec3f& position, const Vec3f& normal,
     return std::max(kSmallestShare, sum / kDiscRays);
 }
 
+// Above the site, half as high as whatever stands there: under a ball on the floor the apex must
+// not be inside the ball.
+float IrradianceSites::apexHeight(const Vec3f& position, const Vec3f& normal) const {
+    const float height = kApexHeight * m_radius;
+    const Vec3f start = position + normal * (kLift * m_radius);
+    Surface above;
+    if (!m_scene.intersect({start, normal, 2.0f * height}, above)) return height;
+    return std::min(height, 0.5f * dot(above.position - position, normal));
+}
+
 Rgb IrradianceSites::estimate(const Vec3f& position, const Vec3f& normal,
                               std::uint32_t pattern) const {
     const float discArea = kPi * m_radius * m_radius;
-    const float share = surfaceShare(position, normal, pattern);
+    const float height = apexHeight(position, normal);
+    const float share = surfaceShare(position, normal, height, pattern);
     if (share == 1.0f) return m_map.fluxWithin(position, normal, m_radius) / discArea;
-    const Vec3f apex = position + normal * (kApexHeight * m_radius);
+    const Vec3f apex = position + normal * height;
     const Rgb flux = m_map.fluxWithin(position, normal, m_radius, [&](const Photon& photon) {
         // Ends a little above the photon, whose own surface must not hide it.
-        const Vec3f above = photon.position + photon.normal.unpack() * (0.01f * m_radius);
+        const Vec3f above = photon.position + photon.normal.unpack() * (kLift * height);
         return !m_scene.occluded({apex, above - apex, 1.0f});
     });
     return flux / (discArea * share);

@@ -42,8 +42,11 @@ class IrradianceSites {
         std::atomic<float> r{0}, g{0}, b{0};
         std::atomic<std::uint32_t> ready{0};
     };
-    float areaSeen(const Vec3f& position, const Vec3f& normal, const Vec3f& inPlane) const;
-    float surfaceShare(const Vec3f& position, const Vec3f& normal, std::uint32_t pattern) const;
+    float apexHeight(const Vec3f& position, const Vec3f& normal) const;
+    float areaSeen(const Vec3f& position, const Vec3f& normal, float apexHeight,
+                   const Vec3f& inPlane) const;
+    float surfaceShare(const Vec3f& position, const Vec3f& normal, float apexHeight,
+                       std::uint32_t pattern) const;
 
     const Scene& m_scene;
     const PhotonMap& m_map;

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 
 #include "tests/integrator/scene_maker.h"
@@ -55,6 +56,23 @@ TEST_P(ClosedForm, IntegratingSphere) {
     EXPECT_TRUE(agrees(m.direct, radiance(1.0), 0));
     EXPECT_TRUE(agrees(m.indirect, radiance(1.0), photon() ? 0.003 : 0));
     EXPECT_TRUE(agrees(m.beauty, radiance(2.0), photon() ? 0.002 : 0));
+}
+
+// The same with so few photons that an estimate's disc is a third of the radius wide: a bent
+// surface must not count as an edge.
+TEST(BentSurfaces, FewPhotonsKeepTheMean) {
+    SceneMaker maker;
+    maker.meshSphere({0, 0, 0}, 1.0, maker.diffuse(Rgb(0.5f)), true, 64);
+    maker.pointLight({0, 0, 0}, Rgb(1.0f));
+    maker.camera({0.1, 0, 0}, {1, 0, 0.5}, {0, 1, 0}, 90);
+    RenderSettings settings = smallFrame(24, 24, IntegratorKind::kPhoton, 16, 3);
+    for (const std::uint64_t photons : {2'000u, 8'000u}) {
+        settings.photons = photons;
+        const MeasuredLayers m = measure(maker.build(), settings);
+        EXPECT_TRUE(agrees(m.indirect, Rgb(0.5f / std::numbers::pi_v<float>), 0.02)) << photons;
+        std::printf("    %d photons: indirect %.4f of expected\n", static_cast<int>(photons),
+                    m.indirect.mean[0] / (0.5 / std::numbers::pi));
+    }
 }
 
 // A unit square light over a plane: E = 0.75227469 L under its centre (Lambert 1760; analytic B1).
