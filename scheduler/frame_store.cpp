@@ -114,7 +114,8 @@ void FrameStore::addPixel(std::size_t pixel, const float* values, double weight)
         const double newMean = (sum + weight * value) / newWeight;
         const double share = weight * (value - oldMean) * (value - newMean);
         deviations[i] += share;
-        m_relativeDeviations[pixel] += share / (oldMean * oldMean + kRelMseOffset);
+        m_relativeDeviations[pixel] +=
+            m_passes[pixel] * share / (oldMean * oldMean + kRelMseOffset);
     }
     for (std::int32_t c = 0; c < m_channels; ++c) {
         sums[c] += weight * static_cast<double>(values[c]);

@@ -87,6 +87,7 @@ class FrameStore {
     // order; nothing where there is no such pixel. The variance is that of the standard error; m,
     // which stands for the reference, is for each pass's share of it the mean of the passes before:
     // divided by a mean that contains it, a pass that came out far too bright would excuse itself.
+    // A share counts as often as there were passes before, since the mean of few of them is noisy.
     // It knows noise only, not bias.
     std::optional<double> estimatedRelMse() const;
 
@@ -110,7 +111,7 @@ class FrameStore {
     std::vector<double> m_sums;                // sum w_k x_k, for each pixel and channel
     std::vector<double> m_weights;             // W, for each pixel
     std::vector<double> m_deviations;          // M2, for each pixel and beauty channel
-    std::vector<double> m_relativeDeviations;  // shares of M2 over (mean before)^2 + 0.01
+    std::vector<double> m_relativeDeviations;  // n times share of M2 over (mean before)^2 + 0.01
     std::vector<std::uint32_t> m_passes;       // n, for each pixel
 
     // One for each row of atoms on the frame's grid: buckets of one row of buckets share a few,

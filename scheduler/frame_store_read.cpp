@@ -143,8 +143,9 @@ std::optional<double> FrameStore::estimatedRelMse() const {
         for (std::int32_t x = m_window.x0; x < m_window.x1; ++x) {
             const std::size_t pixel = pixelIndex(x, y);
             if (m_passes[pixel] < 2) continue;
-            sum.add(m_relativeDeviations[pixel] /
-                    (static_cast<double>(m_passes[pixel] - 1) * m_weights[pixel]));
+            // Of n passes the shares count 1 + 2 + ... + (n - 1) times.
+            const double n = m_passes[pixel];
+            sum.add(m_relativeDeviations[pixel] / (0.5 * n * (n - 1) * m_weights[pixel]));
             ++pixels;
         }
     }
