@@ -56,10 +56,14 @@ template <typename Call>
 std::string pluginText(const Call& call) {
     uint64_t needed = 0;
     call(nullptr, uint64_t{0}, &needed);
-    std::string text(needed, '\0');
-    if (needed == 0 || call(text.data(), needed, &needed) != PMR_OK) return {};
-    text.resize(needed - 1);
-    return text;
+    // It may grow between two calls; then it is asked for again.
+    for (std::string text; needed > text.size();) {
+        text.assign(needed, '\0');
+        if (call(text.data(), uint64_t{text.size()}, &needed) != PMR_OK) continue;
+        text.resize(needed - 1);
+        return text;
+    }
+    return {};
 }
 
 }  // namespace pm::host

@@ -390,7 +390,8 @@ typedef struct PmrRenderDesc {
 
 /* Functions are only ever appended. Texts that functions write to a buffer: `needed`, when not
  * null, receives the bytes wanted, the closing 0 included; a buffer that is too small gets what
- * fits, ended by 0, and PMR_ERROR_ARGUMENT is returned; buffer may be null to ask for the size. */
+ * fits, ended by 0, and PMR_ERROR_ARGUMENT is returned; buffer may be null to ask for the size.
+ * While a render runs its statistics may grow between two calls: ask again with the new size. */
 typedef struct PmrApi {
     uint64_t size;
     uint32_t abiVersion;

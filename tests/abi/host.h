@@ -56,8 +56,15 @@ template <typename Call>
 std::string textOf(Call&& call) {
     std::uint64_t needed = 0;
     EXPECT_EQ(PMR_OK, call(nullptr, std::uint64_t{0}, &needed));
-    std::string text(needed, '\0');
-    EXPECT_EQ(PMR_OK, call(text.data(), needed, nullptr));
+    // While a render runs the text may have grown since it was measured; then it is asked for
+    // again.
+    std::string text;
+    PmrStatus status = PMR_ERROR_ARGUMENT;
+    for (int tries = 0; status == PMR_ERROR_ARGUMENT && tries < 100; ++tries) {
+        text.assign(needed, '\0');
+        status = call(text.data(), std::uint64_t{text.size()}, &needed);
+    }
+    EXPECT_EQ(PMR_OK, status);
     text.resize(needed - 1);
     return text;
 }
