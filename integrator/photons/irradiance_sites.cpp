@@ -13,7 +13,8 @@ namespace pm {
 
 namespace {
 
-// The rays start this far above the site, in radii: low enough to see little else than the disc.
+// The rays start this far above the site, in radii: high enough to see a hollow's whole disc, low
+// enough to see little else.
 constexpr float kApexHeight = 0.6f;
 // What starts or ends on a surface is lifted off it by this share of the length it has to go.
 constexpr float kLift = 0.01f;
@@ -25,12 +26,12 @@ constexpr std::uint32_t kAreaRays = 48, kDiscRays = 24;
 // Grazing rays see much surface each; more than this is cut, so that one ray can't decide the area.
 constexpr float kLargestAreaRatio = 4.0f;
 constexpr float kFlatTolerance = 0.02f;
-// Rays to the rim; where all of them find the surface, the disc is taken as whole.
+// Rays to the rim; where all of them find it flat, the disc is taken as whole.
 constexpr std::uint32_t kRimRays = 8;
 // The share of the disc in the sharpest corner that is still told apart; a square one has 1/4.
 constexpr float kSmallestShare = 0.1f;
-// A site farther away than this, in radii, says too little about a point. Where light is, about
-// twelve sites share a disc of one radius; where it is not, bright values from across a shadow's
+// A site farther away than this, in radii, says too little about a point. Where light is, some
+// twenty sites share a disc of one radius; where it is not, bright values from across a shadow's
 // edge must not be taken for the dark one's.
 constexpr float kSiteReach = 0.6f;
 

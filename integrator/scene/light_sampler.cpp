@@ -34,8 +34,9 @@ float oneMinusCosThetaMax(double r2, double d2) {
 
 LightSampler::LightSampler(const Scene& scene) : m_scene(scene) {
     const auto& lights = scene.lights();
-    for (const Light& light : lights) m_totalPower += light.powerMean;
-    if (lights.empty() || !(m_totalPower > 0)) return;
+    double totalPower = 0;
+    for (const Light& light : lights) totalPower += light.powerMean;
+    if (lights.empty() || !(totalPower > 0)) return;
     const double even = kEvenShare / static_cast<double>(lights.size());
     // A light is taken with the probability that the rounded sums leave it, whatever was meant:
     // sums in steps of the random numbers, 2^-24. One whose share is less than a step could get
@@ -45,7 +46,7 @@ LightSampler::LightSampler(const Scene& scene) : m_scene(scene) {
     const double scale = 1.0 - atLeast * static_cast<double>(lights.size());
     double sum = 0, before = 0;
     for (const Light& light : lights) {
-        sum += atLeast + scale * (even + (1 - kEvenShare) * light.powerMean / m_totalPower);
+        sum += atLeast + scale * (even + (1 - kEvenShare) * light.powerMean / totalPower);
         const double rounded =
             &light == &lights.back() ? 1.0 : std::min(1.0, std::round(sum * kSteps) / kSteps);
         m_probabilities.push_back(static_cast<float>(rounded - before));

@@ -53,9 +53,6 @@ class LightSampler {
     // Radiance that leaves a point of the scene along the unit direction: emission of its front.
     Rgb emittedRadiance(const Surface& surface, const Vec3f& direction) const;
 
-    // Total emitted flux, W per channel (textures taken as 1).
-    double totalPower() const { return m_totalPower; }
-
   private:
     std::uint32_t choose(float u, float& probability) const;
     bool sampleTriangle(const Surface& surface, const Light& light, float probability, Vec2f u,
@@ -70,7 +67,6 @@ class LightSampler {
     const Scene& m_scene;
     std::vector<float> m_cumulative;  // of the probabilities, last is 1
     std::vector<float> m_probabilities;
-    double m_totalPower = 0;
 };
 
 }  // namespace pm

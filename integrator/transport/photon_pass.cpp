@@ -3,12 +3,12 @@
 #include "integrator/transport/photon_pass.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <string>
 #include <utility>
 
 #include "integrator/transport/frame_renderer.h"
+#include "integrator/values/stopwatch.h"
 
 namespace pm {
 
@@ -22,16 +22,6 @@ float radiusFactor(std::uint32_t pass) {
     for (std::uint32_t i = 0; i < pass; ++i) squared *= (i + 2.0 / 3.0) / (i + 1.0);
     return static_cast<float>(std::sqrt(squared));
 }
-
-class Stopwatch {
-  public:
-    double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
-};
 
 }  // namespace
 

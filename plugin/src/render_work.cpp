@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "integrator/values/error.h"
+#include "integrator/values/stopwatch.h"
 #include "plugin/src/call_error.h"
 #include "plugin/src/memory_limit.h"
 #include "scheduler/bucket_order.h"
@@ -16,16 +16,6 @@
 namespace pm::plugin {
 
 namespace {
-
-class Stopwatch {
-  public:
-    double seconds() const {
-        return std::chrono::duration<double>(std::chrono::steady_clock::now() - m_start).count();
-    }
-
-  private:
-    std::chrono::steady_clock::time_point m_start = std::chrono::steady_clock::now();
-};
 
 std::vector<std::uint32_t> cellsInOrder(const BucketGrid& grid, const std::string& name) {
     const BucketOrder* order = findBucketOrder(name);
