@@ -30,7 +30,9 @@ struct ChannelLayout {
     std::int32_t albedo = -1;    // 3: premultiplied by coverage
     std::int32_t normal = -1;    // 3: world, premultiplied by coverage
     std::int32_t depth = -1;     // 1: along the view axis, scene units, premultiplied by coverage
-    std::int32_t count = 16;     // floats a pixel
+    // 3: beauty with the radii of all estimates narrowed by sqrt(2), minus beauty; what shows bias
+    std::int32_t biasProbe = -1;
+    std::int32_t count = 16;  // floats a pixel
 };
 
 ChannelLayout channelLayout(const RenderSettings& settings);
