@@ -17,13 +17,21 @@ std::size_t bandCount(const Rect& window) {
     return static_cast<std::size_t>(wholeAtoms(window).height() / kAtomSizePixels);
 }
 
-void checkLayout(const Rect& window, std::int32_t channels, std::int32_t beautyFirst) {
+// Doubles that a pixel keeps of its even passes.
+std::size_t evenChannels(std::int32_t biasProbeFirst) {
+    return biasProbeFirst < 0 ? FrameStore::kBeautyChannels : 2 * FrameStore::kBeautyChannels;
+}
+
+void checkNotEmpty(const Rect& window) {
     checkWindow(window);
     if (window.empty()) {
         throw Error(Status::kInvalidArgument,
                     fmt::format("frame window is [{},{}) x [{},{}); it must hold a pixel",
                                 window.x0, window.x1, window.y0, window.y1));
     }
+}
+
+void checkChannels(std::int32_t channels, std::int32_t beautyFirst) {
     if (channels < FrameStore::kBeautyChannels) {
         throw Error(Status::kInvalidArgument,
                     fmt::format("frame has {} channels; it must have >= {}", channels,
@@ -36,39 +44,52 @@ void checkLayout(const Rect& window, std::int32_t channels, std::int32_t beautyF
     }
 }
 
+void checkOptional(const char* name, std::int32_t first, std::int32_t channels) {
+    if (first < -1 || first > channels - FrameStore::kBeautyChannels) {
+        throw Error(Status::kInvalidArgument,
+                    fmt::format("first channel of the {} is {}; it must be -1 to {}", name, first,
+                                channels - FrameStore::kBeautyChannels));
+    }
+}
+
 }  // namespace
 
-namespace {
-
-// The offset of relMSE's denominator, as in design and documentation.
-constexpr double kRelMseOffset = 0.01;
-
-}  // namespace
-
-FrameStore::FrameStore(const Rect& window, std::int32_t channels, std::int32_t beautyFirst)
-    : m_window(window), m_channels(channels), m_beautyFirst(beautyFirst) {
-    checkLayout(window, channels, beautyFirst);
+FrameStore::FrameStore(const Rect& window, std::int32_t channels, std::int32_t beautyFirst,
+                       std::int32_t biasProbeFirst, std::int32_t emissionFirst)
+    : m_window(window),
+      m_channels(channels),
+      m_beautyFirst(beautyFirst),
+      m_biasProbeFirst(biasProbeFirst),
+      m_emissionFirst(emissionFirst) {
+    checkNotEmpty(window);
+    checkChannels(channels, beautyFirst);
+    checkOptional("bias probe", biasProbeFirst, channels);
+    checkOptional("emission", emissionFirst, channels);
     const auto pixels = static_cast<std::size_t>(window.area());
     try {
         m_sums.resize(pixels * static_cast<std::size_t>(channels));
         m_weights.resize(pixels);
         m_deviations.resize(pixels * kBeautyChannels);
-        m_relativeDeviations.resize(pixels);
         m_passes.resize(pixels);
+        m_evenSums.resize(pixels * evenChannels(biasProbeFirst));
+        m_evenWeights.resize(pixels);
         m_bandLocks = std::make_unique<std::mutex[]>(bandCount(window));
     } catch (const std::exception&) {  // bad_alloc, or length_error for sizes beyond any memory
         throw Error(
             Status::kOutOfMemory,
             fmt::format("no memory for a frame of {} x {} pixels with {} channels: {} bytes",
-                        window.width(), window.height(), channels, memoryBytes(window, channels)));
+                        window.width(), window.height(), channels,
+                        memoryBytes(window, channels, biasProbeFirst)));
     }
 }
 
-std::uint64_t FrameStore::memoryBytes(const Rect& window, std::int32_t channels) {
+std::uint64_t FrameStore::memoryBytes(const Rect& window, std::int32_t channels,
+                                      std::int32_t biasProbeFirst) {
     if (window.empty() || channels < 0) return sizeof(FrameStore);
-    const std::uint64_t pixelBytes =
-        (static_cast<std::uint64_t>(channels) + 2 + kBeautyChannels) * sizeof(double) +
-        sizeof(std::uint32_t);
+    const std::uint64_t pixelBytes = (static_cast<std::uint64_t>(channels) + 2 + kBeautyChannels +
+                                      evenChannels(biasProbeFirst)) *
+                                         sizeof(double) +
+                                     sizeof(std::uint32_t);
     return sizeof(FrameStore) + static_cast<std::uint64_t>(window.area()) * pixelBytes +
            bandCount(window) * sizeof(std::mutex);
 }
@@ -112,16 +133,23 @@ void FrameStore::addPixel(std::size_t pixel, const float* values, double weight)
         const double sum = sums[m_beautyFirst + i];
         const double oldMean = sum / oldWeight;
         const double newMean = (sum + weight * value) / newWeight;
-        const double share = weight * (value - oldMean) * (value - newMean);
-        deviations[i] += share;
-        m_relativeDeviations[pixel] +=
-            m_passes[pixel] * share / (oldMean * oldMean + kRelMseOffset);
+        deviations[i] += weight * (value - oldMean) * (value - newMean);
     }
     for (std::int32_t c = 0; c < m_channels; ++c) {
         sums[c] += weight * static_cast<double>(values[c]);
     }
     m_weights[pixel] = newWeight;
-    ++m_passes[pixel];
+    if (m_passes[pixel]++ % 2 == 0) addToEvenPasses(pixel, values, weight);
+}
+
+void FrameStore::addToEvenPasses(std::size_t pixel, const float* values, double weight) {
+    double* const sums = m_evenSums.data() + pixel * evenChannels(m_biasProbeFirst);
+    for (std::int32_t i = 0; i < kBeautyChannels; ++i) {
+        sums[i] += weight * static_cast<double>(values[m_beautyFirst + i]);
+        if (m_biasProbeFirst < 0) continue;
+        sums[kBeautyChannels + i] += weight * static_cast<double>(values[m_biasProbeFirst + i]);
+    }
+    m_evenWeights[pixel] += weight;
 }
 
 std::size_t FrameStore::pixelIndex(std::int32_t x, std::int32_t y) const {

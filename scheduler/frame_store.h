@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "integrator/values/rect.h"
+#include "scheduler/frame_error.h"
 
 namespace pm {
 
@@ -24,7 +25,10 @@ namespace pm {
 // With n passes that had samples, and x_k of variance s^2 / w_k, M2 / (n - 1) estimates s^2 without
 // bias, and so M2 / ((n - 1) W) the variance of the mean. Where the passes are equally heavy this
 // needs no assumption on how variance depends on w_k, so it also holds what the samples of a pass
-// share, such as its photons.
+// share, such as its photons. Where passes avoid what others did (one low-discrepancy sequence over
+// several of them) it is too large, never too small.
+// For the frame's error (see FrameError) the sums of a pixel's even passes are kept apart, counted
+// from 0 by those in which it had samples.
 //
 // [1] Welford, "Note on a method for calculating corrected sums of squares and products",
 //     Technometrics 4(3), 1962; with weights as West, Communications of the ACM 22(9), 1979.
@@ -39,15 +43,20 @@ class FrameStore {
     static constexpr std::int32_t kBeautyChannels = 3;
 
     // window: pixels, coordinates within +-2^29; not empty. channels: floats a pixel, at least
-    // kBeautyChannels. beautyFirst: the first of the three channels whose deviations are kept.
+    // kBeautyChannels. beautyFirst: the first of the three channels whose error is told.
+    // biasProbeFirst: the first of three that hold their bias probe, -1 where nothing is biased.
+    // emissionFirst: the first of three with the part of the beauty that comes from lamps the pixel
+    // sees, -1 where that is not told apart.
     // Errors: kInvalidArgument outside of that; kOutOfMemory.
-    FrameStore(const Rect& window, std::int32_t channels, std::int32_t beautyFirst);
+    FrameStore(const Rect& window, std::int32_t channels, std::int32_t beautyFirst,
+               std::int32_t biasProbeFirst = -1, std::int32_t emissionFirst = -1);
 
     const Rect& window() const { return m_window; }
     std::int32_t channels() const { return m_channels; }
 
     // Bytes that a store of this size takes.
-    static std::uint64_t memoryBytes(const Rect& window, std::int32_t channels);
+    static std::uint64_t memoryBytes(const Rect& window, std::int32_t channels,
+                                     std::int32_t biasProbeFirst = -1);
 
     // Adds one pass of the pixels of rect. pixels: for each pixel, row by row, the means of its
     // samples in this pass, channels() floats side by side. weights: for each pixel its number of
@@ -82,14 +91,9 @@ class FrameStore {
     // window and where fewer than two passes had samples.
     std::optional<std::array<float, 3>> standardError(std::int32_t x, std::int32_t y) const;
 
-    // An estimate of relMSE without a reference: the mean of (variance of the mean) / (m^2 + 0.01)
-    // over the beauty channels of the pixels with at least two passes with samples, summed in pixel
-    // order; nothing where there is no such pixel. The variance is that of the standard error; m,
-    // which stands for the reference, is for each pass's share of it the mean of the passes before:
-    // divided by a mean that contains it, a pass that came out far too bright would excuse itself.
-    // A share counts as often as there were passes before, since the mean of few of them is noisy.
-    // It knows noise only, not bias.
-    std::optional<double> estimatedRelMse() const;
+    // What is known of the frame's error without a reference: of the pixels whose even and odd
+    // passes both had samples; nothing where there is no such pixel.
+    std::optional<FrameError> estimateError() const;
 
   private:
     // Reads one pixel, index in the window, to floats; called under its band's lock.
@@ -99,6 +103,10 @@ class FrameStore {
                   ReadPixel readPixel) const;
 
     void addPixel(std::size_t pixel, const float* values, double weight);
+    void addToEvenPasses(std::size_t pixel, const float* values, double weight);
+    void readMeans(std::int32_t y, std::vector<NeighbourRows::Pixel>& row) const;
+    void addError(std::int32_t x, std::int32_t y, const NeighbourRows& rows,
+                  FrameErrorSum& sum) const;
     double mean(std::size_t pixel, std::int32_t channel) const;
     double varianceOfMean(std::size_t pixel, std::int32_t beautyChannel) const;
     std::size_t pixelIndex(std::int32_t x, std::int32_t y) const;
@@ -107,12 +115,15 @@ class FrameStore {
     Rect m_window;
     std::int32_t m_channels{};
     std::int32_t m_beautyFirst{};
+    std::int32_t m_biasProbeFirst{};
+    std::int32_t m_emissionFirst{};
 
-    std::vector<double> m_sums;                // sum w_k x_k, for each pixel and channel
-    std::vector<double> m_weights;             // W, for each pixel
-    std::vector<double> m_deviations;          // M2, for each pixel and beauty channel
-    std::vector<double> m_relativeDeviations;  // n times share of M2 over (mean before)^2 + 0.01
-    std::vector<std::uint32_t> m_passes;       // n, for each pixel
+    std::vector<double> m_sums;           // sum w_k x_k, for each pixel and channel
+    std::vector<double> m_weights;        // W, for each pixel
+    std::vector<double> m_deviations;     // M2, for each pixel and beauty channel
+    std::vector<std::uint32_t> m_passes;  // n, for each pixel
+    std::vector<double> m_evenSums;     // of even passes: for each pixel, of beauty, then the probe
+    std::vector<double> m_evenWeights;  // as well
 
     // One for each row of atoms on the frame's grid: buckets of one row of buckets share a few,
     // which are held for microseconds; others share none.

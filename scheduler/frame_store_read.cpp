@@ -16,25 +16,6 @@
 #include "scheduler/fp_environment.h"
 
 namespace pm {
-namespace {
-
-// Neumaier's sum: keeps what plain addition rounds away, so that millions of pixels add up to the
-// last bits of a double.
-class CompensatedSum {
-  public:
-    void add(double value) {
-        const double sum = m_sum + value;
-        m_lost +=
-            std::abs(m_sum) >= std::abs(value) ? (m_sum - sum) + value : (value - sum) + m_sum;
-        m_sum = sum;
-    }
-    double value() const { return m_sum + m_lost; }
-
-  private:
-    double m_sum{}, m_lost{};
-};
-
-}  // namespace
 
 double FrameStore::mean(std::size_t pixel, std::int32_t channel) const {
     const double weight = m_weights[pixel];
@@ -132,25 +113,6 @@ std::optional<std::array<float, 3>> FrameStore::standardError(std::int32_t x,
             static_cast<float>(std::sqrt(varianceOfMean(pixel, i)));
     }
     return error;
-}
-
-std::optional<double> FrameStore::estimatedRelMse() const {
-    const FpEnvironment guard;
-    CompensatedSum sum;
-    std::uint64_t pixels = 0;
-    for (std::int32_t y = m_window.y0; y < m_window.y1; ++y) {
-        const std::lock_guard lock(bandLock(y));
-        for (std::int32_t x = m_window.x0; x < m_window.x1; ++x) {
-            const std::size_t pixel = pixelIndex(x, y);
-            if (m_passes[pixel] < 2) continue;
-            // Of n passes the shares count 1 + 2 + ... + (n - 1) times.
-            const double n = m_passes[pixel];
-            sum.add(m_relativeDeviations[pixel] / (0.5 * n * (n - 1) * m_weights[pixel]));
-            ++pixels;
-        }
-    }
-    if (pixels == 0) return std::nullopt;
-    return sum.value() / (static_cast<double>(pixels) * kBeautyChannels);
 }
 
 }  // namespace pm

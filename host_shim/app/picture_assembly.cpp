@@ -60,8 +60,14 @@ void addStatistics(const RenderRun& run, Picture& picture) {
     if (!json.is_object()) return;
     if (const auto isa = json.find("isa"); isa != json.end() && isa->is_string())
         picture.attributes["pm:isa"] = isa->get<std::string>();
-    if (const auto done = json.find("passesDone"); done != json.end() && done->is_number_integer())
+    if (const auto done = json.find("passesDone");
+        done != json.end() && done->is_number_integer()) {
         picture.attributes["pm:passesDone"] = done->dump();
+        // Where a target ended the render, the setting that repeats it.
+        const std::string reason = json.value("stopReason", "");
+        if (reason == "error target" || reason == "time limit")
+            picture.attributes["pm:passes"] = done->dump();
+    }
     const auto hashes = json.find("hashes");
     if (hashes == json.end()) return;
     for (const auto& [name, value] : hashes->items())

@@ -229,7 +229,9 @@ int Session::finish(RenderRun& run, PmrStatus status, const ColourPipeline& colo
         throwIfInterrupted();
         throw HostError(static_cast<ExitCode>(exitCodeOf(status)), "the render was cancelled");
     }
-    m_statistics.stopReason = "finished";
+    m_statistics.stopReason = m_statistics.libraryStopReason();
+    if (m_statistics.stopReason == "error target" || m_statistics.stopReason == "time limit")
+        m_log.info("stopped by the " + m_statistics.stopReason);
     if (isBlackThoughHit(picture))
         warn(Warning::kBlackPicture,
              "the picture is black though it shows surfaces: no light reaches their seen side; a "
@@ -242,11 +244,10 @@ void Session::writeOutputs(const Picture& picture, bool complete,
                            const std::optional<DisplayTransform>& display) {
     const auto estimate = m_statistics.estimatedRelMse();
     const std::string error =
-        estimate ? fmt::format(
-                       ", estimated relMSE {:.2e} (variance between passes; bias not "
-                       "included)",
-                       *estimate)
-                 : "";
+        estimate
+            ? fmt::format(", estimated relMSE {:.2e} (noise and bias, from what passes differ by)",
+                          *estimate)
+            : "";
     // One that fails must not take the others with it.
     std::optional<HostError> failure;
     for (const fs::path& output : m_options.outputs) {

@@ -59,6 +59,10 @@ std::optional<double> Statistics::estimatedRelMse() const {
     return found->get<double>();
 }
 
+std::string Statistics::libraryStopReason() const {
+    return parsed(library).value("stopReason", "finished");
+}
+
 std::string Statistics::toJson(const Log& log) const {
     Json all = parsed(library);
     Json mine;

@@ -25,7 +25,9 @@ struct Statistics {
     std::string renderingSpace;
     std::vector<std::string> outputs;            // that were written
     std::map<std::string, double> phaseSeconds;  // readSceneSeconds, ...
-    std::string stopReason{"failed"};  // finished, error limit, interrupted, terminated, failed
+    // passes done, error target, time limit, finished (without a render), error limit, interrupted,
+    // terminated, failed
+    std::string stopReason{"failed"};
     std::string error;
     std::optional<double> referenceRelMse;
     std::string library;  // the plugin's own statistics, JSON, empty when there was no render
@@ -33,6 +35,8 @@ struct Statistics {
 
     // Estimated relMSE of the picture, from the plugin's statistics.
     std::optional<double> estimatedRelMse() const;
+    // Why the library's render ended, in its words; "finished" when it doesn't say.
+    std::string libraryStopReason() const;
     std::string toJson(const Log& log) const;
 };
 

@@ -32,7 +32,7 @@ struct SettingOption {
     const char* setting;
     const char* placeholder;
 };
-constexpr std::array<SettingOption, 11> kSettingOptions{{
+constexpr std::array<SettingOption, 13> kSettingOptions{{
     {"--threads", "threads", "N"},
     {"--bucket-size", "bucketSize", "N"},
     {"--bucket-order", "bucketOrder", "NAME"},
@@ -40,8 +40,10 @@ constexpr std::array<SettingOption, 11> kSettingOptions{{
     {"--integrator", "integrator", "photon|path"},
     {"--photons", "photons", "N|auto"},
     {"--estimate-photons", "estimatePhotons", "K"},
-    {"--gather-rays", "gatherRays", "N"},
+    {"--gather-rays", "gatherRays", "N|auto"},
     {"--passes", "passes", "N"},
+    {"--time-limit", "timeLimitSeconds", "SECONDS"},
+    {"--error-target", "errorTarget", "RELMSE"},
     {"--seed", "seed", "N|frame"},
     {"--memory-limit", "memoryLimitGib", "GIB"},
 }};
@@ -185,7 +187,7 @@ std::string antiAliasingLevel(const std::string& text) {
 std::string settingValue(const std::string& option, const std::string& text,
                          std::optional<std::int64_t> frame) {
     if (option == "--aa") return antiAliasingLevel(text);
-    if (option == "--photons" && text == "auto") return "0";
+    if ((option == "--photons" || option == "--gather-rays") && text == "auto") return "0";
     if (option == "--bucket-size") refuseValueNotAvailableYet(option, text, {"auto"});
     if (option == "--bucket-order") {
         refuseValueNotAvailableYet(option, text,

@@ -85,6 +85,12 @@ Bsdf::Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transpo
     // A camera path finds no light there (see isReflection), so a photon from there brings none.
     if (behindShading && transport == Transport::kPhotons)
         m_reflectance[index(Lobe::kDiffuse)] = m_reflectance[index(Lobe::kGlossy)] = Rgb();
+    m_diffuseOnly = m_material.kind == MaterialKind::kSurface && opacity == 1.0f &&
+                    isBlack(m_reflectance[index(Lobe::kGlossy)]);
+    if (m_diffuseOnly) {
+        chooseDiffuse(carried);
+        return;
+    }
     limitEnergy();
     chooseProbabilities(carried);
 }
@@ -92,6 +98,7 @@ Bsdf::Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transpo
 void Bsdf::setSurface(const Scene& scene, const Surface& surface, float opacity) {
     m_reflectance[index(Lobe::kDiffuse)] =
         clamp01(textured(scene, m_material.diffuse, m_material.diffuseTexture, surface)) * opacity;
+    if (isBlack(m_material.glossy)) return;
     m_reflectance[index(Lobe::kGlossy)] =
         clamp01(textured(scene, m_material.glossy, m_material.glossyTexture, surface)) * opacity;
     m_exponent = std::max(0.0f, m_material.glossyExponent *
@@ -123,6 +130,15 @@ void Bsdf::limitEnergy() {
     const float largest = maxChannel(albedo());
     if (!(largest > 1.0f)) return;
     for (Rgb& reflectance : m_reflectance) reflectance *= 1.0f / largest;
+}
+
+// What chooseProbabilities comes to where there is one lobe; most surfaces are like that.
+void Bsdf::chooseDiffuse(const Rgb& carried) {
+    const float reflected = mean(carried * diffuse());
+    m_black = !(reflected > 0.0f);
+    if (m_black) return;
+    m_probability[index(Lobe::kDiffuse)] =
+        m_transport == Transport::kPhotons ? reflected / std::max(reflected, mean(carried)) : 1.0f;
 }
 
 void Bsdf::chooseProbabilities(const Rgb& carried) {

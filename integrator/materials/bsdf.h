@@ -52,6 +52,8 @@ class Bsdf {
          const Rgb& carried);
 
     bool has(Lobe lobe) const { return m_probability[index(lobe)] > 0.0f; }
+    // Nothing but Lambertian reflection, or less.
+    bool isDiffuseOnly() const { return m_diffuseOnly; }
     // Mean over channels of what could be reflected or transmitted is 0.
     bool isBlackBody() const { return m_black; }
 
@@ -81,6 +83,7 @@ class Bsdf {
     void setMirror(const Scene& scene, const Surface& surface, float opacity);
     void setDielectric(const Scene& scene, const Surface& surface, float opacity);
     void limitEnergy();
+    void chooseDiffuse(const Rgb& carried);
     void chooseProbabilities(const Rgb& carried);
     bool isReflection(const Vec3f& in) const;
     // correction: of the normal that was used, see adjointCorrection.
@@ -90,7 +93,7 @@ class Bsdf {
     const MaterialDescription& m_material;
     Vec3f m_out, m_ng, m_ns;
     bool m_frontSide;
-    bool m_black = false;
+    bool m_black = false, m_diffuseOnly = false;
     Transport m_transport;
     float m_exponent = 0.0f;
     float m_eta = 1.0f;  // index on the far side over the index on this side

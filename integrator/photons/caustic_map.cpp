@@ -15,7 +15,7 @@ namespace {
 constexpr std::uint32_t kFewestPilotPhotons = 4;
 // Where the pilot has less than 1/64 of its typical density the estimate grows no wider: what is
 // thinner than that is too dim to matter, and too wide a disc reaches round corners.
-constexpr float kLargestRadius = 8.0f;
+constexpr float kLargestRadius = 2.0f;
 constexpr float kSmallestRadius = 1e-3f;
 
 }  // namespace
@@ -34,10 +34,12 @@ float CausticRadius::at(const Vec3f& position, const Vec3f& normal, NearestPhoto
                     std::sqrt(scratch.found().front().distanceSquared));
 }
 
-Rgb CausticMap::irradiance(const Vec3f& position, const Vec3f& normal,
-                           NearestPhotons& scratch) const {
+TwoRadii CausticMap::irradiance(const Vec3f& position, const Vec3f& normal,
+                                NearestPhotons& scratch) const {
     const float radius = m_radius.at(position, normal, scratch) * m_radiusFactor;
-    return m_map.fluxWithin(position, normal, radius) / (kPi * radius * radius);
+    const TwoRadii flux = m_map.fluxWithin(position, normal, radius);
+    const float discArea = kPi * radius * radius;
+    return {flux.wide / discArea, flux.narrow / (0.5f * discArea)};
 }
 
 }  // namespace pm

@@ -50,8 +50,8 @@ class CausticMap {
     CausticMap(std::vector<Photon> photons, const CausticRadius& radius, float radiusFactor)
         : m_map(std::move(photons)), m_radius(radius), m_radiusFactor(radiusFactor) {}
 
-    // Irradiance, W m^-2, on the side of the normal.
-    Rgb irradiance(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const;
+    // Irradiance, W m^-2, on the side of the normal, at the radius that belongs there.
+    TwoRadii irradiance(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const;
 
     std::uint64_t memoryBytes() const { return m_map.memoryBytes(); }
 

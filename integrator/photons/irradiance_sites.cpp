@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <new>
 
 #include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
@@ -13,138 +14,194 @@ namespace pm {
 
 namespace {
 
-// The rays start this far above the site, in radii: high enough to see a hollow's whole disc, low
-// enough to see little else.
-constexpr float kApexHeight = 0.6f;
-// What starts or ends on a surface is lifted off it by this share of the length it has to go.
-constexpr float kLift = 0.01f;
-// A ray goes on this far beyond the disc's point, relative to the way there: room for surfaces that
-// curve away.
-constexpr float kRayReach = 1.5f;
-// The spiral's rays: the first kDiscRays go to equal parts of the disc, the others beyond its rim.
-constexpr std::uint32_t kAreaRays = 48, kDiscRays = 24;
-// Grazing rays see much surface each; more than this is cut, so that one ray can't decide the area.
-constexpr float kLargestAreaRatio = 4.0f;
-constexpr float kFlatTolerance = 0.02f;
-// Rays to the rim; where all of them find it flat, the disc is taken as whole.
-constexpr std::uint32_t kRimRays = 8;
-// The share of the disc in the sharpest corner that is still told apart; a square one has 1/4.
-constexpr float kSmallestShare = 0.1f;
-// A site farther away than this, in radii, says too little about a point. Where light is, some
-// twenty sites share a disc of one radius; where it is not, bright values from across a shadow's
-// edge must not be taken for the dark one's.
-constexpr float kSiteReach = 0.6f;
+// Of the radius: some nine sites share a disc.
+constexpr float kCellSize = 0.6f;
+// Steps of a normal's components that make a rough direction, about 20 degrees wide.
+constexpr float kDirectionSteps = 3.0f;
+// Surfaces within this of the rough direction belong to it; a bin's corner is 25 degrees away.
+constexpr float kDirectionCosine = 0.85f;
+// Where a cell's surface is looked for from its middle, in its size: the middle, then around it, so
+// that no more than a sliver at an edge is missed.
+constexpr float kAside = 0.42f;
+// A surface found farther than this from the middle along an axis belongs to another cell.
+constexpr float kCellReach = 0.6f;
+// Surfaces that a ray passes on its way to the right one.
+constexpr int kMostSurfaces = 4;
+// Between a point and its site the surface bends by at most 37 degrees, ...
+constexpr float kSiteCosine = 0.8f;
+// ... and evenly: then the way is at right angles to the sum of both normals, within this.
+constexpr float kSiteFlatness = 0.2f;
+constexpr std::size_t kFewestSlots = 1 << 16, kMostSlots = 1 << 22, kMostProbes = 16;
+
+// Without the libraries' floor, which costs a call.
+std::int64_t floorToInteger(float x) {
+    const auto whole = static_cast<std::int64_t>(x);
+    return whole - (static_cast<float>(whole) > x ? 1 : 0);
+}
 
 }  // namespace
 
-IrradianceSites::IrradianceSites(const Scene& scene, const PhotonMap& map,
-                                 std::vector<Photon> sites, float radius)
+IrradianceSites::IrradianceSites(const Scene& scene, const PhotonMap& map, float radius)
     : m_scene(scene),
-      m_map(map),
-      m_sites(std::move(sites)),
-      m_kept(std::make_unique<Kept[]>(m_sites.size())),
-      m_radius(radius) {}
-
-// Area of surface that a unit of the disc's plane at `inPlane` stands for, seen from the apex: 0
-// where there is none whose photons the map would count, 1 where the surface is the plane.
-float IrradianceSites::areaSeen(const Vec3f& position, const Vec3f& normal, float apexHeight,
-                                const Vec3f& inPlane) const {
-    const Vec3f apex = position + normal * apexHeight;
-    const Vec3f ray = position + inPlane - apex;
-    Surface surface;
-    if (!m_scene.intersect({apex, ray, kRayReach}, surface)) return 0.0f;
-    const MaterialDescription& material = m_scene.material(surface.material);
-    if (material.kind != MaterialKind::kSurface || isBlack(material.diffuse)) return 0.0f;
-    const Vec3f facing = dot(surface.geometricNormal, ray) < 0.0f ? surface.geometricNormal
-                                                                  : -surface.geometricNormal;
-    const Vec3f fromSite = surface.position - position;
-    if (!m_map.accepts(fromSite, facing, normal) || lengthSquared(fromSite) > m_radius * m_radius)
-        return 0.0f;
-    // Solid angle is kept: dA cos / d^2 is the same on the plane and on the surface.
-    const float onPlane = -dot(ray, normal) / lengthSquared(ray);
-    const Vec3f seen = surface.position - apex;
-    const float onSurface = -dot(seen, facing) / lengthSquared(seen);
-    const float ratio =
-        onPlane * std::sqrt(lengthSquared(seen)) / (onSurface * std::sqrt(lengthSquared(ray)));
-    return std::min(ratio, kLargestAreaRatio);
+      m_estimate(scene, map, radius),
+      m_cellSize(kCellSize * radius),
+      m_slotCount(std::bit_ceil(std::clamp(map.size(), kFewestSlots, kMostSlots))),
+      m_slots(static_cast<Slot*>(std::calloc(m_slotCount, sizeof(Slot)))) {
+    if (!m_slots) throw std::bad_alloc();
+    // Radii differ from pass to pass.
+    std::uint64_t random = mixBits(std::bit_cast<std::uint32_t>(radius) + map.size());
+    for (int axis = 0; axis < 3; ++axis) {
+        random = mixBits(random + 1);
+        m_origin[axis] = m_cellSize * toUnitFloat(static_cast<std::uint32_t>(random));
+    }
 }
 
-float IrradianceSites::surfaceShare(const Vec3f& position, const Vec3f& normal, float apexHeight,
-                                    std::uint32_t pattern) const {
-    const Frame frame(normal);
-    const float turn = toUnitFloat(static_cast<std::uint32_t>(mixBits(pattern)));
-    const auto probe = [&](float turns, float radius) {
-        const SinCos phi = sinCosTurns(turns - std::floor(turns));
-        return areaSeen(
-            position, normal, apexHeight,
-            (frame.tangent * phi.cos + frame.bitangent * phi.sin) * (radius * m_radius));
+std::uint64_t IrradianceSites::Cell::hash() const {
+    std::uint64_t h = 0;
+    for (int axis = 0; axis < 3; ++axis)
+        h = h * 0x9e3779b97f4a7c15ull +
+            static_cast<std::uint64_t>(place[static_cast<std::size_t>(axis)] * 16 +
+                                       direction[static_cast<std::size_t>(axis)] + 8);
+    h = mixBits(h);
+    return h == 0 ? 1 : h;  // 0 is an empty slot
+}
+
+IrradianceSites::Cell IrradianceSites::cellAt(const Vec3f& position, const Vec3f& normal) const {
+    const Vec3f place = (position - m_origin) * (1.0f / m_cellSize);
+    const Vec3f direction = normal * kDirectionSteps + Vec3f(0.5f);
+    return {
+        {floorToInteger(place.x), floorToInteger(place.y), floorToInteger(place.z)},
+        {floorToInteger(direction.x), floorToInteger(direction.y), floorToInteger(direction.z)}};
+}
+
+bool IrradianceSites::findAlong(const Vec3f& middle, const Vec3f& through, const Vec3f& direction,
+                                Vec3f& position, Vec3f& normal) const {
+    Ray ray{through + direction * m_cellSize, -direction, 2.0f * m_cellSize};
+    for (int i = 0; i < kMostSurfaces; ++i) {
+        Surface surface;
+        if (!m_scene.intersect(ray, surface)) return false;
+        position = surface.position;
+        normal = dot(surface.geometricNormal, direction) > 0.0f ? surface.geometricNormal
+                                                                : -surface.geometricNormal;
+        const MaterialDescription& material = m_scene.material(surface.material);
+        if (dot(normal, direction) >= kDirectionCosine &&
+            maxAbsComponent(position - middle) <= kCellReach * m_cellSize &&
+            material.kind == MaterialKind::kSurface && !isBlack(material.diffuse))
+            return true;
+        const float passed = dot(ray.origin - position, direction) + 1e-3f * m_cellSize;
+        ray.origin -= direction * passed;
+        ray.tMax -= passed;
+        if (!(ray.tMax > 0.0f)) return false;
+    }
+    return false;
+}
+
+bool IrradianceSites::findSurface(const Cell& cell, Vec3f& position, Vec3f& normal) const {
+    const auto middleAlong = [&](std::size_t axis) {
+        return (static_cast<float>(cell.place[axis]) + 0.5f) * m_cellSize;
     };
-    std::uint32_t flat = 0;
-    for (std::uint32_t i = 0; i < kRimRays; ++i) {
-        const float area = probe(turn + static_cast<float>(i) / kRimRays, 0.95f);
-        flat += std::abs(area - 1.0f) < kFlatTolerance;
-    }
-    if (flat == kRimRays) return 1.0f;
-    // Equal areas on a golden spiral (Vogel 1979), wider than the disc: where the surface bends
-    // towards the apex its part within the radius is seen beyond the disc's rim.
-    constexpr float kGoldenTurn = 0.381966011f;
-    float sum = 0.0f;
-    for (std::uint32_t i = 0; i < kAreaRays; ++i)
-        sum += probe(turn + kGoldenTurn * static_cast<float>(i),
-                     std::sqrt((static_cast<float>(i) + 0.5f) / kDiscRays));
-    return std::max(kSmallestShare, sum / kDiscRays);
+    const Vec3f middle = m_origin + Vec3f{middleAlong(0), middleAlong(1), middleAlong(2)};
+    const Vec3f direction = normalize(Vec3f{static_cast<float>(cell.direction[0]),
+                                            static_cast<float>(cell.direction[1]),
+                                            static_cast<float>(cell.direction[2])});
+    if (findAlong(middle, middle, direction, position, normal)) return true;
+    const Frame frame(direction);
+    for (const float u : {-kAside, 0.0f, kAside})
+        for (const float v : {-kAside, 0.0f, kAside}) {
+            if (u == 0.0f && v == 0.0f) continue;
+            const Vec3f aside = (frame.tangent * u + frame.bitangent * v) * m_cellSize;
+            if (findAlong(middle, middle + aside, direction, position, normal)) return true;
+        }
+    return false;
 }
 
-// Above the site, half as high as whatever stands there: under a ball on the floor the apex must
-// not be inside the ball.
-float IrradianceSites::apexHeight(const Vec3f& position, const Vec3f& normal) const {
-    const float height = kApexHeight * m_radius;
-    const Vec3f start = position + normal * (kLift * m_radius);
-    Surface above;
-    if (!m_scene.intersect({start, normal, 2.0f * height}, above)) return height;
-    return std::min(height, 0.5f * dot(above.position - position, normal));
-}
-
-Rgb IrradianceSites::estimate(const Vec3f& position, const Vec3f& normal,
-                              std::uint32_t pattern) const {
-    const float discArea = kPi * m_radius * m_radius;
-    const float height = apexHeight(position, normal);
-    const float share = surfaceShare(position, normal, height, pattern);
-    if (share == 1.0f) return m_map.fluxWithin(position, normal, m_radius) / discArea;
-    const Vec3f apex = position + normal * height;
-    const Rgb flux = m_map.fluxWithin(position, normal, m_radius, [&](const Photon& photon) {
-        // Ends a little above the photon, whose own surface must not hide it.
-        const Vec3f above = photon.position + photon.normal.unpack() * (kLift * height);
-        return !m_scene.occluded({apex, above - apex, 1.0f});
-    });
-    return flux / (discArea * share);
-}
-
-Rgb IrradianceSites::at(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const {
-    m_sites.findNearest({position, normal, 1, kSiteReach * m_radius}, scratch);
-    if (scratch.found().empty()) {
-        // Any pattern that depends on the point alone.
-        const auto pattern = std::bit_cast<std::uint32_t>(position.x) ^
-                             std::bit_cast<std::uint32_t>(position.y + position.z);
-        return estimate(position, normal, pattern);
-    }
-    const std::uint32_t index = scratch.found().front().index;
-    Kept& kept = m_kept[index];
-    if (kept.ready.load(std::memory_order_acquire))
-        return {kept.r.load(std::memory_order_relaxed), kept.g.load(std::memory_order_relaxed),
-                kept.b.load(std::memory_order_relaxed)};
-    // Two threads may both come here: they compute and store the same bits.
-    const Photon& site = m_sites.photon(index);
-    const Rgb value = estimate(site.position, site.normal.unpack(), index);
-    kept.r.store(value.r, std::memory_order_relaxed);
-    kept.g.store(value.g, std::memory_order_relaxed);
-    kept.b.store(value.b, std::memory_order_relaxed);
-    kept.ready.store(1, std::memory_order_release);
+IrradianceSites::Value IrradianceSites::compute(const Cell& cell, std::uint64_t hash) const {
+    Value value;
+    if (!findSurface(cell, value.position, value.normal)) return {};
+    value.irradiance =
+        m_estimate.at(value.position, value.normal, static_cast<std::uint32_t>(hash));
     return value;
 }
 
+// Null where too many others are in the way.
+IrradianceSites::Slot* IrradianceSites::slotOf(std::uint64_t hash) const {
+    for (std::size_t i = 0; i < kMostProbes; ++i) {
+        Slot& slot = m_slots[(hash + i) & (m_slotCount - 1)];
+        std::uint64_t cell = slot.cell.load(std::memory_order_relaxed);
+        if (cell == hash) return &slot;
+        if (cell == 0 && slot.cell.compare_exchange_strong(cell, hash, std::memory_order_relaxed))
+            return &slot;
+        if (cell == hash) return &slot;  // another thread was faster
+    }
+    return nullptr;
+}
+
+IrradianceSites::Value IrradianceSites::valueOf(const Cell& cell) const {
+    const std::uint64_t hash = cell.hash();
+    Slot* const slot = slotOf(hash);
+    if (!slot) return compute(cell, hash);
+    std::array<float, 12> v;
+    if (slot->ready.load(std::memory_order_acquire)) {
+        for (std::size_t i = 0; i < v.size(); ++i)
+            v[i] = slot->value[i].load(std::memory_order_relaxed);
+        return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {{v[6], v[7], v[8]}, {v[9], v[10], v[11]}}};
+    }
+    const Value value = compute(cell, hash);
+    v = {value.position.x,
+         value.position.y,
+         value.position.z,
+         value.normal.x,
+         value.normal.y,
+         value.normal.z,
+         value.irradiance.wide.r,
+         value.irradiance.wide.g,
+         value.irradiance.wide.b,
+         value.irradiance.narrow.r,
+         value.irradiance.narrow.g,
+         value.irradiance.narrow.b};
+    for (std::size_t i = 0; i < v.size(); ++i)
+        slot->value[i].store(v[i], std::memory_order_relaxed);
+    slot->ready.store(1, std::memory_order_release);
+    return value;
+}
+
+TwoRadii IrradianceSites::at(const Vec3f& position, const Vec3f& normal) const {
+    const auto speaksFor = [&](const Value& site) {
+        const Vec3f way = position - site.position;
+        const float height = dot(way, site.normal + normal);
+        const float tolerance = 1e-4f * m_cellSize;
+        return dot(site.normal, normal) >= kSiteCosine &&
+               height * height <=
+                   kSiteFlatness * kSiteFlatness * lengthSquared(way) + tolerance * tolerance;
+    };
+    Cell cell = cellAt(position, normal);
+    Value site = valueOf(cell);
+    if (speaksFor(site)) return site.irradiance;
+    // A sliver of surface at an edge, or one of two surfaces in the cell: the nearest cell aside.
+    const Vec3f place = (position - m_origin) * (1.0f / m_cellSize);
+    int nearest = 0;
+    float way = 1.0f;
+    std::int64_t step = 0;
+    for (int axis = 0; axis < 3; ++axis) {
+        const float inside =
+            place[axis] - static_cast<float>(cell.place[static_cast<std::size_t>(axis)]);
+        const float toSide = std::min(inside, 1.0f - inside);
+        if (toSide >= way || std::abs(normal[axis]) > 0.7f) continue;
+        nearest = axis;
+        way = toSide;
+        step = inside < 0.5f ? -1 : 1;
+    }
+    cell.place[static_cast<std::size_t>(nearest)] += step;
+    site = valueOf(cell);
+    if (speaksFor(site)) return site.irradiance;
+    // Any pattern that depends on the point alone.
+    const auto pattern = std::bit_cast<std::uint32_t>(position.x) ^
+                         std::bit_cast<std::uint32_t>(position.y + position.z);
+    return estimate(position, normal, pattern);
+}
+
 std::uint64_t IrradianceSites::memoryBytes() const {
-    return m_sites.memoryBytes() + m_sites.size() * sizeof(Kept);
+    return m_slotCount * sizeof(Slot);
 }
 
 }  // namespace pm

@@ -2,57 +2,80 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <vector>
 
 #include "integrator/photons/photon_map.h"
+#include "integrator/photons/surface_estimate.h"
 #include "integrator/scene/scene.h"
 
 namespace pm {
 
-// Irradiance of a photon map, kept at points on the surfaces (sites) and read at the nearest one:
-// what final gathering looks up. A site's value is computed when it is first asked for; it does not
-// depend on who asks. Sites are places where other photons than the map's landed, so that they are
-// dense where there is light, and independent of the photons that they count.
-//
-// Near an edge a part of the estimate's disc is not on the surface. It is found by short rays from
-// above the site, and the flux is divided by the area that is there; there, too, only photons that
-// are seen from above the site count, so that none is counted across a wall.
-// Source: Christensen 1999, "Faster Photon Map Global Illumination" (irradiance kept at photons).
-// Threads: const functions from any, at once.
+// Irradiance of a photon map, kept at points on the surfaces (sites): what final gathering looks
+// up. Space is divided into cells of about half a radius; the surfaces of one direction in a cell
+// have one site, where a ray along that direction finds them, from the cell's middle if it can be.
+// So a site depends on the cell alone, never on who asks first, and sites are spread evenly over
+// all surfaces, dark ones too. Its value is computed when it is first asked for. Source:
+// Christensen 1999, "Faster Photon Map Global Illumination" (irradiance kept at points). Threads:
+// const functions from any, at once.
 class IrradianceSites {
   public:
     // scene and map must outlive this. radius: of the estimates, scene units, > 0.
-    IrradianceSites(const Scene& scene, const PhotonMap& map, std::vector<Photon> sites,
-                    float radius);
+    IrradianceSites(const Scene& scene, const PhotonMap& map, float radius);
 
-    // Irradiance, W m^-2, at the site nearest to the point on the side of the normal; estimated at
-    // the point itself where no site is near.
-    Rgb at(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const;
+    // Irradiance, W m^-2, at a site near the point, on the side of the normal; estimated at the
+    // point itself where none is.
+    TwoRadii at(const Vec3f& position, const Vec3f& normal) const;
 
-    // Irradiance at a point, computed now. pattern turns the rays about the normal.
-    Rgb estimate(const Vec3f& position, const Vec3f& normal, std::uint32_t pattern) const;
+    // Irradiance, W m^-2, at a point, computed now. pattern turns the rays about the normal.
+    TwoRadii estimate(const Vec3f& position, const Vec3f& normal, std::uint32_t pattern) const {
+        return m_estimate.at(position, normal, pattern);
+    }
 
     std::uint64_t memoryBytes() const;
 
   private:
-    struct Kept {
-        std::atomic<float> r{0}, g{0}, b{0};
-        std::atomic<std::uint32_t> ready{0};
+    // A cell and a rough direction.
+    struct Cell {
+        std::array<std::int64_t, 3> place;
+        std::array<std::int64_t, 3> direction;
+
+        std::uint64_t hash() const;
     };
-    float apexHeight(const Vec3f& position, const Vec3f& normal) const;
-    float areaSeen(const Vec3f& position, const Vec3f& normal, float apexHeight,
-                   const Vec3f& inPlane) const;
-    float surfaceShare(const Vec3f& position, const Vec3f& normal, float apexHeight,
-                       std::uint32_t pattern) const;
+    // A point of a surface and its irradiance; the normal is 0 where a cell has no surface.
+    struct Value {
+        Vec3f position, normal;
+        TwoRadii irradiance;
+    };
+    // Atomic, as two threads may come here at once: they compute and store the same bits.
+    struct alignas(64) Slot {
+        std::atomic<std::uint64_t> cell;
+        std::array<std::atomic<float>, 12> value;
+        std::atomic<std::uint32_t> ready;
+    };
+    struct Free {
+        void operator()(void* p) const { std::free(p); }
+    };
+
+    Cell cellAt(const Vec3f& position, const Vec3f& normal) const;
+    bool findSurface(const Cell& cell, Vec3f& position, Vec3f& normal) const;
+    bool findAlong(const Vec3f& middle, const Vec3f& through, const Vec3f& direction,
+                   Vec3f& position, Vec3f& normal) const;
+    Slot* slotOf(std::uint64_t hash) const;
+    Value compute(const Cell& cell, std::uint64_t hash) const;
+    Value valueOf(const Cell& cell) const;
 
     const Scene& m_scene;
-    const PhotonMap& m_map;
-    PhotonMap m_sites;
-    std::unique_ptr<Kept[]> m_kept;
-    float m_radius;
+    SurfaceEstimate m_estimate;
+    float m_cellSize;
+    Vec3f m_origin;  // of the cells: another in each pass
+    // Open addressing by the cell's hash; all zero where nobody has asked yet.
+    std::size_t m_slotCount;
+    std::unique_ptr<Slot[], Free> m_slots;
 };
 
 }  // namespace pm

@@ -3,47 +3,33 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "integrator/photons/photon.h"
+#include "integrator/photons/photon_leaf.h"
+#include "integrator/photons/photon_tree.h"
 #include "integrator/values/rgb.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
 
-// A unit normal to within half a degree, enough to tell one surface from another.
-struct PackedNormal {
-    std::array<std::int8_t, 4> components{};
+// The same quantity estimated at a radius and at that over sqrt(2): its bias grows with the radius
+// squared, so that about half of it is gone in the narrower one, and the difference measures it.
+struct TwoRadii {
+    Rgb wide, narrow;
 
-    PackedNormal() = default;
-    explicit PackedNormal(const Vec3f& n) : components{pack(n.x), pack(n.y), pack(n.z), 0} {}
-    float dotWith(const Vec3f& n) const {
-        return (static_cast<float>(components[0]) * n.x + static_cast<float>(components[1]) * n.y +
-                static_cast<float>(components[2]) * n.z) *
-               (1.0f / 127.0f);
-    }
-
-    Vec3f unpack() const {
-        return normalize(Vec3f{static_cast<float>(components[0]), static_cast<float>(components[1]),
-                               static_cast<float>(components[2])});
-    }
-
-  private:
-    static std::int8_t pack(float v) {
-        return static_cast<std::int8_t>(v * 127.0f + (v < 0.0f ? -0.5f : 0.5f));
+    TwoRadii& operator+=(const TwoRadii& o) {
+        wide += o.wide;
+        narrow += o.narrow;
+        return *this;
     }
 };
 
-// A photon where it met a diffuse surface, before it was scattered or absorbed.
-struct Photon {
-    Vec3f position;  // scene's own coordinates
-    Rgb flux;  // W; times |cos| to the shading normal over |cos| to the geometric one, so that
-               // its share of a flux density is irradiance as the camera's side has it
-    PackedNormal normal;  // geometric, on the side where the photon came in
-};
-static_assert(sizeof(Photon) == 28);
-
-// The k photons found for a point, with the working memory of a query; one for each thread.
+// The k photons found for a point, with the working memory of a query; one for each thread. What is
+// found never depends on earlier queries; how fast does: a query near the last one is faster.
 class NearestPhotons {
   public:
     struct Found {
@@ -56,12 +42,18 @@ class NearestPhotons {
                    (a.distanceSquared == b.distanceSquared && a.index < b.index);
         }
     };
-    // In no particular order, unless full(): then the farthest is first.
+    // In no particular order, unless as many were found as asked for: then the farthest is first.
     const std::vector<Found>& found() const { return m_found; }
 
   private:
     friend class PhotonMap;
     std::vector<Found> m_found;
+    std::vector<std::uint64_t> m_keys;  // PhotonMap::keyOf
+    // The last query that found as many as it asked for.
+    const void* m_lastMap = nullptr;
+    Vec3f m_lastPosition;
+    std::uint32_t m_lastCount = 0;
+    float m_lastReach = 0.0f;  // squared distance of its farthest
 };
 
 // What a query looks for.
@@ -73,22 +65,26 @@ struct PhotonQuery {
     std::uint32_t leaveOut = ~0u;  // index of a photon not to be found: the one a query stands on
 };
 
-// Photons in a balanced, pointer-free kd-tree (medians in an implicit heap, leaves of at most 16
-// photons side by side). The same photons give the same tree for any number of threads.
+// Photons of one kind and pass, and the look-ups that estimates are made of.
 // Threads: all const functions from any, at once.
-// Source: Jensen 2001, section 6.1 (the tree).
 class PhotonMap {
   public:
     // Builds in parallel in the calling TBB arena. Photons whose position is not finite must not be
-    // among them.
-    explicit PhotonMap(std::vector<Photon> photons);
+    // among them. They are copied.
+    explicit PhotonMap(std::span<const Photon> photons);
 
-    // While it is built: the photons twice, and an entry of the tree each.
-    static constexpr std::uint64_t kBytesPerPhoton = 2 * sizeof(Photon) + 16;
+    // While it is built, the photons that it is built from included.
+    static constexpr std::uint64_t kBytesPerPhoton = sizeof(Photon) + kTreeBuildBytesPerPhoton;
 
-    bool empty() const { return m_photons.empty(); }
-    std::size_t size() const { return m_photons.size(); }
-    const Photon& photon(std::uint32_t index) const { return m_photons[index]; }
+    bool empty() const { return m_tree.size == 0; }
+    std::size_t size() const { return m_tree.size; }
+    // index: of the photon in the map, below size(); not that of the photons it was built from.
+    Photon photon(std::uint32_t index) const {
+        const PhotonLeaf& leaf = m_tree.leaves[index / PhotonLeaf::kSize];
+        const std::uint32_t i = index % PhotonLeaf::kSize;
+        const float* const flux = &m_tree.fluxes[std::size_t{3} * index];
+        return {leaf.position(i), {flux[0], flux[1], flux[2]}, leaf.normal(i)};
+    }
     std::uint64_t memoryBytes() const;
 
     // Finds the query.count nearest accepted photons within query.maxRadius: those of the side the
@@ -96,103 +92,145 @@ class PhotonMap {
     // lower index.
     void findNearest(const PhotonQuery& query, NearestPhotons& nearest) const;
 
-    // The flux, W, of the accepted photons within radius: over pi radius^2 it is irradiance,
-    // without bias where that is constant and the surface fills the disc, however the photons are
-    // spread. (An estimate from the k nearest is unbiased for independent photons alone; these are
-    // stratified.) Summed in double in the order of the tree.
-    Rgb fluxWithin(const Vec3f& position, const Vec3f& normal, float radius) const {
-        return fluxWithin(position, normal, radius, [](const Photon&) { return true; });
+    // The flux, W, of the accepted photons within radius and, of those, the ones within
+    // radius/sqrt(2): over pi radius^2, or half of it, it is irradiance, without bias where that is
+    // constant and the surface fills the disc, however the photons are spread. (An estimate from
+    // the k nearest is unbiased for independent photons alone; these are stratified.) Summed in
+    // double in the order of the tree.
+    TwoRadii fluxWithin(const Vec3f& position, const Vec3f& normal, float radius) const {
+        return fluxWithin(position, normal, radius, [](std::uint32_t) { return true; });
     }
+    // accept(index): whether the photon of this index counts, too.
     template <typename Accept>
-    Rgb fluxWithin(const Vec3f& position, const Vec3f& normal, float radius,
-                   const Accept& accept) const;
+    TwoRadii fluxWithin(const Vec3f& position, const Vec3f& normal, float radius,
+                        const Accept& accept) const;
 
     // Whether a photon at `fromPoint` from a point with `normal`, on a surface with
     // `surfaceNormal`, would be counted there; distance aside.
     bool accepts(const Vec3f& fromPoint, const Vec3f& surfaceNormal, const Vec3f& normal) const {
-        return dot(surfaceNormal, normal) >= kNormalCosine &&
-               isNearPlane(fromPoint, lengthSquared(fromPoint), normal);
+        return dot(surfaceNormal, normal) >= PhotonGate::kNormalCosine &&
+               gate({}, normal).isNearPlane(fromPoint, lengthSquared(fromPoint));
     }
 
     // The radius within which half of the photons find count others; of fewer photons, the size of
     // what they cover. Scene units, > 0.
     float typicalRadius(std::uint32_t count) const;
 
+    // Which photons count for a point, distance aside.
+    PhotonGate gate(const Vec3f& position, const Vec3f& normal) const {
+        return {position, normal, m_planeToleranceSquared};
+    }
+
   private:
-    struct Node {
-        float split;
-        std::uint32_t axis;
+    float firstReach(const PhotonQuery& query, const NearestPhotons& nearest) const;
+    std::uint32_t leafOf(const Vec3f& position) const;
+    struct FluxSum {
+        double r = 0, g = 0, b = 0;
+
+        FluxSum& operator+=(const FluxSum& o) {
+            r += o.r;
+            g += o.g;
+            b += o.b;
+            return *this;
+        }
+        Rgb rgb() const {
+            return {static_cast<float>(r), static_cast<float>(g), static_cast<float>(b)};
+        }
     };
-    struct Entry;
-    // A photon counts when its surface's normal is within 25 degrees of the query's ...
-    static constexpr float kNormalCosine = 0.9f;
-    // ... and it lies at most this far off the query's plane, relative to its distance: a ball
-    // becomes a disc, yet a curved surface (height d^2/2R at distance d) stays inside up to 0.4 R.
-    static constexpr float kFlatness = 0.2f;
-
-    void buildNode(std::vector<Entry>& entries, std::size_t node, std::size_t begin,
-                   std::size_t end, std::uint32_t level);
-    bool matches(const Photon& photon, const Vec3f& d, float d2, const Vec3f& normal) const {
-        return photon.normal.dotWith(normal) >= kNormalCosine && isNearPlane(d, d2, normal);
+    template <typename Accept>
+    FluxSum sumOf(std::uint32_t leaf, std::uint32_t which, const Accept& accept) const;
+    void findWithin(const PhotonQuery& query, float reach, NearestPhotons& nearest) const;
+    // The order of Found as a number: the distance's bits, which rise as it does, over the index.
+    static std::uint64_t keyOf(float distanceSquared, std::uint32_t index) {
+        return std::uint64_t{std::bit_cast<std::uint32_t>(distanceSquared)} << 32 | index;
     }
-    bool isNearPlane(const Vec3f& d, float d2, const Vec3f& normal) const {
-        const float height = dot(d, normal);
-        return height * height <= kFlatness * kFlatness * d2 + m_planeTolerance * m_planeTolerance;
+    static float distanceSquaredOf(std::uint64_t key) {
+        return std::bit_cast<float>(static_cast<std::uint32_t>(key >> 32));
     }
-    // Calls leaf(begin, end) for every leaf within `reach` (squared, may shrink meanwhile), nearer
-    // halves first.
-    template <typename Leaf>
-    void visitLeaves(const Vec3f& position, const float& reach, const Leaf& leaf) const;
+    // Calls visit(number) for every leaf where a photon may have a key up to `last` (which may fall
+    // meanwhile), nearer halves first.
+    template <typename Visit>
+    void visitLeaves(const Vec3f& position, const std::uint64_t& last, const Visit& visit) const;
 
-    std::vector<Photon> m_photons;  // leaf after leaf
-    std::vector<Node> m_nodes;      // children of i at 2i+1, 2i+2
-    std::uint32_t m_levels = 0;
-    float m_planeTolerance = 0.0f;  // scene units; what rounding may lift a photon off its plane
+    PhotonTree m_tree;
+    float m_planeToleranceSquared = 0.0f;
 };
 
-template <typename Leaf>
-void PhotonMap::visitLeaves(const Vec3f& position, const float& reach, const Leaf& leaf) const {
-    struct Pending {
-        std::size_t node, begin, end;
-        std::uint32_t level;
-        float planeDistanceSquared;
+template <typename Visit>
+void PhotonMap::visitLeaves(const Vec3f& position, const std::uint64_t& last,
+                            const Visit& visit) const {
+    // Part of the tree, and the way to it from the point along each axis: never longer than the way
+    // to a photon there, rounding included.
+    struct Part {
+        std::uint32_t node, firstLeaf, leafCount;
+        Vec3f away;
+        std::uint64_t leastKey;
     };
-    std::array<Pending, 64> stack;
+    if (m_tree.leafCount == 0) return;
+    std::array<Part, 32> stack;
     std::size_t depth = 0;
-    stack[depth++] = {0, 0, m_photons.size(), 0, 0.0f};
+    stack[depth++] = {0, 0, m_tree.leafCount, {}, 0};
     while (depth > 0) {
-        Pending at = stack[--depth];
-        if (at.planeDistanceSquared > reach) continue;
-        while (at.level < m_levels) {
-            const Node& node = m_nodes[at.node];
-            const float side = position[static_cast<int>(node.axis)] - node.split;
-            const std::size_t middle = at.begin + (at.end - at.begin) / 2;
-            const Pending left{2 * at.node + 1, at.begin, middle, at.level + 1, side * side};
-            const Pending right{2 * at.node + 2, middle, at.end, at.level + 1, side * side};
-            stack[depth++] = side < 0.0f ? right : left;
-            at = side < 0.0f ? left : right;
+        Part at = stack[--depth];
+        if (at.leastKey > last) continue;
+        while (at.leafCount > 1) {
+            const PhotonTree::Node& node = m_tree.nodes[at.node];
+            const auto axis = static_cast<int>(node.axis);
+            const float side = position[axis] - node.split;
+            const std::uint32_t leftLeaves = PhotonTree::leftLeaves(at.leafCount);
+            // Left also where all coincide: the lowest indices are there.
+            const bool nearIsLeft = side <= 0.0f;
+            Part far = at;
+            far.away[axis] = side;
+            far.node = 2 * at.node + (nearIsLeft ? 2 : 1);
+            at.node = 2 * at.node + (nearIsLeft ? 1 : 2);
+            const std::uint32_t rightFirst = at.firstLeaf + leftLeaves;
+            far.firstLeaf = nearIsLeft ? rightFirst : at.firstLeaf;
+            at.firstLeaf = nearIsLeft ? at.firstLeaf : rightFirst;
+            const std::uint32_t rightLeaves = at.leafCount - leftLeaves;
+            far.leafCount = nearIsLeft ? rightLeaves : leftLeaves;
+            at.leafCount = nearIsLeft ? leftLeaves : rightLeaves;
+            far.leastKey = keyOf(lengthSquared(far.away), far.firstLeaf * PhotonLeaf::kSize);
+            if (far.leastKey > last) continue;
+            stack[depth++] = far;
+            if (far.leafCount == 1) m_tree.leaves[far.firstLeaf].prefetch();
         }
-        leaf(at.begin, at.end);
+        visit(at.firstLeaf);
     }
 }
 
+// The flux of the photons of a leaf whose bits are set.
 template <typename Accept>
-Rgb PhotonMap::fluxWithin(const Vec3f& position, const Vec3f& normal, float radius,
-                          const Accept& accept) const {
-    double r = 0, g = 0, b = 0;
+PhotonMap::FluxSum PhotonMap::sumOf(std::uint32_t leaf, std::uint32_t which,
+                                    const Accept& accept) const {
+    FluxSum sum;
+    for (; which != 0; which &= which - 1) {
+        const std::uint32_t index =
+            leaf * PhotonLeaf::kSize + static_cast<std::uint32_t>(std::countr_zero(which));
+        if (!accept(index)) continue;
+        const float* const flux = &m_tree.fluxes[std::size_t{3} * index];
+        sum += {static_cast<double>(flux[0]), static_cast<double>(flux[1]),
+                static_cast<double>(flux[2])};
+    }
+    return sum;
+}
+
+template <typename Accept>
+TwoRadii PhotonMap::fluxWithin(const Vec3f& position, const Vec3f& normal, float radius,
+                               const Accept& accept) const {
+    FluxSum narrow, ring;
     const float reach = radius * radius;
-    visitLeaves(position, reach, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const Photon& photon = m_photons[i];
-            const Vec3f d = photon.position - position;
-            const float d2 = lengthSquared(d);
-            if (d2 > reach || !matches(photon, d, d2, normal) || !accept(photon)) continue;
-            r += static_cast<double>(photon.flux.r);
-            g += static_cast<double>(photon.flux.g);
-            b += static_cast<double>(photon.flux.b);
-        }
+    const PhotonGate gate = this->gate(position, normal);
+    visitLeaves(position, keyOf(reach, ~0u), [&](std::uint32_t leaf) {
+        std::array<float, PhotonLeaf::kSize> distances;
+        const std::uint32_t found = m_tree.leaves[leaf].findWithin(gate, reach, distances.data());
+        if (found == 0) return;
+        const std::uint32_t inNarrow = PhotonLeaf::compare(distances.data(), 0.5f * reach);
+        narrow += sumOf(leaf, found & inNarrow, accept);
+        ring += sumOf(leaf, found & ~inNarrow, accept);
     });
-    return {static_cast<float>(r), static_cast<float>(g), static_cast<float>(b)};
+    ring += narrow;
+    return {ring.rgb(), narrow.rgb()};
 }
 
 }  // namespace pm

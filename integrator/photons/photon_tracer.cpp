@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
+#include <type_traits>
 
 #include "integrator/materials/bsdf.h"
 #include "integrator/sampling/sampler.h"
@@ -32,6 +33,8 @@ double sum(const Rgb& c) {
 struct Batch {
     std::vector<Photon> photons;
     PhotonBalance balance;
+    std::vector<Photon> descended;
+    std::vector<EmissionRecord> records;
 };
 
 class PhotonWalk {
@@ -40,6 +43,7 @@ class PhotonWalk {
         : m_scene(scene),
           m_lights(lights),
           m_request(request),
+          m_aim(request.aim && !request.aim->empty() ? request.aim : nullptr),
           m_scale(1.0f / static_cast<float>(request.count)) {}
 
     void trace(std::uint64_t index, Batch& batch) const {
@@ -47,47 +51,78 @@ class PhotonWalk {
         Sampler sampler(m_request.seed, 2 * std::uint64_t{m_request.pass} + 1,
                         static_cast<std::uint64_t>(m_request.kind),
                         static_cast<std::uint32_t>(index));
-        const float uLight = sampler.next1D();
-        const Vec2f uPoint = sampler.next2D(), uDirection = sampler.next2D();
-        EmittedPhoton photon;
+        AimedPhoton photon;
         ++batch.balance.emitted;
-        if (!m_lights.emit(uLight, uPoint, uDirection, photon)) return;
+        if (!emit(sampler, photon)) return;
         photon.flux *= m_scale;
         batch.balance.fluxEmitted += sum(photon.flux);
-        walk(photon, sampler, batch);
+        const double landed = walk(photon, sampler, batch);
+        if (m_aim && m_request.keepRecords)
+            batch.records.push_back({photon.light, photon.caster,
+                                     static_cast<float>(sum(photon.flux)),
+                                     static_cast<float>(landed)});
     }
 
   private:
-    void walk(const EmittedPhoton& photon, Sampler& sampler, Batch& batch) const {
+    bool emit(Sampler& sampler, AimedPhoton& photon) const {
+        Vec2f uChoice;
+        if (m_aim)
+            uChoice = sampler.next2D();
+        else
+            uChoice.x = sampler.next1D();
+        const Vec2f uPoint = sampler.next2D(), uDirection = sampler.next2D();
+        return m_aim ? m_aim->emit(uChoice, uPoint, uDirection, photon)
+                     : m_lights.emit(uChoice.x, uPoint, uDirection, photon);
+    }
+
+    // How far a photon has come.
+    enum class Stage {
+        kStraight,   // no diffuse surface yet, and no other lobe either
+        kSpecular,   // no diffuse surface yet, but other lobes
+        kDiffuse,    // scattered diffusely, at first where it came straight from the light
+        kDescended,  // ... where it came by way of other lobes
+    };
+
+    // Returns the flux that landed as asked for, W, summed over the channels.
+    double walk(const EmittedPhoton& photon, Sampler& sampler, Batch& batch) const {
         PhotonBalance& balance = batch.balance;
         Ray ray = photon.ray;
         Rgb flux = photon.flux;
-        bool onlySpecular = true;
+        Stage stage = Stage::kStraight;
+        double landed = 0;
         for (int event = 0; event < kMaxEvents; ++event) {
             Surface surface;
             ++balance.rays;
             if (!m_scene.intersect(ray, surface)) {
                 balance.fluxEscaped += sum(flux);
-                return;
+                return landed;
             }
             const Vec3f out = -ray.direction;
             const Bsdf bsdf(m_scene, surface, out, Transport::kPhotons, flux);
-            const bool wanted = !isCaustic(m_request.kind) || (onlySpecular && event > 0);
-            if (wanted && bsdf.has(Lobe::kDiffuse)) store(surface, bsdf, out, flux, batch);
-
+            if (bsdf.has(Lobe::kDiffuse)) landed += land(stage, surface, bsdf, out, flux, batch);
             BsdfSample sample;
             const float uLobe = sampler.next1D();
             const Vec2f u = sampler.next2D();
-            if (!bsdf.sample(uLobe, u, sample)) {
+            if ((bsdf.isDiffuseOnly() && endsAtDiffuse(stage)) || !bsdf.sample(uLobe, u, sample) ||
+                (sample.lobe == Lobe::kDiffuse && endsAtDiffuse(stage))) {
                 balance.fluxAbsorbed += sum(flux);
-                return;
+                return landed;
             }
-            if (sample.lobe == Lobe::kDiffuse) onlySpecular = false;
-            if (isCaustic(m_request.kind) && !onlySpecular) {
-                balance.fluxAbsorbed += sum(flux);
-                return;
+            Rgb scattered = flux * sample.weight;
+            if (sample.lobe != Lobe::kDiffuse) {
+                if (stage == Stage::kStraight) stage = Stage::kSpecular;
+            } else if (stage == Stage::kStraight) {
+                stage = Stage::kDiffuse;
+            } else if (stage == Stage::kSpecular) {
+                stage = Stage::kDescended;
+                if (isCaustic(m_request.kind)) {
+                    if (sampler.next1D() >= m_request.descent) {
+                        balance.fluxAbsorbed += sum(flux);
+                        return landed;
+                    }
+                    scattered *= 1.0f / m_request.descent;
+                }
             }
-            const Rgb scattered = flux * sample.weight;
             if (!isFinite(scattered)) break;
             balance.fluxAbsorbed += sum(flux) - sum(scattered);
             flux = scattered;
@@ -95,16 +130,38 @@ class PhotonWalk {
         }
         ++balance.lost;
         balance.fluxLost += sum(flux);
+        return landed;
+    }
+
+    // Nothing that comes after a diffuse scattering at this stage is asked for.
+    bool endsAtDiffuse(Stage stage) const {
+        if (isCaustic(m_request.kind))
+            return stage == Stage::kStraight || m_request.descent == 0.0f;
+        return stage == Stage::kSpecular && m_request.withoutCaustics;
+    }
+
+    // Stores a photon where its stage is asked for. Returns its flux if so.
+    double land(Stage stage, const Surface& surface, const Bsdf& bsdf, const Vec3f& out,
+                const Rgb& flux, Batch& batch) const {
+        if (isCaustic(m_request.kind)) {
+            if (stage == Stage::kStraight) return 0;
+            store(surface, bsdf, out, flux, batch,
+                  stage == Stage::kSpecular ? batch.photons : batch.descended);
+            return stage == Stage::kSpecular ? sum(flux) : 0;
+        }
+        if (stage == Stage::kSpecular && m_request.withoutCaustics) return 0;
+        store(surface, bsdf, out, flux, batch, batch.photons);
+        return sum(flux);
     }
 
     static void store(const Surface& surface, const Bsdf& bsdf, const Vec3f& out, const Rgb& flux,
-                      Batch& batch) {
+                      Batch& batch, std::vector<Photon>& photons) {
         const float cosineGeometric = dot(out, bsdf.facingGeometricNormal());
         const float cosineShading = dot(out, bsdf.facingShadingNormal());
         const float ratio = cosineShading >= kLargestNormalRatio * cosineGeometric
                                 ? kLargestNormalRatio
                                 : cosineShading / cosineGeometric;
-        batch.photons.push_back(
+        photons.push_back(
             {surface.position, flux * ratio, PackedNormal(bsdf.facingGeometricNormal())});
         ++batch.balance.stored;
     }
@@ -112,6 +169,7 @@ class PhotonWalk {
     const Scene& m_scene;
     const LightSampler& m_lights;
     const PhotonTraceRequest& m_request;
+    const AimedEmission* m_aim;
     float m_scale;
 };
 
@@ -149,14 +207,19 @@ PhotonTraceResult tracePhotons(const Scene& scene, const LightSampler& lights,
         progress(static_cast<double>(++done) / static_cast<double>(batchCount));
     });
     if (cancelled.load()) throw Error(Status::kCancelled, "cancelled while tracing photons");
-    std::size_t total = 0;
-    for (const Batch& batch : batches) total += batch.photons.size();
-    result.photons.reserve(total);
-    for (Batch& batch : batches) {
-        result.photons.insert(result.photons.end(), batch.photons.begin(), batch.photons.end());
-        result.balance += batch.balance;
-        std::vector<Photon>().swap(batch.photons);
-    }
+    const auto join = [&](auto member, auto& joined) {
+        std::size_t total = 0;
+        for (const Batch& batch : batches) total += (batch.*member).size();
+        joined.reserve(total);
+        for (Batch& batch : batches) {
+            joined.insert(joined.end(), (batch.*member).begin(), (batch.*member).end());
+            std::remove_reference_t<decltype(joined)>().swap(batch.*member);
+        }
+    };
+    join(&Batch::photons, result.photons);
+    join(&Batch::descended, result.descended);
+    join(&Batch::records, result.records);
+    for (const Batch& batch : batches) result.balance += batch.balance;
     return result;
 }
 

@@ -7,15 +7,16 @@
 #include <functional>
 #include <vector>
 
+#include "integrator/photons/aimed_emission.h"
 #include "integrator/photons/photon_map.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 
 namespace pm {
 
-// What became of the light that was emitted; flux in W, summed over the channels. emitted =
-// absorbed
-// + escaped + lost, to rounding, before photons are stored as floats.
+// What became of the light that was emitted, as the photons carry it (of aimed ones that is what
+// the lights give on the average only); flux in W, summed over the channels. emitted = absorbed +
+// escaped + lost, to rounding, before photons are stored as floats.
 struct PhotonBalance {
     std::uint64_t emitted = 0, stored = 0, lost = 0, rays = 0;
     double fluxEmitted = 0, fluxAbsorbed = 0, fluxEscaped = 0, fluxLost = 0;
@@ -25,7 +26,6 @@ struct PhotonBalance {
 
 enum class PhotonKind : std::uint8_t {
     kGlobal,       // every arrival at a diffuse surface
-    kSites,        // as kGlobal, with random numbers of their own: where irradiance is kept
     kGlobalPilot,  // as kGlobal and kCaustic, with random numbers of their own: to find radii
     kCausticPilot,
     kCaustic,  // the first arrival at a diffuse surface, and only by way of at least one other lobe
@@ -40,11 +40,21 @@ struct PhotonTraceRequest {
     std::uint64_t count = 0;  // photons to emit, up to 2^32
     std::uint64_t seed = 1;
     std::uint32_t pass = 0;
+    const AimedEmission* aim = nullptr;  // of the same scene; null or empty: unaimed
+    // Caustic photons: the share of those that landed which is followed on, as light descended from
+    // caustics; in [0, 1].
+    float descent = 0.0f;
+    // Global photons: light whose first diffuse surface comes by way of another lobe is somebody
+    // else's business and ends there.
+    bool withoutCaustics = false;
+    bool keepRecords = false;  // for AimedEmission::refine
 };
 
 struct PhotonTraceResult {
     std::vector<Photon> photons;  // flux of each already divided by the number emitted
     PhotonBalance balance;
+    std::vector<Photon> descended;        // of caustic photons: the arrivals after the first
+    std::vector<EmissionRecord> records;  // of each photon that carried something, if asked for
 };
 
 // Traces photons from the lights, in parallel in the calling TBB arena: batches of fixed size, each

@@ -11,10 +11,6 @@ namespace pm {
 
 namespace {
 
-// Share of the choices made evenly rather than by power: a weak lamp beside a thousand bright far
-// ones still gets its photons.
-constexpr double kEvenShare = 0.1;
-
 // A segment between two points off their surfaces. The end stays clear of the light by its own
 // offset, and by the rounding of the segment's length.
 Ray shadowSegment(const Vec3f& from, const Vec3f& to, const Vec3f& lightNormal, float lightOffset) {
@@ -30,52 +26,33 @@ float oneMinusCosThetaMax(double r2, double d2) {
     return static_cast<float>(sin2 / (1.0 + std::sqrt(1.0 - sin2)));
 }
 
+LightChoice choiceByPower(const std::vector<Light>& lights) {
+    std::vector<double> powers;
+    for (const Light& light : lights) powers.push_back(light.powerMean);
+    return LightChoice(powers);
+}
+
 }  // namespace
 
-LightSampler::LightSampler(const Scene& scene) : m_scene(scene) {
-    const auto& lights = scene.lights();
-    double totalPower = 0;
-    for (const Light& light : lights) totalPower += light.powerMean;
-    if (lights.empty() || !(totalPower > 0)) return;
-    const double even = kEvenShare / static_cast<double>(lights.size());
-    // A light is taken with the probability that the rounded sums leave it, whatever was meant:
-    // sums in steps of the random numbers, 2^-24. One whose share is less than a step could get
-    // none, so each gets at least one; with 2^24 lights and more that would be all there is.
-    constexpr double kSteps = 0x1p24;
-    const double atLeast = 1.0 / kSteps;
-    const double scale = 1.0 - atLeast * static_cast<double>(lights.size());
-    double sum = 0, before = 0;
-    for (const Light& light : lights) {
-        sum += atLeast + scale * (even + (1 - kEvenShare) * light.powerMean / totalPower);
-        const double rounded =
-            &light == &lights.back() ? 1.0 : std::min(1.0, std::round(sum * kSteps) / kSteps);
-        m_probabilities.push_back(static_cast<float>(rounded - before));
-        m_cumulative.push_back(static_cast<float>(rounded));
-        before = rounded;
-    }
-}
-
-std::uint32_t LightSampler::choose(float u, float& probability) const {
-    const auto it = std::upper_bound(m_cumulative.begin(), m_cumulative.end(), u);
-    const auto index = static_cast<std::size_t>(std::min<std::ptrdiff_t>(
-        it - m_cumulative.begin(), static_cast<std::ptrdiff_t>(m_cumulative.size()) - 1));
-    probability = m_probabilities[index];
-    return static_cast<std::uint32_t>(index);
-}
+LightSampler::LightSampler(const Scene& scene)
+    : m_scene(scene), m_choice(choiceByPower(scene.lights())) {}
 
 Rgb LightSampler::emittedRadiance(const Surface& surface, const Vec3f& direction) const {
     if (surface.light == kNoLight || dot(direction, surface.geometricNormal) <= 0.0f) return {};
+    return frontRadiance(surface);
+}
+
+Rgb LightSampler::frontRadiance(const Surface& surface) const {
     const MaterialDescription& material = m_scene.material(surface.material);
     if (material.emissionTexture == kNoTexture) return material.emission;
     const Texel texel = m_scene.textures()->lookUp(material.emissionTexture, surface.uv, 0.0f);
     return material.emission * Rgb(texel.r, texel.g, texel.b);
 }
 
-bool LightSampler::sample(const Surface& surface, float uLight, Vec2f uPoint,
-                          LightSample& sample) const {
+bool LightSampler::sample(const Surface& surface, Vec2f uPoint, LightSample& sample) const {
     if (empty()) return false;
     float probability;
-    const Light& light = m_scene.lights()[choose(uLight, probability)];
+    const Light& light = m_scene.lights()[m_choice.chooseAndStretch(uPoint.x, probability)];
     switch (light.kind) {
         case Light::Kind::kTriangle:
             return sampleTriangle(surface, light, probability, uPoint, sample);
@@ -149,7 +126,7 @@ float LightSampler::pdfSolidAngle(const Surface& from, const Vec3f& direction,
                                   const Surface& onLight) const {
     const auto index = static_cast<std::size_t>(onLight.light);
     const Light& light = m_scene.lights()[index];
-    const float probability = m_probabilities[index];
+    const float probability = m_choice.probability(index);
     if (light.kind == Light::Kind::kSphere) {
         const SphereShape sphere = m_scene.sphere(light.shape);
         const double d2 = lengthSquared(sphere.centre - Vec3d(from.position));
@@ -162,17 +139,21 @@ float LightSampler::pdfSolidAngle(const Surface& from, const Vec3f& direction,
     return probability * lengthSquared(onLight.position - from.position) / (light.area * cosine);
 }
 
-// From outside the scene only the cone that holds all of it is worth a photon; the rest of the
-// light's flux would escape.
-bool LightSampler::emitFromPoint(const Light& light, float probability, Vec2f u,
-                                 EmittedPhoton& photon) const {
+void LightSampler::pointLightCone(const Light& light, Vec3f& axis, float& oneMinusCos) const {
     const double r2 = m_scene.radius() * m_scene.radius() * 1.0001;
     const double d2 = lengthSquared(light.position);
     const bool outside = d2 > r2;
-    const float oneMinusCos = outside ? oneMinusCosThetaMax(r2, d2) : 2.0f;
-    const Frame frame(outside ? Vec3f(-light.position / std::sqrt(d2)) : Vec3f{0.0f, 0.0f, 1.0f});
+    oneMinusCos = outside ? oneMinusCosThetaMax(r2, d2) : 2.0f;
+    axis = outside ? Vec3f(-light.position / std::sqrt(d2)) : Vec3f{0.0f, 0.0f, 1.0f};
+}
+
+bool LightSampler::emitFromPoint(const Light& light, float probability, Vec2f u,
+                                 EmittedPhoton& photon) const {
+    Vec3f axis;
+    float oneMinusCos;
+    pointLightCone(light, axis, oneMinusCos);
     photon.ray = {Vec3f(light.position),
-                  normalize(frame.toWorld(sampleUniformCone(u, oneMinusCos)))};
+                  normalize(Frame(axis).toWorld(sampleUniformCone(u, oneMinusCos)))};
     photon.flux = light.intensity * (2.0f * kPi * oneMinusCos / probability);
     return true;
 }
@@ -180,22 +161,16 @@ bool LightSampler::emitFromPoint(const Light& light, float probability, Vec2f u,
 bool LightSampler::emit(float uLight, Vec2f uPoint, Vec2f uDirection, EmittedPhoton& photon) const {
     if (empty()) return false;
     float probability;
-    const Light& light = m_scene.lights()[choose(uLight, probability)];
+    const Light& light = m_scene.lights()[m_choice.choose(uLight, probability)];
     if (light.kind == Light::Kind::kPoint) {
         return emitFromPoint(light, probability, uDirection, photon);
     }
     const Surface point = m_scene.pointOnLight(light, uPoint);
     const Frame frame(point.geometricNormal);
     const Vec3f direction = frame.toWorld(sampleCosineHemisphere(uDirection));
-    // Uniform area density 1/A and direction density cos/pi leave the radiance times pi A.
-    const MaterialDescription& material = m_scene.material(light.material);
-    Rgb radiance = material.emission;
-    if (material.emissionTexture != kNoTexture) {
-        const Texel texel = m_scene.textures()->lookUp(material.emissionTexture, point.uv, 0.0f);
-        radiance *= Rgb(texel.r, texel.g, texel.b);
-    }
     photon.ray = {rayOrigin(point, point.geometricNormal), direction};
-    photon.flux = radiance * (kPi * light.area / probability);
+    // Uniform area density 1/A and direction density cos/pi leave the radiance times pi A.
+    photon.flux = frontRadiance(point) * (kPi * light.area / probability);
     return !isBlack(photon.flux);
 }
 

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
 
 #include "integrator/rays/ray_tracer.h"
+#include "integrator/scene/light_choice.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/surface.h"
 #include "integrator/values/rgb.h"
@@ -36,10 +36,11 @@ class LightSampler {
   public:
     explicit LightSampler(const Scene& scene);
 
-    bool empty() const { return m_cumulative.empty(); }
+    bool empty() const { return m_choice.empty(); }
 
     // False when the chosen point can't shine on the surface.
-    bool sample(const Surface& surface, float uLight, Vec2f uPoint, LightSample& sample) const;
+    // u: of the light by its first number, of the point on it by both.
+    bool sample(const Surface& surface, Vec2f u, LightSample& sample) const;
 
     // Density with which sample() at `from` finds the point `onLight` (whose primitive is a light)
     // along the unit direction `direction`; sr^-1.
@@ -50,11 +51,16 @@ class LightSampler {
     // when it carries nothing.
     bool emit(float uLight, Vec2f uPoint, Vec2f uDirection, EmittedPhoton& photon) const;
 
+    // The cone that photons of a point light fill: from outside the scene only the one that holds
+    // all of it is worth a photon, the rest of the light's flux would escape; else all directions.
+    void pointLightCone(const Light& light, Vec3f& axis, float& oneMinusCos) const;
+
     // Radiance that leaves a point of the scene along the unit direction: emission of its front.
     Rgb emittedRadiance(const Surface& surface, const Vec3f& direction) const;
+    // The same of a point that is known to be on a light, in any direction on its front.
+    Rgb frontRadiance(const Surface& surface) const;
 
   private:
-    std::uint32_t choose(float u, float& probability) const;
     bool sampleTriangle(const Surface& surface, const Light& light, float probability, Vec2f u,
                         LightSample& sample) const;
     bool sampleSphere(const Surface& surface, const Light& light, float probability, Vec2f u,
@@ -65,8 +71,7 @@ class LightSampler {
     bool emitFromPoint(const Light& light, float probability, Vec2f u, EmittedPhoton& photon) const;
 
     const Scene& m_scene;
-    std::vector<float> m_cumulative;  // of the probabilities, last is 1
-    std::vector<float> m_probabilities;
+    LightChoice m_choice;
 };
 
 }  // namespace pm

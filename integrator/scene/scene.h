@@ -73,8 +73,12 @@ class Scene {
     class Builder;
     Scene(SceneDescription description, const std::string& isa);
 
-    void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, double b1, double b2,
-                           Surface& surface) const;
+    // A triangle's first vertex and the edges from it.
+    struct Corner {
+        Vec3d vertex, e1, e2;
+    };
+    void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, const Corner& corner,
+                           double b1, double b2, Surface& surface) const;
     void surfaceOnSphere(const ShapeRecord& shape, const Vec3d& direction, Surface& surface) const;
 
     SceneDescription m_description;

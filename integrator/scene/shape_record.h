@@ -21,6 +21,11 @@ struct Scene::ShapeRecord {
         return mesh ? materials[mesh->materials.empty() ? 0 : mesh->materials[primitive]]
                     : materials[0];
     }
+    Corner corner(std::uint32_t primitive) const {
+        const auto& triangle = mesh->triangles[primitive];
+        const Vec3d v0(positions[triangle[0]]);
+        return {v0, Vec3d(positions[triangle[1]]) - v0, Vec3d(positions[triangle[2]]) - v0};
+    }
     std::int32_t lightOf(std::uint32_t primitive) const {
         return lightOfPrimitive.empty() ? kNoLight : lightOfPrimitive[primitive];
     }

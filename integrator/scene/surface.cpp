@@ -24,9 +24,10 @@ void barycentrics(const Ray& ray, const Vec3d& v0, const Vec3d& e1, const Vec3d&
     const double determinant = dot(e1, p);
     b1 = b2 = 1.0 / 3;
     if (determinant == 0.0) return;  // seen exactly edge-on: any point of it serves
+    const double inverse = 1.0 / determinant;
     const Vec3d s = Vec3d(ray.origin) - v0;
-    b1 = std::clamp(dot(s, p) / determinant, 0.0, 1.0);
-    b2 = std::clamp(dot(direction, cross(s, e1)) / determinant, 0.0, 1.0 - b1);
+    b1 = std::clamp(dot(s, p) * inverse, 0.0, 1.0);
+    b2 = std::clamp(dot(direction, cross(s, e1)) * inverse, 0.0, 1.0 - b1);
 }
 
 // How much more than a well-shaped triangle's the normal that the intersector finds in float may be
@@ -36,8 +37,10 @@ void barycentrics(const Ray& ray, const Vec3d& v0, const Vec3d& e1, const Vec3d&
 double normalCondition(const Vec3d& e1, const Vec3d& e2, double twiceArea) {
     constexpr double kLargest = 1000;
     const double a = lengthSquared(e1), b = lengthSquared(e2), c = lengthSquared(e2 - e1);
-    const double product = std::sqrt(std::min({a, b, c}) * std::max({a, b, c}));
-    return product < kLargest * twiceArea ? std::max(1.0, product / twiceArea) : kLargest;
+    const double squared = std::min({a, b, c}) * std::max({a, b, c});
+    const double areaSquared = twiceArea * twiceArea;
+    if (squared <= areaSquared) return 1.0;
+    return squared < kLargest * kLargest * areaSquared ? std::sqrt(squared) / twiceArea : kLargest;
 }
 
 Vec3f interpolateNormal(const Vec3f& n0, const Vec3f& n1, const Vec3f& n2, float b1, float b2,
@@ -58,12 +61,10 @@ bool Scene::intersect(const Ray& ray, Surface& surface) const {
     const ShapeRecord& record = m_shapes[hit.shape];
     surface.shape = hit.shape;
     if (record.mesh) {
-        const auto& triangle = record.mesh->triangles[hit.primitive];
-        const Vec3d v0(record.positions[triangle[0]]);
+        const Corner corner = record.corner(hit.primitive);
         double b1, b2;
-        barycentrics(ray, v0, Vec3d(record.positions[triangle[1]]) - v0,
-                     Vec3d(record.positions[triangle[2]]) - v0, b1, b2);
-        surfaceOnTriangle(record, hit.primitive, b1, b2, surface);
+        barycentrics(ray, corner.vertex, corner.e1, corner.e2, b1, b2);
+        surfaceOnTriangle(record, hit.primitive, corner, b1, b2, surface);
         return true;
     }
     const Vec3d origin(ray.origin), direction(ray.direction);
@@ -74,13 +75,10 @@ bool Scene::intersect(const Ray& ray, Surface& surface) const {
     return true;
 }
 
-void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive, double b1,
-                              double b2, Surface& surface) const {
+void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive,
+                              const Corner& corner, double b1, double b2, Surface& surface) const {
     const TriangleMesh& mesh = *record.mesh;
-    const auto& triangle = mesh.triangles[primitive];
-    const Vec3d v0(record.positions[triangle[0]]);
-    const Vec3d e1 = Vec3d(record.positions[triangle[1]]) - v0;
-    const Vec3d e2 = Vec3d(record.positions[triangle[2]]) - v0;
+    const auto& [v0, e1, e2] = corner;
     const Vec3d offsetFromV0 = e1 * b1 + e2 * b2;
     surface.position = Vec3f(v0 + offsetFromV0);
     const double farthest = std::max({lengthSquared(offsetFromV0), lengthSquared(offsetFromV0 - e1),
@@ -95,16 +93,16 @@ void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive
     surface.shadingNormal = surface.geometricNormal;
     const auto f1 = static_cast<float>(b1), f2 = static_cast<float>(b2);
     if (!mesh.normals.empty()) {
-        const auto& corner = mesh.normalIndices[primitive];
+        const auto& at = mesh.normalIndices[primitive];
         surface.shadingNormal =
-            interpolateNormal(record.normals[corner[0]], record.normals[corner[1]],
-                              record.normals[corner[2]], f1, f2, surface.geometricNormal);
+            interpolateNormal(record.normals[at[0]], record.normals[at[1]], record.normals[at[2]],
+                              f1, f2, surface.geometricNormal);
     }
     surface.uv = {};
     if (!mesh.texcoords.empty()) {
-        const auto& corner = mesh.texcoordIndices[primitive];
-        const Vec2f t0 = mesh.texcoords[corner[0]], t1 = mesh.texcoords[corner[1]],
-                    t2 = mesh.texcoords[corner[2]];
+        const auto& at = mesh.texcoordIndices[primitive];
+        const Vec2f t0 = mesh.texcoords[at[0]], t1 = mesh.texcoords[at[1]],
+                    t2 = mesh.texcoords[at[2]];
         const float f0 = 1.0f - f1 - f2;
         surface.uv = {t0.x * f0 + t1.x * f1 + t2.x * f2, t0.y * f0 + t1.y * f1 + t2.y * f2};
     }
@@ -135,8 +133,8 @@ Surface Scene::pointOnLight(const Light& light, Vec2f u) const {
     surface.shape = light.shape;
     if (record.mesh) {
         const Vec2f b = sampleTriangle(u);
-        surfaceOnTriangle(record, light.primitive, static_cast<double>(b.x),
-                          static_cast<double>(b.y), surface);
+        surfaceOnTriangle(record, light.primitive, record.corner(light.primitive),
+                          static_cast<double>(b.x), static_cast<double>(b.y), surface);
     } else {
         surfaceOnSphere(record, Vec3d(sampleUniformSphere(u)), surface);
     }

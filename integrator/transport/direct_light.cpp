@@ -9,23 +9,22 @@
 namespace pm {
 
 DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
-                              const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
-                              std::uint32_t& rays) {
+                              const Surface& surface, const Bsdf& bsdf, LampStrategy diffuse,
+                              Sampler& sampler, std::uint32_t& rays) {
     DirectRadiance result;
     // Drawn in any case: the dimensions that follow keep their numbers.
-    const float uLight = sampler.next1D();
-    const Vec2f uPoint = sampler.next2D();
+    const Vec2f u = sampler.next2D();
     LightSample light;
-    if (!lights.sample(surface, uLight, uPoint, light) || !(light.pdfSolidAngle > 0.0f))
-        return result;
+    if (!lights.sample(surface, u, light) || !(light.pdfSolidAngle > 0.0f)) return result;
     const auto contribution = [&](Lobe lobe) {
         if (!bsdf.has(lobe)) return Rgb{};
         const Rgb value = bsdf.evaluate(lobe, light.direction);
         if (isBlack(value)) return Rgb{};
+        const bool alone =
+            light.isPoint || (lobe == Lobe::kDiffuse && diffuse == LampStrategy::kNextEventOnly);
         const float weight =
-            light.isPoint
-                ? 1.0f
-                : powerHeuristic(light.pdfSolidAngle, bsdf.pdfSolidAngle(lobe, light.direction));
+            alone ? 1.0f
+                  : powerHeuristic(light.pdfSolidAngle, bsdf.pdfSolidAngle(lobe, light.direction));
         return value * light.radiance * (weight / light.pdfSolidAngle);
     };
     result.diffuse = contribution(Lobe::kDiffuse);
@@ -49,15 +48,6 @@ void recordFirstHit(const Surface& surface, const Bsdf& bsdf, SampleRadiance& re
     result.albedo = bsdf.albedo();
     result.normal = bsdf.facingShadingNormal();
     result.firstPosition = surface.position;
-}
-
-bool survivesRoulette(int event, float etaScale, Rgb& throughput, Sampler& sampler) {
-    if (event < 4) return true;
-    const float survival = std::min(1.0f, maxChannel(throughput) * etaScale);
-    if (survival >= 1.0f) return true;
-    if (sampler.next1D() >= survival) return false;
-    throughput *= 1.0f / survival;
-    return true;
 }
 
 }  // namespace pm

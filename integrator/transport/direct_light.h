@@ -44,6 +44,7 @@ struct PathState {
 // Radiance of one camera sample by class, and what its first hit looks like.
 struct SampleRadiance {
     Rgb emission, direct, caustic, indirect;
+    Rgb biasProbe;          // what the density estimates at narrower radii would bring more
     float coverage = 0.0f;  // 1: something was hit
     Rgb albedo;
     Vec3f normal;
@@ -69,11 +70,17 @@ struct DirectRadiance {
     Rgb diffuse, glossy;
 };
 
+// How light that a diffuse lobe receives straight from a lamp is found.
+enum class LampStrategy : std::uint8_t {
+    kBoth,           // by next-event estimation and by sampling the lobe, weighted
+    kNextEventOnly,  // where lamps fill so little of the view that sampling the lobe adds nothing
+};
+
 // Next-event estimation for both lobes with one shadow ray; weighted against finding the same light
-// by sampling the lobe. Counts its ray in `rays`.
+// by sampling the lobe, for the diffuse lobe as `diffuse` says. Counts its ray in `rays`.
 DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
-                              const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
-                              std::uint32_t& rays);
+                              const Surface& surface, const Bsdf& bsdf, LampStrategy diffuse,
+                              Sampler& sampler, std::uint32_t& rays);
 
 // The sample that led from one surface to the next, as far as the weight of light found there
 // needs.
@@ -90,13 +97,5 @@ Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const L
 
 // First-hit layers: albedo, normal, position.
 void recordFirstHit(const Surface& surface, const Bsdf& bsdf, SampleRadiance& result);
-
-// Russian roulette by throughput after the first events. False: the path ends. Otherwise the
-// throughput is divided by the probability of going on. etaScale undoes the factors eta^2 of
-// refraction, which say nothing about what the path will bring.
-bool survivesRoulette(int event, float etaScale, Rgb& throughput, Sampler& sampler);
-
-// No path is longer than this; only light caught between lossless surfaces is.
-inline constexpr int kMaxPathEvents = 1000;
 
 }  // namespace pm

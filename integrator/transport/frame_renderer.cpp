@@ -38,7 +38,8 @@ std::uint32_t samplesInPass(const RenderSettings& settings, std::uint64_t key, s
 
 // Sums over a pixel's samples, in double and in sample order.
 struct PixelSums {
-    std::array<double, 3> emission{}, direct{}, caustic{}, indirect{}, albedo{}, normal{};
+    std::array<double, 3> emission{}, direct{}, caustic{}, indirect{}, biasProbe{}, albedo{},
+        normal{};
     double coverage = 0, depth = 0;
 };
 
@@ -59,6 +60,7 @@ ChannelLayout channelLayout(const RenderSettings& settings) {
     layout.albedo = place(settings.wantAlbedo, 3);
     layout.normal = place(settings.wantNormal, 3);
     layout.depth = place(settings.wantDepth, 1);
+    layout.biasProbe = place(settings.integrator == IntegratorKind::kPhoton, 3);
     return layout;
 }
 
@@ -70,7 +72,7 @@ struct FrameRenderer::Impl {
           plan(makePlan(*scene, settings_)),
           camera(*scene, settings_.width, settings_.height),
           lights(*scene),
-          photons(*scene, lights, plan, settings) {}
+          photons(*scene, camera, lights, plan, settings) {}
 
     SampleRadiance sample(std::int32_t x, std::int32_t y, std::uint32_t index,
                           NearestPhotons& scratch) const;
@@ -94,26 +96,29 @@ struct FrameRenderer::Impl {
 
 SampleRadiance FrameRenderer::Impl::sample(std::int32_t x, std::int32_t y, std::uint32_t index,
                                            NearestPhotons& scratch) const {
-    // Odd streams are photons'; see PhotonTracer.
-    Sampler sampler(settings.seed, 2 * std::uint64_t{pass}, pixelKey(x, y), index);
+    // The even passes' samples are one low-discrepancy sequence, the odd passes' another: samples
+    // added later fall between those before, and the two halves' errors share nothing. Odd streams
+    // are photons'; see PhotonTracer.
+    Sampler sampler(settings.seed, 2 * std::uint64_t{pass % 2}, pixelKey(x, y), index);
     const Vec2f jitter = sampler.next2D();
-    const Ray ray =
-        camera.ray(x + static_cast<double>(jitter.x), y + static_cast<double>(jitter.y));
+    const double onX = x + static_cast<double>(jitter.x), onY = y + static_cast<double>(jitter.y);
+    const Ray ray = camera.ray(onX, onY);
     if (settings.integrator == IntegratorKind::kPath)
         return PathIntegrator(*scene, lights).sample(ray, sampler);
-    return PhotonIntegrator(*scene, lights, photons.maps(), settings.gatherRays)
-        .sample(ray, sampler, scratch);
+    return PhotonIntegrator(*scene, lights, photons.maps())
+        .sample({static_cast<float>(onX), static_cast<float>(onY)}, ray, sampler, scratch);
 }
 
 void FrameRenderer::Impl::renderPixel(std::int32_t x, std::int32_t y, std::uint32_t samples,
                                       float* pixel, NearestPhotons& scratch,
                                       RenderCounters& local) const {
     PixelSums sums;
+    const std::uint32_t first = pass / 2 * samples;
     for (std::uint32_t i = 0; i < samples; ++i) {
-        const SampleRadiance s = sample(x, y, i, scratch);
+        const SampleRadiance s = sample(x, y, first + i, scratch);
         local.rays += s.rays;
         if (!isFinite(s.emission) || !isFinite(s.direct) || !isFinite(s.caustic) ||
-            !isFinite(s.indirect)) {
+            !isFinite(s.indirect) || !isFinite(s.biasProbe)) {
             ++local.badSamples;
             continue;
         }
@@ -121,6 +126,7 @@ void FrameRenderer::Impl::renderPixel(std::int32_t x, std::int32_t y, std::uint3
         add(sums.direct, s.direct);
         add(sums.caustic, s.caustic);
         add(sums.indirect, s.indirect);
+        add(sums.biasProbe, s.biasProbe);
         sums.coverage += static_cast<double>(s.coverage);
         if (s.coverage == 0.0f) continue;
         add(sums.albedo, s.albedo);
@@ -143,6 +149,7 @@ void FrameRenderer::Impl::writePixel(const PixelSums& sums, std::uint32_t sample
     put(layout.indirect, sums.indirect);
     put(layout.caustic, sums.caustic);
     put(layout.emission, sums.emission);
+    put(layout.biasProbe, sums.biasProbe);
     put(layout.albedo, sums.albedo);
     put(layout.normal, sums.normal);
     pixel[layout.alpha] = static_cast<float>(sums.coverage * scale);

@@ -19,7 +19,7 @@ class PathIntegrator {
     PathIntegrator(const Scene& scene, const LightSampler& lights)
         : m_scene(scene), m_lights(lights) {}
 
-    SampleRadiance sample(Ray ray, Sampler& sampler) const;
+    SampleRadiance sample(const Ray& ray, Sampler& sampler) const;
 
   private:
     const Scene& m_scene;

@@ -2,94 +2,116 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/transport/photon_integrator.h"
 
+#include <bit>
+
 #include "integrator/sampling/warps.h"
+#include "integrator/transport/final_gather.h"
+#include "integrator/transport/path_walk.h"
 
 namespace pm {
 
-SampleRadiance PhotonIntegrator::sample(Ray ray, Sampler& sampler, NearestPhotons& scratch) const {
+namespace {
+
+// Lamps that fill less than this share of the cosine-weighted view are found by next-event
+// estimation alone: the other strategy's weight is below its square there.
+constexpr float kLargeLampShare = 0.02f;
+
+}  // namespace
+
+SampleRadiance PhotonIntegrator::sample(Vec2f screen, const Ray& ray, Sampler& sampler,
+                                        NearestPhotons& scratch) const {
     SampleRadiance result;
     PathState state;
-    Rgb throughput(1.0f);
-    float etaScale = 1.0f;
+    PathWalk path(ray);
     LastScatter last;
     last.direction = ray.direction;
-    for (int event = 0; event < kMaxPathEvents; ++event) {
+    for (bool first = true;; first = false) {
         Surface surface;
         ++result.rays;
-        if (!m_scene.intersect(ray, surface)) break;
-        const Vec3f out = -ray.direction;
-        result.of(state.classify()) += throughput * weightedEmission(m_lights, surface, last);
-
-        const Bsdf bsdf(m_scene, surface, out, Transport::kRadiance, throughput);
-        if (event == 0) recordFirstHit(surface, bsdf, result);
-        if (bsdf.isBlackBody()) break;
-        const bool diffuse = bsdf.has(Lobe::kDiffuse);
-        if (diffuse || bsdf.has(Lobe::kGlossy)) {
+        if (!m_scene.intersect(path.ray, surface)) return result;
+        result.of(state.classify()) += path.throughput * weightedEmission(m_lights, surface, last);
+        const Bsdf bsdf(m_scene, surface, -path.ray.direction, Transport::kRadiance,
+                        path.throughput);
+        if (first) recordFirstHit(surface, bsdf, result);
+        if (bsdf.isBlackBody()) return result;
+        StillToFind still;
+        if (bsdf.has(Lobe::kDiffuse))
+            still = readMaps(screen, surface, bsdf, path.throughput, scratch, result);
+        if (bsdf.has(Lobe::kDiffuse) || bsdf.has(Lobe::kGlossy)) {
             const DirectRadiance direct =
-                estimateDirect(m_scene, m_lights, surface, bsdf, sampler, result.rays);
-            result.direct += throughput * (direct.diffuse + direct.glossy);
+                estimateDirect(m_scene, m_lights, surface, bsdf, still.lamps, sampler, result.rays);
+            result.direct += path.throughput * (direct.diffuse + direct.glossy);
         }
-        if (diffuse && m_maps.caustic)
-            result.caustic += throughput * bsdf.diffuse() *
-                              m_maps.caustic->irradiance(surface.position,
-                                                         bsdf.facingGeometricNormal(), scratch) *
-                              kInvPi;
+        if (bsdf.isDiffuseOnly() && still.lamps == LampStrategy::kNextEventOnly && !still.indirect)
+            return result;
         BsdfSample sample;
         const float uLobe = sampler.next1D();
-        Vec2f u = sampler.next2D();
-        bool valid = bsdf.sample(uLobe, u, sample);
-        // Also where the first ray has no value: the others may have.
+        const bool valid = bsdf.sample(uLobe, sampler.next2D(), sample);
+        if (!valid) return result;
         if (sample.lobe == Lobe::kDiffuse) {
-            const Rgb share = throughput / static_cast<float>(m_gatherRays);
-            for (std::uint32_t i = 0; i < m_gatherRays; ++i) {
-                if (i > 0) valid = bsdf.sample(uLobe, sampler.next2D(), sample);
-                if (valid) gather(surface, sample, share * sample.weight, sampler, scratch, result);
-            }
-            break;
+            followDiffuse(surface, sample, still, path.throughput, sampler, result);
+            return result;
         }
-        if (!valid) break;
-        throughput *= sample.weight;
-        if (sample.lobe == Lobe::kRefraction) etaScale *= bsdf.etaSquared();
-        if (!survivesRoulette(event, etaScale, throughput, sampler)) break;
+        if (!path.scatter(surface, bsdf, sample, sampler)) return result;
         state.scatter(sample.lobe);
         last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle};
-        ray = rayFrom(surface, sample.direction);
     }
-    return result;
 }
 
-// From the first diffuse surface on: light found at once is direct light, the other strategy of its
-// next-event estimation; light found by way of other lobes is a caustic and its map's business; at
-// the second diffuse surface the global map ends the path.
-void PhotonIntegrator::gather(const Surface& from, const BsdfSample& first, const Rgb& weight,
-                              Sampler& sampler, NearestPhotons& scratch,
-                              SampleRadiance& result) const {
-    Rgb throughput = weight;
-    float etaScale = 1.0f;
-    Ray ray = rayFrom(from, first.direction);
-    for (int event = 0; event < kMaxPathEvents; ++event) {
-        Surface surface;
-        ++result.rays;
-        if (!m_scene.intersect(ray, surface)) return;
-        if (event == 0)
-            result.direct += throughput * weightedEmission(m_lights, surface,
-                                                           {from, first.direction, first.lobe,
-                                                            first.pdfSolidAngle});
-        const Bsdf bsdf(m_scene, surface, -ray.direction, Transport::kRadiance, throughput);
-        if (bsdf.isBlackBody()) return;
-        if (bsdf.has(Lobe::kDiffuse) && m_maps.global)
-            result.indirect +=
-                throughput * bsdf.diffuse() *
-                m_maps.global->at(surface.position, bsdf.facingGeometricNormal(), scratch) * kInvPi;
-        BsdfSample sample;
-        const float uLobe = sampler.next1D();
-        const Vec2f u = sampler.next2D();
-        if (!bsdf.sample(uLobe, u, sample) || sample.lobe == Lobe::kDiffuse) return;
-        throughput *= sample.weight;
-        if (sample.lobe == Lobe::kRefraction) etaScale *= bsdf.etaSquared();
-        if (!survivesRoulette(event, etaScale, throughput, sampler)) return;
-        ray = rayFrom(surface, sample.direction);
+PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(Vec2f screen, const Surface& surface,
+                                                         const Bsdf& bsdf, const Rgb& throughput,
+                                                         NearestPhotons& scratch,
+                                                         SampleRadiance& result) const {
+    const Rgb reflected = throughput * bsdf.diffuse() * kInvPi;
+    const auto add = [&](const TwoRadii& irradiance, Rgb& part) {
+        part += reflected * irradiance.wide;
+        result.biasProbe += reflected * (irradiance.narrow - irradiance.wide);
+    };
+    if (m_maps.caustic)
+        add(m_maps.caustic->irradiance(surface.position, bsdf.facingGeometricNormal(), scratch),
+            result.caustic);
+    StillToFind still;
+    GatherPoints::Estimate indirect;
+    const bool kept = m_maps.points &&
+                      m_maps.points->estimate({screen, surface.position, bsdf.facingShadingNormal(),
+                                               bsdf.facingGeometricNormal()},
+                                              indirect);
+    if (kept) {
+        add(indirect.irradiance, result.indirect);
+        if (indirect.lampShare < kLargeLampShare) still.lamps = LampStrategy::kNextEventOnly;
     }
+    still.indirect = !kept && m_maps.global;
+    if (still.indirect && m_maps.descended) {
+        // Any pattern that depends on the place alone.
+        const auto pattern = std::bit_cast<std::uint32_t>(surface.position.x) ^
+                             std::bit_cast<std::uint32_t>(surface.position.y);
+        add(m_maps.descended->at(surface.position, bsdf.facingGeometricNormal(), pattern),
+            result.indirect);
+    }
+    return still;
+}
+
+// Light that the ray finds at a lamp is direct, the other strategy of its next-event estimation;
+// light found by way of other lobes is a caustic and its map's business.
+void PhotonIntegrator::followDiffuse(const Surface& surface, const BsdfSample& sample,
+                                     StillToFind still, const Rgb& throughput, Sampler& sampler,
+                                     SampleRadiance& result) const {
+    const Rgb weight = throughput * sample.weight;
+    const Ray ray = rayFrom(surface, sample.direction);
+    Gathered found;
+    if (still.indirect) {
+        found = finalGather(m_scene, *m_maps.global, ray, sampler);
+        result.rays += found.rays;
+        result.indirect += weight * found.radiance.wide;
+        result.biasProbe += weight * (found.radiance.narrow - found.radiance.wide);
+    } else if (still.lamps == LampStrategy::kBoth) {
+        ++result.rays;
+        found.hitAny = m_scene.intersect(ray, found.first);
+    }
+    if (found.hitAny && still.lamps == LampStrategy::kBoth)
+        result.direct += weight * weightedEmission(m_lights, found.first,
+                                                   {surface, sample.direction, sample.lobe,
+                                                    sample.pdfSolidAngle});
 }
 
 }  // namespace pm

@@ -4,41 +4,53 @@
 
 #include "integrator/photons/caustic_map.h"
 #include "integrator/photons/irradiance_sites.h"
-#include "integrator/rays/ray_tracer.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/direct_light.h"
+#include "integrator/transport/gather_points.h"
 
 namespace pm {
 
 // The maps of one pass; null where the plan has none.
 struct PhotonMaps {
     const IrradianceSites* global = nullptr;
+    const GatherPoints* points = nullptr;  // refers to global and descended
+    const SurfaceEstimate* descended = nullptr;
     const CausticMap* caustic = nullptr;
 };
 
-// Radiance from photon maps: direct light by next-event estimation and by the gather rays that meet
-// a light, caustics from their map at the first diffuse surface, indirect light by one final-gather
-// ray a sample (or gatherRays) over the global map. Other lobes are followed until a diffuse one.
-// Source: Jensen 2001, chapter 9; the partition is PathClass.
+// Radiance from photon maps. Every light path belongs to one class, every class to one estimator
+// (see PathClass): direct light to next-event estimation, weighted against a ray along the diffuse
+// lobe where lamps fill much of the view; caustics to the density estimate of their map at the
+// first diffuse surface; indirect light to the gather points near it, or to a gather ray of its own
+// where there are none. Other lobes are followed until a diffuse one.
+// Source: Jensen 2001, chapter 9 (the partition).
 // Threads: any, at once, each with a scratch of its own.
 class PhotonIntegrator {
   public:
-    PhotonIntegrator(const Scene& scene, const LightSampler& lights, const PhotonMaps& maps,
-                     std::uint32_t gatherRays)
-        : m_scene(scene), m_lights(lights), m_maps(maps), m_gatherRays(gatherRays) {}
+    PhotonIntegrator(const Scene& scene, const LightSampler& lights, const PhotonMaps& maps)
+        : m_scene(scene), m_lights(lights), m_maps(maps) {}
 
-    SampleRadiance sample(Ray ray, Sampler& sampler, NearestPhotons& scratch) const;
+    // screen: where the ray leaves the camera, pixels.
+    SampleRadiance sample(Vec2f screen, const Ray& ray, Sampler& sampler,
+                          NearestPhotons& scratch) const;
 
   private:
-    void gather(const Surface& from, const BsdfSample& first, const Rgb& weight, Sampler& sampler,
-                NearestPhotons& scratch, SampleRadiance& result) const;
+    // Which part of a diffuse reflection a ray along the lobe still has to find.
+    struct StillToFind {
+        LampStrategy lamps = LampStrategy::kBoth;
+        bool indirect = false;
+    };
+    StillToFind readMaps(Vec2f screen, const Surface& surface, const Bsdf& bsdf,
+                         const Rgb& throughput, NearestPhotons& scratch,
+                         SampleRadiance& result) const;
+    void followDiffuse(const Surface& surface, const BsdfSample& sample, StillToFind still,
+                       const Rgb& throughput, Sampler& sampler, SampleRadiance& result) const;
 
     const Scene& m_scene;
     const LightSampler& m_lights;
     PhotonMaps m_maps;
-    std::uint32_t m_gatherRays;
 };
 
 }  // namespace pm

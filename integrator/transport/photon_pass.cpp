@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "integrator/transport/frame_renderer.h"
+#include "integrator/values/error.h"
 #include "integrator/values/stopwatch.h"
 
 namespace pm {
@@ -25,15 +26,13 @@ float radiusFactor(std::uint32_t pass) {
 
 }  // namespace
 
-PhotonPass::PhotonPass(const Scene& scene, const LightSampler& lights, const Plan& plan,
-                       const RenderSettings& settings)
-    : m_scene(scene), m_lights(lights), m_plan(plan), m_settings(settings) {}
+PhotonPass::PhotonPass(const Scene& scene, const Camera& camera, const LightSampler& lights,
+                       const Plan& plan, const RenderSettings& settings)
+    : m_scene(scene), m_camera(camera), m_lights(lights), m_plan(plan), m_settings(settings) {}
 
 void PhotonPass::begin(std::uint32_t pass, const std::atomic<bool>& cancelled,
                        const std::function<void(double)>& progress) {
-    m_sites.reset();
-    m_globalMap.reset();
-    m_causticMap.reset();
+    dropMaps();
     if (!m_plan.tracePhotons) return;
     Control control{cancelled, progress};
     if (!m_haveRadii) findRadii(control);
@@ -41,8 +40,19 @@ void PhotonPass::begin(std::uint32_t pass, const std::atomic<bool>& cancelled,
     buildMaps(pass, control);
 }
 
-std::vector<Photon> PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
-                                      Control& control) {
+void PhotonPass::dropMaps() {
+    const std::lock_guard lock(m_mutex);
+    if (m_points) m_gatherRays += m_points->raysTraced();
+    m_points.reset();
+    m_descended.reset();
+    m_descendedMap.reset();
+    m_sites.reset();
+    m_globalMap.reset();
+    m_causticMap.reset();
+}
+
+PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
+                                    Control& control) {
     const Stopwatch watch;
     const auto part = [&](double fraction) {
         if (control.progress)
@@ -50,55 +60,101 @@ std::vector<Photon> PhotonPass::trace(PhotonKind kind, std::uint64_t count, std:
                                             fraction * static_cast<double>(count)) /
                                                static_cast<double>(m_plan.photonsPerPass())));
     };
-    PhotonTraceResult result = tracePhotons(m_scene, m_lights, {kind, count, m_settings.seed, pass},
-                                            control.cancelled, part);
+    PhotonTraceRequest request{kind, count, m_settings.seed, pass};
+    if (isCaustic(kind)) {
+        request.aim = m_aim.get();
+        request.descent = m_plan.descent;
+    }
+    request.withoutCaustics = m_plan.descent > 0.0f;
+    PhotonTraceResult result = tracePhotons(m_scene, m_lights, request, control.cancelled, part);
     control.photonsBefore += count;
     this->count(kind, result.balance);
     const std::lock_guard lock(m_mutex);
     m_photonSeconds += watch.seconds();
-    return std::move(result.photons);
+    return result;
+}
+
+// What light is sent to which casters of caustics: a geometric guess, and a pilot that finds what
+// is hidden.
+void PhotonPass::aim(Control& control) {
+    m_aim = std::make_unique<AimedEmission>(m_scene, m_lights);
+    if (m_aim->empty()) return;
+    // A pass's number that the pilot of the radii doesn't have.
+    const PhotonTraceRequest request{
+        PhotonKind::kCausticPilot, m_plan.aimPilotPhotons(), m_settings.seed, 1, m_aim.get(), true};
+    const PhotonTraceResult landed =
+        tracePhotons(m_scene, m_lights, request, control.cancelled, {});
+    m_aim->refine(landed.records);
 }
 
 void PhotonPass::findRadii(Control& control) {
     // Where a pilot finds next to nothing, estimates reach a hundredth of the scene.
     const auto fallback = static_cast<float>(0.01 * m_scene.radius());
+    const std::uint32_t estimatePhotons = m_settings.estimatePhotons;
     if (m_plan.globalMap)
         m_globalRadius =
-            PilotRadius(trace(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0, control),
-                        m_settings.estimatePhotons, fallback)
+            PilotRadius(
+                trace(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0, control).photons,
+                estimatePhotons, fallback)
                 .typical();
-    if (m_plan.causticMap)
-        m_causticRadius = std::make_unique<CausticRadius>(
-            trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), 0, control),
-            m_settings.estimatePhotons, fallback);
+    if (m_plan.causticMap) {
+        aim(control);
+        PhotonTraceResult pilot =
+            trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), 0, control);
+        m_causticRadius =
+            std::make_unique<CausticRadius>(std::move(pilot.photons), estimatePhotons, fallback);
+        if (m_plan.descent > 0.0f)
+            m_descendedRadius =
+                PilotRadius(std::move(pilot.descended), estimatePhotons, fallback).typical();
+    }
     m_haveRadii = true;
 }
 
-void PhotonPass::buildMaps(std::uint32_t pass, Control& control) {
+void PhotonPass::buildCaustics(std::uint32_t pass, Control& control) {
+    PhotonTraceResult traced = trace(PhotonKind::kCaustic, m_plan.causticPhotons, pass, control);
+    const Stopwatch watch;
     const float factor = radiusFactor(pass);
-    double seconds = 0;
-    if (m_plan.globalMap) {
-        std::vector<Photon> photons =
-            trace(PhotonKind::kGlobal, m_plan.globalPhotons, pass, control);
-        std::vector<Photon> places = trace(PhotonKind::kSites, m_plan.sitePhotons, pass, control);
-        const Stopwatch watch;
-        m_globalMap = std::make_unique<PhotonMap>(std::move(photons));
-        m_sites = std::make_unique<IrradianceSites>(m_scene, *m_globalMap, std::move(places),
-                                                    m_globalRadius * factor);
-        seconds += watch.seconds();
+    m_causticMap =
+        std::make_unique<CausticMap>(std::move(traced.photons), *m_causticRadius, factor);
+    if (m_plan.descent > 0.0f) {
+        m_descendedMap = std::make_unique<PhotonMap>(std::move(traced.descended));
+        m_descended =
+            std::make_unique<SurfaceEstimate>(m_scene, *m_descendedMap, m_descendedRadius * factor);
     }
-    if (m_plan.causticMap) {
-        std::vector<Photon> photons =
-            trace(PhotonKind::kCaustic, m_plan.causticPhotons, pass, control);
-        const Stopwatch watch;
-        m_causticMap = std::make_unique<CausticMap>(std::move(photons), *m_causticRadius, factor);
-        seconds += watch.seconds();
-    }
-    const std::uint64_t bytes =
-        (m_globalMap ? m_globalMap->memoryBytes() + m_sites->memoryBytes() : 0) +
-        (m_causticMap ? m_causticMap->memoryBytes() + m_causticRadius->memoryBytes() : 0);
     const std::lock_guard lock(m_mutex);
-    m_mapSeconds += seconds;
+    m_mapSeconds += watch.seconds();
+}
+
+void PhotonPass::buildIndirect(std::uint32_t pass, Control& control) {
+    PhotonTraceResult traced = trace(PhotonKind::kGlobal, m_plan.globalPhotons, pass, control);
+    const Stopwatch watch;
+    const float factor = radiusFactor(pass);
+    m_globalMap = std::make_unique<PhotonMap>(std::move(traced.photons));
+    m_sites = std::make_unique<IrradianceSites>(m_scene, *m_globalMap, m_globalRadius * factor);
+    const GatherPoints::Request request{m_settings.width,
+                                        m_settings.height,
+                                        m_plan.gatherSpacing,
+                                        m_plan.gatherRays,
+                                        factor,
+                                        m_settings.seed,
+                                        pass,
+                                        m_descended.get()};
+    auto points =
+        std::make_unique<GatherPoints>(m_scene, m_camera, *m_sites, request, control.cancelled);
+    if (control.cancelled.load()) throw Error(Status::kCancelled, "cancelled while gathering");
+    const std::lock_guard lock(m_mutex);
+    m_points = std::move(points);
+    m_mapSeconds += watch.seconds();
+}
+
+void PhotonPass::buildMaps(std::uint32_t pass, Control& control) {
+    if (m_plan.causticMap) buildCaustics(pass, control);
+    if (m_plan.globalMap) buildIndirect(pass, control);
+    const auto bytesOf = [](const auto& part) { return part ? part->memoryBytes() : 0; };
+    const std::uint64_t bytes = bytesOf(m_globalMap) + bytesOf(m_sites) + bytesOf(m_points) +
+                                bytesOf(m_descendedMap) + bytesOf(m_causticMap) +
+                                bytesOf(m_causticRadius);
+    const std::lock_guard lock(m_mutex);
     m_peakMapBytes = std::max(m_peakMapBytes, bytes);
 }
 
@@ -126,7 +182,7 @@ void PhotonPass::count(PhotonKind kind, const PhotonBalance& balance) {
 
 void PhotonPass::addTo(RenderCounters& counters) const {
     const std::lock_guard lock(m_mutex);
-    counters.rays += m_allKinds.rays;
+    counters.rays += m_allKinds.rays + m_gatherRays + (m_points ? m_points->raysTraced() : 0);
     counters.photonsEmitted += m_allKinds.emitted;
     counters.photonsLost += m_allKinds.lost;
     counters.fluxEmitted += m_global.fluxEmitted;

@@ -5,9 +5,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "integrator/photons/caustic_map.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/gather_points.h"
 
 namespace pm {
 
@@ -15,10 +17,13 @@ namespace {
 
 // Photons a pass where nothing else is asked for: at 50 to an estimate the Cornell box is then
 // resolved to a hundredth of its width. Measured figures are in docs/benchmarks.md.
-constexpr std::uint64_t kAutoGlobalPhotons = 200'000;
-constexpr std::uint64_t kAutoCausticPhotons = 1'000'000;
-// Irradiance is kept at one place for so many photons of the global map.
-constexpr std::uint64_t kPhotonsPerSite = 2;
+constexpr std::uint64_t kAutoGlobalPhotons = 50'000;
+constexpr std::uint64_t kAutoCausticPhotons = 250'000;
+constexpr std::uint32_t kAutoGatherRays = 24;
+// Gather points: one for 2.5 x 2.5 pixels, but no more than these in a frame.
+constexpr float kGatherSpacing = 2.5f;
+constexpr double kMostGatherPoints = 1 << 20;
+constexpr float kAutoDescent = 0.25f;
 // Arrivals a photon: 1/(1 - albedo) for an albedo of 0.75.
 constexpr std::uint64_t kExpectedArrivals = 4;
 
@@ -81,12 +86,18 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     plan.tracePhotons = plan.globalMap || plan.causticMap;
     if (plan.globalMap) {
         plan.globalPhotons = settings.photons > 0 ? settings.photons : kAutoGlobalPhotons;
-        plan.sitePhotons = std::max<std::uint64_t>(1, plan.globalPhotons / kPhotonsPerSite);
+        plan.gatherRays = settings.gatherRays > 0 ? settings.gatherRays : kAutoGatherRays;
+        plan.gatherSpacing = std::max(
+            kGatherSpacing, static_cast<float>(std::sqrt(static_cast<double>(settings.width) *
+                                                         settings.height / kMostGatherPoints)));
         plan.reasons.push_back(fmt::format(
-            "global map: {} photons a pass, its irradiance kept where {} others land, for {} "
-            "final-gather ray{} a sample",
-            plan.globalPhotons, plan.sitePhotons, settings.gatherRays,
-            settings.gatherRays > 1 ? "s" : ""));
+            "indirect light: final gathering at a point for every {:.1f} x {:.1f} pixels, {} rays "
+            "each, and the mean of the points near a sample",
+            plan.gatherSpacing, plan.gatherSpacing, plan.gatherRays));
+        plan.reasons.push_back(fmt::format(
+            "global map: {} photons a pass, its irradiance kept at sites for what the gather rays "
+            "meet",
+            plan.globalPhotons));
     } else {
         plan.reasons.push_back("no global map: all surfaces lie in one plane");
     }
@@ -95,12 +106,21 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
         plan.reasons.push_back(fmt::format(
             "caustic map: {} photons a pass, since the scene has surfaces that are not diffuse",
             plan.causticPhotons));
+        if (plan.globalMap) {
+            plan.descent = kAutoDescent;
+            plan.reasons.push_back(fmt::format(
+                "light descended from caustics: {:.0f} % of their photons are followed on, for a "
+                "wide density estimate; gather rays would have to find the caustics",
+                plan.descent * 100.0f));
+        }
     } else {
         plan.reasons.push_back("no caustic map: every surface is diffuse");
     }
     plan.mapBytes =
-        ((plan.globalPhotons + plan.sitePhotons) * kExpectedArrivals + plan.causticPhotons) *
-        PhotonMap::kBytesPerPhoton;
+        (plan.globalPhotons * kExpectedArrivals + plan.causticPhotons) * PhotonMap::kBytesPerPhoton;
+    if (plan.globalMap)
+        plan.mapBytes +=
+            GatherPoints::memoryBytes(settings.width, settings.height, plan.gatherSpacing);
     return plan;
 }
 
@@ -110,6 +130,10 @@ std::uint64_t Plan::globalPilotPhotons() const {
 
 std::uint64_t Plan::causticPilotPhotons() const {
     return causticPhotons / PilotRadius::kPilotShare + 1;
+}
+
+std::uint64_t Plan::aimPilotPhotons() const {
+    return causticPilotPhotons() / 4 + 1;
 }
 
 std::string Plan::explain() const {

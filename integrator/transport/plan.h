@@ -20,17 +20,23 @@ struct Plan {
     bool globalMap = false;            // the scene has indirect diffuse light to gather
     bool causticMap = false;           // light can reach a diffuse surface by way of a specular one
     std::uint64_t globalPhotons = 0;   // emitted a pass for the global map
-    std::uint64_t sitePhotons = 0;     // emitted a pass for the places where irradiance is kept
     std::uint64_t causticPhotons = 0;  // emitted a pass for the caustic map alone
+    // Share of the caustic photons that is followed on, for a density estimate of the light
+    // descended from caustics; 0: that light is left to the gather rays.
+    float descent = 0.0f;
+    float gatherSpacing = 0.0f;        // of gather points on the screen, pixels
+    std::uint32_t gatherRays = 0;      // of each gather point
     std::uint64_t mapBytes = 0;        // estimated peak of the maps
     std::vector<std::string> reasons;  // one line each: what and why
     std::vector<Notice> notices;
 
-    std::uint64_t photonsPerPass() const { return globalPhotons + sitePhotons + causticPhotons; }
+    std::uint64_t photonsPerPass() const { return globalPhotons + causticPhotons; }
 
     // Emitted once a render, to find the radii of the estimates.
     std::uint64_t globalPilotPhotons() const;
     std::uint64_t causticPilotPhotons() const;
+    // Emitted before those, to learn where to aim.
+    std::uint64_t aimPilotPhotons() const;
 
     // The lines that --explain prints.
     std::string explain() const;

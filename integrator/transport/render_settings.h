@@ -18,7 +18,7 @@ struct RenderSettings {
     IntegratorKind integrator = IntegratorKind::kPhoton;
     std::uint64_t photons = 0;           // emitted a pass; 0 = chosen by the plan
     std::uint32_t estimatePhotons = 50;  // k of the k-nearest estimates, >= 2
-    std::uint32_t gatherRays = 1;        // final-gather rays a sample, >= 1
+    std::uint32_t gatherRays = 0;        // of each gather point; 0 = chosen by the plan
     std::uint32_t passes = 4;            // >= 1
     std::uint32_t aaLevel = 3;           // 1..6: 4^(level-1) samples a pixel in four passes
     std::uint64_t seed = 1;

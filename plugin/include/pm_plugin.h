@@ -357,7 +357,7 @@ typedef struct PmrBucketInfo {
     uint32_t bucketIndex; /* in the order of rendering */
     uint32_t bucketCount; /* of one pass */
     uint32_t passIndex;   /* the pass that just came, from 0 */
-    uint32_t passCount;
+    uint32_t passCount;   /* at most: an error target or a time limit may end a render earlier */
     uint64_t sampleCount; /* camera samples in this bucket and pass */
 } PmrBucketInfo;
 
@@ -367,6 +367,14 @@ typedef struct PmrBucketInfo {
 #define PMR_RENDER_CREATED 0
 #define PMR_RENDER_RUNNING 1
 #define PMR_RENDER_FINISHED 2
+
+/* Why a render ended. */
+#define PMR_STOP_NONE 0         /* it has not */
+#define PMR_STOP_PASSES 1       /* all passes are done */
+#define PMR_STOP_ERROR_TARGET 2 /* the estimated relMSE is within the setting errorTarget */
+#define PMR_STOP_TIME_LIMIT 3   /* another pass would not fit into timeLimitSeconds */
+#define PMR_STOP_CANCELLED 4
+#define PMR_STOP_FAILED 5
 
 typedef void(PMR_CALL* PmrProgressFunction)(void* user, PmrRender render, double fraction,
                                             double remainingSeconds); /* NaN: not known yet */
@@ -477,6 +485,10 @@ typedef struct PmrApi {
     /* JSON, "schema": "pm-stats/1" (the library's part); at any time after startRender. */
     PmrStatus(PMR_CALL* renderStatistics)(PmrRender render, char* buffer, uint64_t capacity,
                                           uint64_t* needed);
+
+    /* PMR_STOP_*; at any time, also inside `finished`. The table's size tells whether it is
+     * there: it came after the first version. */
+    PmrStatus(PMR_CALL* renderStopReason)(PmrRender render, int32_t* reason);
 } PmrApi;
 
 /* The one symbol. Returns PMR_ERROR_ABI when that version is not offered. Any thread. */

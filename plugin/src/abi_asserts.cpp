@@ -181,7 +181,7 @@ static_assert(offsetof(PmrRenderDesc, bucketStarted) == 40);
 static_assert(offsetof(PmrRenderDesc, bucketFinished) == 48);
 static_assert(offsetof(PmrRenderDesc, finished) == 56);
 
-static_assert(sizeof(PmrApi) == 376);
+static_assert(sizeof(PmrApi) == 384);
 static_assert(offsetof(PmrApi, versionText) == 16);
 static_assert(offsetof(PmrApi, statusText) == 24);
 static_assert(offsetof(PmrApi, settingCount) == 32);
@@ -227,3 +227,4 @@ static_assert(offsetof(PmrApi, renderLayerCount) == 344);
 static_assert(offsetof(PmrApi, renderLayerInfo) == 352);
 static_assert(offsetof(PmrApi, readPixels) == 360);
 static_assert(offsetof(PmrApi, renderStatistics) == 368);
+static_assert(offsetof(PmrApi, renderStopReason) == 376);

@@ -55,6 +55,7 @@ constexpr PmrApi kApi = {
     .renderLayerInfo = api::renderLayerInfo,
     .readPixels = api::readPixels,
     .renderStatistics = api::renderStatistics,
+    .renderStopReason = api::renderStopReason,
 };
 
 }  // namespace

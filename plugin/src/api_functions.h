@@ -65,5 +65,6 @@ PmrStatus PMR_CALL readPixels(PmrRender render, const PmrRectangle* rectangle, c
                               int64_t rowStrideBytes) noexcept;
 PmrStatus PMR_CALL renderStatistics(PmrRender render, char* buffer, uint64_t capacity,
                                     uint64_t* needed) noexcept;
+PmrStatus PMR_CALL renderStopReason(PmrRender render, int32_t* reason) noexcept;
 
 }  // namespace pm::plugin::api

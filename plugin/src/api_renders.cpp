@@ -210,4 +210,11 @@ PmrStatus PMR_CALL renderStatistics(PmrRender render, char* buffer, uint64_t cap
     });
 }
 
+PmrStatus PMR_CALL renderStopReason(PmrRender render, int32_t* reason) noexcept {
+    return onObject<Render>(render, [&](const RenderPointer& object) {
+        if (reason == nullptr) throw argumentError("reason is null");
+        *reason = object->stopReason();
+    });
+}
+
 }  // namespace pm::plugin::api

@@ -180,6 +180,16 @@ void Render::stateAndStatus(std::int32_t& state, PmrStatus& status) const {
     status = m_status;
 }
 
+std::int32_t Render::stopReason() const {
+    const std::shared_ptr<RenderWork> running = work();
+    std::int32_t state = 0;
+    PmrStatus status = PMR_OK;
+    stateAndStatus(state, status);
+    if (!running || state != PMR_RENDER_FINISHED) return PMR_STOP_NONE;
+    if (status == PMR_OK) return running->progress().stopReason;
+    return status == PMR_ERROR_CANCELLED ? PMR_STOP_CANCELLED : PMR_STOP_FAILED;
+}
+
 bool Render::shutDown() {
     refuseInCallback("destroyRender");
     std::thread job, delivery;

@@ -55,6 +55,7 @@ class Render {
     void readPixels(const PmrRectangle& rectangle, const char* layer, float* destination,
                     std::int64_t pixelStrideBytes, std::int64_t rowStrideBytes) const;
     std::string statisticsJson() const;
+    std::int32_t stopReason() const;  // PMR_STOP_*
 
   private:
     void runJob();

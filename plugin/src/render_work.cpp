@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <ctime>
 #include <utility>
 
 #include "integrator/values/error.h"
@@ -28,30 +29,46 @@ void throwIfCancelled(const Cancel& cancel) {
     if (cancel.isSet()) throw Error(Status::kCancelled, "the render was cancelled");
 }
 
+double processorSeconds() {
+    std::timespec time{};
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+
+ProgressClock::Ends endsOf(const StopRule& rule) {
+    ProgressClock::Ends ends;
+    if (rule.passes()) ends.passes = *rule.passes();
+    if (rule.timeLimitSeconds() > 0) ends.seconds = rule.timeLimitSeconds();
+    return ends;
+}
+
 }  // namespace
 
 RenderWork::RenderWork(std::shared_ptr<const Scene> scene, const SettingValues& values)
-    : m_scene(std::move(scene)),
+    : m_processorStart(processorSeconds()),
+      m_scene(std::move(scene)),
       m_settings(values.toRenderSettings()),
+      m_stopRule(values),
       m_plan(makePlan(*m_scene, m_settings)),
       m_arena(static_cast<int>(values.integer(Setting::kThreads))),
       m_grid(m_settings.window, static_cast<std::int32_t>(values.integer(Setting::kBucketSize))),
       m_layout(channelLayout(m_settings)),
-      m_clock(m_settings.passes, m_plan.tracePhotons) {
+      m_clock(endsOf(m_stopRule), m_plan.tracePhotons) {
     checkMemory(values);
     m_order = cellsInOrder(m_grid, values.word(Setting::kBucketOrder));
     m_orderIndex.resize(m_order.size());
     for (std::uint32_t i = 0; i < m_order.size(); ++i) m_orderIndex[m_order[i]] = i;
     m_renderer =
         m_arena.execute([this] { return std::make_unique<FrameRenderer>(m_scene, m_settings); });
-    m_frame = std::make_unique<FrameStore>(m_settings.window, m_layout.count, m_layout.beauty);
+    m_frame = std::make_unique<FrameStore>(m_settings.window, m_layout.count, m_layout.beauty,
+                                           m_layout.biasProbe, m_layout.emission);
     m_scratch.resize(static_cast<std::size_t>(m_arena.threads()));
 }
 
 void RenderWork::checkMemory(const SettingValues& values) {
     const auto bucketSize = static_cast<std::uint64_t>(m_grid.bucketSize());
     m_need.scene = m_scene->memoryBytes();
-    m_need.frame = FrameStore::memoryBytes(m_settings.window, m_layout.count);
+    m_need.frame = FrameStore::memoryBytes(m_settings.window, m_layout.count, m_layout.biasProbe);
     m_need.maps = m_plan.mapBytes;
     m_need.buckets = static_cast<std::uint64_t>(m_arena.threads()) * bucketSize * bucketSize *
                          static_cast<std::uint64_t>(m_layout.count + 1) * sizeof(float) +
@@ -77,23 +94,47 @@ void RenderWork::announce(EventQueue& events) {
 }
 
 void RenderWork::run(const Cancel& cancel, EventQueue& events) {
-    for (std::uint32_t pass = 0; pass < m_settings.passes; ++pass) {
+    for (std::uint32_t pass = 0;; ++pass) {
         throwIfCancelled(cancel);
         const double photonSeconds = beginPass(pass, cancel, events);
         const double bucketSeconds = renderBuckets(pass, cancel, events);
         for (const Notice& notice : m_renderer->takeNotices()) warn(notice, events);
         throwIfCancelled(cancel);
-        m_clock.endPass(photonSeconds, bucketSeconds);
-        const std::lock_guard lock(m_mutex);
-        ++m_timings.passesDone;
+        if (endPass(pass, photonSeconds, bucketSeconds)) return;
     }
+}
+
+bool RenderWork::endPass(std::uint32_t pass, double photonSeconds, double bucketSeconds) {
+    PassEnd end;
+    end.passesDone = pass + 1;
+    const bool inCurve = progress().curve.wants(end.passesDone);
+    if (inCurve || m_stopRule.hasErrorTarget()) end.error = m_frame->estimateError();
+    end.seconds = m_watch.seconds();
+    end.longestPassSeconds = std::max(end.seconds / end.passesDone, photonSeconds + bucketSeconds);
+    const std::int32_t stop = m_stopRule.after(end);
+    const bool isLast = stop != PMR_STOP_NONE;
+    if (isLast && !end.error) end.error = m_frame->estimateError();
+    m_clock.endPass(photonSeconds, bucketSeconds, m_stopRule.passesToErrorTarget(end));
+
+    const std::lock_guard lock(m_mutex);
+    m_progress.passesDone = end.passesDone;
+    m_progress.stopReason = stop;
+    if (inCurve || isLast)
+        m_progress.curve.add(
+            {end.passesDone, end.seconds, processorSeconds() - m_processorStart, end.error});
+    return isLast;
+}
+
+std::string RenderWork::passName(std::uint32_t pass) const {
+    if (const auto passes = m_stopRule.passes())
+        return fmt::format("pass {} of {}", pass + 1, *passes);
+    return fmt::format("pass {}", pass + 1);
 }
 
 double RenderWork::beginPass(std::uint32_t pass, const Cancel& cancel, EventQueue& events) {
     const Stopwatch watch;
     if (m_plan.tracePhotons)
-        events.message(PMR_LEVEL_INFO, PMR_MESSAGE_PHASE,
-                       fmt::format("pass {} of {}: photons", pass + 1, m_settings.passes));
+        events.message(PMR_LEVEL_INFO, PMR_MESSAGE_PHASE, passName(pass) + ": photons");
     m_arena.execute([&] {
         m_renderer->beginPass(pass, cancel.flag, [&](double fraction) {
             const ProgressClock::Reading reading = m_clock.photons(pass, fraction);
@@ -103,7 +144,7 @@ double RenderWork::beginPass(std::uint32_t pass, const Cancel& cancel, EventQueu
     const double seconds = watch.seconds();
     for (const Notice& notice : m_renderer->takeNotices()) warn(notice, events);
     const std::lock_guard lock(m_mutex);
-    m_timings.photonSeconds += seconds;
+    m_progress.photonSeconds += seconds;
     return seconds;
 }
 
@@ -177,17 +218,17 @@ double RenderWork::renderBuckets(std::uint32_t pass, const Cancel& cancel, Event
     const double seconds = watch.seconds();
 
     const std::lock_guard lock(m_mutex);
-    m_timings.bucketSeconds += seconds;
-    std::vector<double>& means = m_timings.secondsPerBucket;
+    m_progress.bucketSeconds += seconds;
+    std::vector<double>& means = m_progress.secondsPerBucket;
     means.resize(result.seconds.size());
     for (std::size_t i = 0; i < means.size(); ++i)
         means[i] += (result.seconds[i] - means[i]) / (pass + 1.0);
     return seconds;
 }
 
-RenderWork::Timings RenderWork::timings() const {
+RenderWork::Progress RenderWork::progress() const {
     const std::lock_guard lock(m_mutex);
-    return m_timings;
+    return m_progress;
 }
 
 }  // namespace pm::plugin

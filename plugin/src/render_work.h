@@ -12,9 +12,12 @@
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame_renderer.h"
 #include "integrator/transport/plan.h"
+#include "integrator/values/stopwatch.h"
+#include "plugin/src/error_curve.h"
 #include "plugin/src/event_queue.h"
 #include "plugin/src/progress_clock.h"
 #include "plugin/src/setting_values.h"
+#include "plugin/src/stop_rule.h"
 #include "plugin/src/warning_log.h"
 #include "scheduler/bucket_grid.h"
 #include "scheduler/bucket_runner.h"
@@ -54,17 +57,21 @@ class RenderWork {
 
     // Before run: tells the host what the plan found.
     void announce(EventQueue& events);
-    // All passes. Errors: Error(kCancelled) soon after `cancel` is set, those of the renderer.
+    // All passes that the stop rule wants. Errors: Error(kCancelled) soon after `cancel` is set,
+    // those of the renderer.
     void run(const Cancel& cancel, EventQueue& events);
 
-    struct Timings {
+    // What has been done, and what it took.
+    struct Progress {
         std::uint32_t passesDone = 0;
+        std::int32_t stopReason = PMR_STOP_NONE;
+        ErrorCurve curve;
         double photonSeconds = 0;              // beginPass: photons and their maps
         double bucketSeconds = 0;              // the buckets of all passes
         std::vector<double> secondsPerBucket;  // mean of a pass, by bucket; empty before the first
     };
     // All of these: any thread, any time.
-    Timings timings() const;
+    Progress progress() const;
     RenderCounters counters() const { return m_renderer->counters(); }
     const Scene& scene() const { return *m_scene; }
     const Plan& plan() const { return m_plan; }
@@ -73,7 +80,7 @@ class RenderWork {
     const ChannelLayout& layout() const { return m_layout; }
     WarningLog& warnings() { return m_warnings; }
     int threads() const { return m_arena.threads(); }
-    std::uint32_t passCount() const { return m_settings.passes; }
+    std::uint32_t passCount() const { return m_settings.passes; }  // at most
     std::uint32_t bucketCount() const { return static_cast<std::uint32_t>(m_order.size()); }
 
   private:
@@ -82,14 +89,20 @@ class RenderWork {
     };
 
     void checkMemory(const SettingValues& values);
+    std::string passName(std::uint32_t pass) const;
+    // Whether the pass that just ended was the last.
+    bool endPass(std::uint32_t pass, double photonSeconds, double bucketSeconds);
     void warn(const Notice& notice, EventQueue& events);
     double beginPass(std::uint32_t pass, const Cancel& cancel, EventQueue& events);
     double renderBuckets(std::uint32_t pass, const Cancel& cancel, EventQueue& events);
     void renderBucket(const Rect& rect, int worker, std::span<float> buffer, const Cancel& cancel);
     PmrBucketInfo bucketInfo(std::uint32_t cell, const Rect& rect, std::uint32_t pass) const;
 
+    const Stopwatch m_watch;
+    const double m_processorStart;
     const std::shared_ptr<const Scene> m_scene;
     const RenderSettings m_settings;
+    const StopRule m_stopRule;
     const Plan m_plan;
     WorkerArena m_arena;
     const BucketGrid m_grid;
@@ -104,7 +117,7 @@ class RenderWork {
     WarningLog m_warnings;
 
     mutable std::mutex m_mutex;
-    Timings m_timings;
+    Progress m_progress;
 };
 
 }  // namespace pm::plugin

@@ -43,11 +43,13 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
     {Setting::kEstimatePhotons, "estimatePhotons", PMR_SETTING_INTEGER, "photons", "50", 2, 100000,
      1, "", true, "Photons in each density estimate: fewer are noisier, more are more blurred.",
      "Time of a look-up grows with it."},
-    {Setting::kGatherRays, "gatherRays", PMR_SETTING_INTEGER, "rays", "1", 1, 1024, 1, "", true,
-     "Final-gather rays of each camera sample.", "Time grows with it where light is indirect."},
+    {Setting::kGatherRays, "gatherRays", PMR_SETTING_INTEGER, "rays", "0", 0, 1024, 1, "", true,
+     "Final-gather rays of each gather point; 0 = chosen by the plan (see --explain).",
+     "Time grows with it where light is indirect."},
     {Setting::kPasses, "passes", PMR_SETTING_INTEGER, "passes", "4", 1, 1000000, 1, "", true,
      "Passes, each with photons and samples of its own; the picture is their mean. At least 2 are "
-     "needed to tell the error.",
+     "needed to tell the error. With an error target or a time limit and no number given: as many "
+     "as those need.",
      "Time grows with it; memory does not."},
     {Setting::kSeed, "seed", PMR_SETTING_INTEGER, "", "1", 0, kMaxInteger, 1, "", true,
      "Start of all random numbers; the same seed gives the same picture.", "None."},
@@ -59,6 +61,16 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
      "A render that needs more is refused at its start; 0 = the cgroup's limit, else 90 % of "
      "memory.",
      "None; it never changes the picture."},
+    {Setting::kErrorTarget, "errorTarget", PMR_SETTING_NUMBER, "relMSE", "0", 0, 1000000, 1, "",
+     false,
+     "Ends the render after the first pass (from the second on) whose estimated relMSE, bias "
+     "included, is no larger; 0 = none. What it has then is the picture of so many passes.",
+     "Time grows with 1/target. One that is below what bias can fall to is never reached."},
+    {Setting::kTimeLimit, "timeLimitSeconds", PMR_SETTING_NUMBER, "s", "0", 0, 1000000000, 1, "",
+     false,
+     "Begins no pass that would not end by then, counted from the render's start and judged by the "
+     "passes before; 0 = none. The first pass is always made, whole.",
+     "Decides only how many passes there are."},
 }};
 
 constexpr bool inOrder() {

@@ -32,6 +32,8 @@ enum class Setting : std::size_t {
     kSeed,
     kLayers,
     kMemoryLimit,
+    kErrorTarget,
+    kTimeLimit,
     kCount
 };
 inline constexpr std::size_t kSettingCount = static_cast<std::size_t>(Setting::kCount);

@@ -128,6 +128,7 @@ std::optional<Rect> parseCrop(std::string_view text) {
 
 SettingValues::SettingValues() {
     for (const SettingSpec& spec : settingSpecs()) setText(spec.name, spec.defaultText);
+    m_passesAreSet = false;
 }
 
 void SettingValues::setInteger(std::string_view name, std::int64_t value) {
@@ -203,6 +204,16 @@ bool SettingValues::wantsLayer(std::string_view layer) const {
     return false;
 }
 
+bool SettingValues::limitsPasses() const {
+    return m_passesAreSet ||
+           !(number(Setting::kErrorTarget) > 0 || number(Setting::kTimeLimit) > 0);
+}
+
+std::uint32_t SettingValues::passLimit() const {
+    return static_cast<std::uint32_t>(limitsPasses() ? integer(Setting::kPasses)
+                                                     : specOf("passes").maximum);
+}
+
 RenderSettings SettingValues::toRenderSettings() const {
     RenderSettings settings;
     settings.width = static_cast<std::int32_t>(integer(Setting::kWidth));
@@ -213,7 +224,7 @@ RenderSettings SettingValues::toRenderSettings() const {
     settings.photons = static_cast<std::uint64_t>(integer(Setting::kPhotons));
     settings.estimatePhotons = static_cast<std::uint32_t>(integer(Setting::kEstimatePhotons));
     settings.gatherRays = static_cast<std::uint32_t>(integer(Setting::kGatherRays));
-    settings.passes = static_cast<std::uint32_t>(integer(Setting::kPasses));
+    settings.passes = passLimit();
     settings.aaLevel = static_cast<std::uint32_t>(integer(Setting::kAaLevel));
     settings.seed = static_cast<std::uint64_t>(integer(Setting::kSeed));
     settings.wantAlbedo = wantsLayer("albedo");

@@ -40,15 +40,24 @@ class SettingValues {
     Rect window() const;
     // Whether a layer is among those that were asked for by name.
     bool wantsLayer(std::string_view layer) const;
+    // Whether the number of passes is limited by itself: it was set, or nothing else ends a render.
+    bool limitsPasses() const;
+    // Passes at most: the most there can be where limitsPasses() is false.
+    std::uint32_t passLimit() const;
     RenderSettings toRenderSettings() const;
 
   private:
     using Value = std::variant<std::int64_t, double, std::string>;
 
-    Value& at(Setting id) { return m_values[static_cast<std::size_t>(id)]; }
+    // The place of a value that is set.
+    Value& at(Setting id) {
+        if (id == Setting::kPasses) m_passesAreSet = true;
+        return m_values[static_cast<std::size_t>(id)];
+    }
     const Value& at(Setting id) const { return m_values[static_cast<std::size_t>(id)]; }
 
     std::array<Value, kSettingCount> m_values;
+    bool m_passesAreSet = false;
 };
 
 // "x0,y0,x1,y1" as a rectangle that is not empty, nothing for an empty text. Throws

@@ -19,10 +19,21 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* stopReason(std::int32_t state, PmrStatus status) {
-    if (state != PMR_RENDER_FINISHED) return "running";
-    if (status == PMR_OK) return "finished";
-    return status == PMR_ERROR_CANCELLED ? "cancelled" : "failed";
+const char* stopText(std::int32_t reason) {
+    switch (reason) {
+        case PMR_STOP_PASSES:
+            return "passes done";
+        case PMR_STOP_ERROR_TARGET:
+            return "error target";
+        case PMR_STOP_TIME_LIMIT:
+            return "time limit";
+        case PMR_STOP_CANCELLED:
+            return "cancelled";
+        case PMR_STOP_FAILED:
+            return "failed";
+        default:
+            return "running";
+    }
 }
 
 Json countersJson(const RenderCounters& c) {
@@ -74,7 +85,7 @@ Json planJson(const Plan& plan) {
             {"globalMap", plan.globalMap},
             {"causticMap", plan.causticMap},
             {"globalPhotonsPerPass", plan.globalPhotons},
-            {"sitePhotonsPerPass", plan.sitePhotons},
+            {"gatherRaysPerPoint", plan.gatherRays},
             {"causticPhotonsPerPass", plan.causticPhotons},
             {"lines", plan.reasons}};
 }
@@ -92,9 +103,38 @@ Json settingsJson(const SettingValues& values) {
     return json;
 }
 
-Json relMseJson(const FrameStore& frame) {
-    const auto estimate = frame.estimatedRelMse();
-    return estimate ? Json(*estimate) : Json(nullptr);
+constexpr const char* kEstimateCovers =
+    "noise, from what even and odd passes differ by, and bias of the density estimates, from what "
+    "they change by at radii narrowed by sqrt(2); not light that no pass has found, nor all of the "
+    "bias at sharp edges of light";
+
+// With one pass nothing is known of the error.
+void addError(const std::optional<FrameError>& error, Json& json) {
+    const auto put = [&](const char* key, auto figure) {
+        json[key] = error ? Json(figure(*error)) : Json(nullptr);
+    };
+    put("relMseEstimate", [](const FrameError& e) { return Json(e.total()); });
+    put("relMseEstimateTrimmed", [](const FrameError& e) { return Json(e.totalTrimmed()); });
+    put("relMseEstimateNoise", [](const FrameError& e) { return Json(e.noise); });
+    put("relMseEstimateBias", [](const FrameError& e) { return Json(e.bias); });
+    put("relMseEstimateBiasStandardError", [](const FrameError& e) {
+        return e.biasStandardError ? Json(*e.biasStandardError) : Json(nullptr);
+    });
+    json["relMseEstimateCovers"] = kEstimateCovers;
+}
+
+Json curveJson(const ErrorCurve& curve) {
+    Json json = Json::array();
+    for (const ErrorCurve::Point& point : curve.points()) {
+        const auto& e = point.error;
+        json.push_back({{"passes", point.passes},
+                        {"seconds", point.seconds},
+                        {"processorSeconds", point.processorSeconds},
+                        {"estimatedRelMse", e ? Json(e->total()) : Json(nullptr)},
+                        {"noise", e ? Json(e->noise) : Json(nullptr)},
+                        {"bias", e ? Json(e->bias) : Json(nullptr)}});
+    }
+    return json;
 }
 
 }  // namespace
@@ -116,30 +156,29 @@ std::string Render::statisticsJson() const {
                 : std::chrono::duration<double>(std::chrono::steady_clock::now() - m_startTime)
                       .count();
     }
-    const RenderWork::Timings timings = running->timings();
+    const RenderWork::Progress progress = running->progress();
     const RenderCounters counters = running->counters();
     Json json;
     json["schema"] = "pm-stats/1";
     json["versions"] = versionsJson();
     json["hashes"] = {{"scene", m_scene->hash()}, {"settings", settingsHash(settings())}};
     json["isa"] = running->scene().isa();
-    json["stopReason"] = stopReason(state, status);
+    json["stopReason"] = stopText(stopReason());
     json["status"] = status;
     json["error"] = errorText;
-    json["passesDone"] = timings.passesDone;
+    json["passesDone"] = progress.passesDone;
     json["passesPlanned"] = running->passCount();
     json["threads"] = running->threads();
-    json["relMseEstimate"] = relMseJson(running->frame());
-    json["relMseEstimateCovers"] =
-        "noise only, from the spread between passes; bias of the photon estimates is not in it";
+    addError(running->frame().estimateError(), json);
+    json["errorCurve"] = curveJson(progress.curve);
     json["phases"] = {
         {"buildSeconds", m_scene->buildSeconds()}, {"photonSeconds", counters.photonSeconds},
-        {"mapSeconds", counters.mapSeconds},       {"beginPassSeconds", timings.photonSeconds},
-        {"renderSeconds", timings.bucketSeconds},  {"totalSeconds", totalSeconds}};
+        {"mapSeconds", counters.mapSeconds},       {"beginPassSeconds", progress.photonSeconds},
+        {"renderSeconds", progress.bucketSeconds}, {"totalSeconds", totalSeconds}};
     json["counters"] = countersJson(counters);
     json["counters"]["textureFailures"] = m_scene->textureFailures();
     json["counters"]["triangles"] = running->scene().triangleCount();
-    json["buckets"] = bucketJson(*running, timings.secondsPerBucket);
+    json["buckets"] = bucketJson(*running, progress.secondsPerBucket);
     json["memory"] = memoryJson(*running, counters);
     json["plan"] = planJson(running->plan());
     json["warnings"] = warningsJson(running->scene(), *running);

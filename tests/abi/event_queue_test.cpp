@@ -9,8 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "plugin/src/progress_clock.h"
-
 namespace pm::plugin {
 
 namespace {
@@ -127,18 +125,6 @@ TEST(EventQueue, NoCallbacksIsFine) {
     queue.finished(PMR_OK);
     EXPECT_EQ(EventQueue::Delivery::kDelivered, queue.deliverOne(std::nullopt));
     EXPECT_TRUE(queue.waitUntilOver(std::nullopt));
-}
-
-TEST(ProgressClock, NeverFallsAndLearnsTheShare) {
-    ProgressClock clock(2, true);
-    const double first = clock.photons(0, 1.0).fraction;
-    EXPECT_NEAR(0.15, first, 1e-12);
-    EXPECT_TRUE(std::isnan(clock.buckets(0, 0.5).remainingSeconds));
-    EXPECT_NEAR(0.5, clock.buckets(0, 1.0).fraction, 1e-12);
-    clock.endPass(9.0, 1.0);
-    EXPECT_NEAR(0.95, clock.photons(1, 1.0).fraction, 1e-12);
-    EXPECT_NEAR(0.95, clock.photons(0, 0.0).fraction, 1e-12);
-    EXPECT_NEAR(1.0, clock.buckets(1, 1.0).fraction, 1e-12);
 }
 
 }  // namespace

@@ -41,9 +41,10 @@ TEST(Settings, EnumerationIsWhole) {
             EXPECT_EQ(PMR_OK, api().setSettingInteger(render, info.name, below + 1));
         }
     }
-    for (const char* name : {"width", "height", "crop", "threads", "bucketSize", "bucketOrder",
-                             "aaLevel", "integrator", "photons", "estimatePhotons", "gatherRays",
-                             "passes", "seed", "layers", "memoryLimitGib"})
+    for (const char* name :
+         {"width", "height", "crop", "threads", "bucketSize", "bucketOrder", "aaLevel",
+          "integrator", "photons", "estimatePhotons", "gatherRays", "passes", "seed", "layers",
+          "memoryLimitGib", "errorTarget", "timeLimitSeconds"})
         EXPECT_EQ(1u, names.count(name)) << name;
     EXPECT_EQ(PMR_OK, api().destroyRender(render));
 }

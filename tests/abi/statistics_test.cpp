@@ -23,7 +23,7 @@ TEST(Statistics, OfAFinishedRender) {
     ASSERT_EQ(PMR_OK, api().waitRender(render, -1.0));
     const nlohmann::json json = statistics(render);
     EXPECT_EQ("pm-stats/1", json["schema"]);
-    EXPECT_EQ("finished", json["stopReason"]);
+    EXPECT_EQ("passes done", json["stopReason"]);
     EXPECT_EQ(3, json["passesDone"]);
     EXPECT_EQ(3, json["passesPlanned"]);
     EXPECT_EQ(2, json["threads"]);

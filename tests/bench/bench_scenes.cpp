@@ -3,26 +3,12 @@
 #include "tests/bench/bench_scenes.h"
 
 #include <cmath>
-#include <fstream>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <numbers>
-
-#include "integrator/values/error.h"
 
 namespace pm::bench {
 
 namespace {
-
-using nlohmann::json;
-
-Vec3d point(const json& j) {
-    return {j.at(0).get<double>(), j.at(1).get<double>(), j.at(2).get<double>()};
-}
-
-Rgb colour(const json& j) {
-    return {j.at(0).get<float>(), j.at(1).get<float>(), j.at(2).get<float>()};
-}
 
 std::uint32_t addMirror(test::SceneMaker& maker) {
     MaterialDescription m;
@@ -68,30 +54,19 @@ void addStandingBox(test::SceneMaker& maker, Vec3d centre, double height, double
 
 }  // namespace
 
-NeutralScene readNeutralScene(const std::filesystem::path& file, const std::string& key) {
-    std::ifstream in(file);
-    if (!in) throw Error(Status::kIo, file.string() + ": can't be read");
-    const json scene = json::parse(in).at(key);
-    NeutralScene result;
-    result.name = scene.at("name");
-    result.size = scene.at("res");
-    test::SceneMaker& maker = result.maker;
+test::SceneMaker makeNeutralScene(const NeutralScene& scene) {
+    test::SceneMaker maker;
     std::map<std::string, std::uint32_t> materials = {{"mirror", addMirror(maker)},
                                                       {"glass", addGlass(maker)}};
-    for (const auto& [name, rgb] : scene.at("mat").items())
-        materials[name] = maker.diffuse(colour(rgb));
-    for (const json& quad : scene.at("quads"))
-        maker.quad(point(quad.at(1)), point(quad.at(2)), point(quad.at(3)),
-                   materials.at(quad.at(4)));
-    for (const json& sphere : scene.at("spheres"))
-        maker.sphere(point(sphere.at(1)), sphere.at(2), materials.at(sphere.at(3)));
-    const json& light = scene.at("light");
-    maker.quad(point(light.at(0)), point(light.at(1)), point(light.at(2)),
-               maker.diffuse({}, colour(scene.at("L"))));
-    const json& camera = scene.at("cam");
-    maker.camera(point(camera.at("pos")), point(camera.at("look")), point(camera.at("up")),
-                 camera.at("vfov"));
-    return result;
+    for (const auto& [name, rgb] : scene.reflectances) materials[name] = maker.diffuse(rgb);
+    for (const NeutralQuad& quad : scene.quads)
+        maker.quad(quad.p, quad.e0, quad.e1, materials.at(quad.material));
+    for (const NeutralSphere& sphere : scene.spheres)
+        maker.sphere(sphere.centre, sphere.radius, materials.at(sphere.material));
+    maker.quad(scene.lamp.p, scene.lamp.e0, scene.lamp.e1, maker.diffuse({}, scene.radiance));
+    const NeutralCamera& camera = scene.camera;
+    maker.camera(camera.position, camera.lookAt, camera.up, camera.verticalDegrees);
+    return maker;
 }
 
 test::SceneMaker plainBox() {

@@ -2,22 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include <filesystem>
-#include <string>
-
+#include "tests/bench/neutral_scene.h"
 #include "tests/integrator/scene_maker.h"
 
 namespace pm::bench {
 
-// One of the three neutral scenes that other renderers were measured on.
-struct NeutralScene {
-    std::string name;  // "cornell-diffuse", "cornell-caustic", "sds"
-    test::SceneMaker maker;
-    std::int32_t size = 0;  // pixels, square
-};
-
-// key: A, B or C of the file scenes.json. Throws nlohmann::json::exception or Error(kIo).
-NeutralScene readNeutralScene(const std::filesystem::path& file, const std::string& key);
+// One of the neutral scenes as the integrator takes it, without the C interface.
+test::SceneMaker makeNeutralScene(const NeutralScene& scene);
 
 // A Cornell-like box of 32 triangles: two boxes, an area light; the scene's centre is at the
 // origin.

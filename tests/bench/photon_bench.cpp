@@ -52,7 +52,7 @@ void benchPhotons(Report& report, int turns) {
     const LightSampler lights(*scene);
     benchTracing(report, turns, *scene, lights);
 
-    report.table("Photon map built, millions of photons a second (the photons' copy included)",
+    report.table("Photon map built, millions of photons a second",
                  {"photons", "1 thread", "2 threads", "2 threads / 1"});
     std::vector<Photon> photons = trace(*scene, lights, PhotonKind::kGlobal, 7'500'000).photons;
     for (const std::size_t count : {10'000'000u, 1'000'000u, 200'000u}) {

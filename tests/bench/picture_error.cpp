@@ -26,4 +26,30 @@ double relativeError(std::span<const double> a, std::span<const double> b,
     return sum / static_cast<double>(errors.size() - out);
 }
 
+double Yardstick::commonDifference(std::span<const double> t1, std::span<const double> a1,
+                                   std::span<const double> t2, std::span<const double> a2) const {
+    std::vector<double> first, second;
+    for (std::size_t i = 0; i < reference.size(); ++i) {
+        first.push_back(t1[i] - a1[i] + reference[i]);
+        second.push_back(t2[i] - a2[i] + reference[i]);
+    }
+    return commonError(first, second);
+}
+
+double Yardstick::meanOver(std::span<const double> picture) const {
+    double ours = 0, theirs = 0;
+    for (std::size_t i = 0; i + 2 < reference.size(); i += 3) {
+        const auto brightestOf = [i](std::span<const double> rgb) {
+            return std::max({rgb[i], rgb[i + 1], rgb[i + 2]});
+        };
+        if (brightest > 0 && std::max(brightestOf(picture), brightestOf(reference)) > brightest)
+            continue;
+        for (std::size_t c = i; c < i + 3; ++c) {
+            ours += picture[c];
+            theirs += reference[c];
+        }
+    }
+    return ours / theirs;
+}
+
 }  // namespace pm::bench

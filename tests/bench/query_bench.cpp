@@ -39,31 +39,28 @@ struct Points {
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, Points>,
                                                  Points, 3, std::uint32_t>;
 
-// nanoflann's own result set behind the test that PhotonMap makes: its photons count when their
-// normal is within 45 degrees of the query's and they lie near its plane.
+// nanoflann's own result set behind the test that PhotonMap makes.
 class FilteredResults {
   public:
     using DistanceType = float;
 
     FilteredResults(const PhotonMap& map, const PhotonQuery& query, std::uint32_t* indices,
                     float* distances)
-        : m_map(map), m_query(query), m_results(kNearest) {
+        : m_map(map), m_gate(map.gate(query.position, query.normal)), m_results(kNearest) {
         m_results.init(indices, distances);
     }
     std::size_t size() const { return m_results.size(); }
     bool full() const { return m_results.full(); }
     float worstDist() const { return m_results.worstDist(); }
     bool addPoint(float distanceSquared, std::uint32_t index) {
-        const Photon& photon = m_map.photon(index);
-        if (photon.normal.dotWith(m_query.normal) < 0.7f) return true;
-        const float height = dot(photon.position - m_query.position, m_query.normal);
-        if (height * height > 0.3f * 0.3f * distanceSquared + 1e-12f) return true;
+        const Photon photon = m_map.photon(index);
+        if (!m_gate.accepts(photon)) return true;
         return m_results.addPoint(distanceSquared, index);
     }
 
   private:
     const PhotonMap& m_map;
-    const PhotonQuery& m_query;
+    PhotonGate m_gate;
     nanoflann::KNNResultSet<float, std::uint32_t> m_results;
 };
 
@@ -87,7 +84,7 @@ class QueryBench {
           m_tree(3, m_points, nanoflann::KDTreeSingleIndexAdaptorParams(10)) {
         m_tree.buildIndex();
         m_radius = m_map.typicalRadius(kNearest);
-        for (const Photon& p : photons(PhotonKind::kSites, 100'000, kQueries))
+        for (const Photon& p : photons(PhotonKind::kGlobalPilot, 100'000, kQueries))
             m_coherent.push_back({p.position, p.normal.unpack(), kNearest, 10.0f});
         m_random = m_coherent;
         std::sort(m_coherent.begin(), m_coherent.end(), [](const auto& a, const auto& b) {
@@ -124,9 +121,7 @@ class QueryBench {
                         "(half of the estimates would have {} photons)",
                         show(static_cast<double>(m_radius)), kNearest),
             {"what", "random order", "Morton order", "Morton / random"});
-        const auto sites = std::make_unique<IrradianceSites>(
-            *m_scene, m_map, photons(PhotonKind::kSites, 150'000, ~std::size_t{0}), m_radius);
-        NearestPhotons scratch;
+        const auto sites = std::make_unique<IrradianceSites>(*m_scene, m_map, m_radius);
         const auto add = [&](const char* name, const auto& look) {
             const auto times = takeTurns(turns, {[&] {
                                                      for (const auto& q : m_random) look(q);
@@ -142,7 +137,7 @@ class QueryBench {
             benchmark::DoNotOptimize(m_map.fluxWithin(q.position, q.normal, m_radius));
         });
         add("IrradianceSites::at, kept", [&](const PhotonQuery& q) {
-            benchmark::DoNotOptimize(sites->at(q.position, q.normal, scratch));
+            benchmark::DoNotOptimize(sites->at(q.position, q.normal));
         });
         add("IrradianceSites::estimate (what a site costs once)", [&](const PhotonQuery& q) {
             benchmark::DoNotOptimize(sites->estimate(q.position, q.normal, 1));

@@ -39,7 +39,7 @@ RaySets makeRays(const Scene& scene) {
             rays.bounce.push_back(
                 rayFrom(surface, frame.toWorld(sampleCosineHemisphere(sampler.next2D()))));
             LightSample light;
-            if (lights.sample(surface, sampler.next1D(), sampler.next2D(), light))
+            if (lights.sample(surface, sampler.next2D(), light))
                 rays.shadow.push_back(light.shadowRay);
         }
     return rays;

@@ -57,6 +57,10 @@ void writeAll(const std::string& file, const std::string& text) {
 
 }  // namespace
 
+void Report::paragraph(const std::string& text) {
+    m_tables.push_back({text, {}, {}});
+}
+
 void Report::table(const std::string& title, std::vector<std::string> header) {
     fmt::print(stderr, "{}\n", title);
     m_tables.push_back({title, std::move(header), {}});
@@ -70,7 +74,9 @@ void Report::row(std::vector<std::string> cells) {
 std::string Report::markdown() const {
     std::string text = fmt::format("{}\n", machineLine());
     for (const Table& table : m_tables) {
-        text += fmt::format("\n{}\n\n{}", table.title, joined(table.header, false));
+        text += fmt::format("\n{}\n", table.title);
+        if (table.header.empty()) continue;
+        text += fmt::format("\n{}", joined(table.header, false));
         text += joined(std::vector<std::string>(table.header.size(), "---"), false);
         for (const auto& cells : table.rows) text += joined(cells, false);
     }
@@ -80,6 +86,7 @@ std::string Report::markdown() const {
 std::string Report::csv() const {
     std::string text;
     for (const Table& table : m_tables) {
+        if (table.header.empty()) continue;
         const auto line = [&](std::vector<std::string> cells, const std::string& first) {
             cells.insert(cells.begin(), first);
             text += joined(cells, true);

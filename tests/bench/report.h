@@ -15,6 +15,8 @@ class Report {
     // name: of the place in docs/benchmarks.md that belongs to this program.
     explicit Report(std::string name) : m_name(std::move(name)) {}
 
+    // A paragraph or a picture's line, in Markdown only.
+    void paragraph(const std::string& text);
     // The rows that follow belong to this table.
     void table(const std::string& title, std::vector<std::string> header);
     // Also says on standard error that this row is done.
@@ -30,7 +32,7 @@ class Report {
   private:
     struct Table {
         std::string title;
-        std::vector<std::string> header;
+        std::vector<std::string> header;  // empty: a paragraph, its text is the title
         std::vector<std::vector<std::string>> rows;
     };
     std::string m_name;

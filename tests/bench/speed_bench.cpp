@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <functional>
 #include <map>
@@ -21,13 +22,16 @@ int runProgram(int argc, char** argv) {
     };
     std::string csvFile, docsFile, only;
     int turns = 9;
+    bool quick = false;
     CLI::App app("Speed of the integrator's parts");
     app.add_option("--csv", csvFile, "also write the tables to this CSV file");
     app.add_option("--docs", docsFile, "also put the tables into this Markdown file");
     app.add_option("--turns", turns, "timed turns of each rival (9)")->check(CLI::Range(1, 1000));
+    app.add_flag("--quick", quick, "a third of the turns");
     app.add_option("--only", only, "one part: rays, photons, queries, phases or sampler")
         ->check(CLI::IsMember({"rays", "photons", "queries", "phases", "sampler"}));
     CLI11_PARSE(app, argc, argv);
+    if (quick) turns = std::max(1, turns / 3);
     try {
         Report report("pm_bench_speed");
         for (const auto& [name, part] : kParts)

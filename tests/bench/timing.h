@@ -24,14 +24,19 @@ double secondsOf(const F& f) {
     return secondsSince(start);
 }
 
-// Seconds of processor time that this process has used, all threads, user and system.
-inline double processorSeconds() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
+// Seconds of processor time, user and system.
+inline double processorSeconds(const rusage& usage) {
     const auto seconds = [](const timeval& t) {
         return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec);
     };
     return seconds(usage.ru_utime) + seconds(usage.ru_stime);
+}
+
+// What this process has used, all threads.
+inline double processorSeconds() {
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    return processorSeconds(usage);
 }
 
 struct Spread {

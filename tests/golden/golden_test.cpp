@@ -34,7 +34,8 @@ class Golden : public HostTest {
     }
 
     static constexpr int kRuns = 8;
-    GoldenBounds m_bounds{5.0, 0.01, {"pm:integrator", "pm:passes", "pm:version", "pm:sceneHash"}};
+    GoldenBounds m_bounds{
+        5.0, 0.01, {"pm:integrator", "pm:passes", "pm:version", "pm:sceneHash", "pm:gatherRays"}};
 };
 
 void scale(Picture& picture, float factor) {

@@ -34,21 +34,21 @@ void light(std::vector<Photon>& photons, Vec3d p, Vec3d e0, Vec3d e1) {
 }
 
 struct Estimates {
-    double corrected = 0, plain = 0;
+    double corrected = 0, narrow = 0, plain = 0;
 };
 
 // Mean over some turns of the pattern and points from `at` on along `step`.
 Estimates estimate(const Scene& scene, const PhotonMap& map, Vec3d at, Vec3d step) {
-    const IrradianceSites sites(scene, map, {}, kRadius);
+    const IrradianceSites sites(scene, map, kRadius);
     Estimates mean;
     const int n = 16;
     for (int i = 0; i < n; ++i) {
         const Vec3f position(at + step * i);
-        mean.corrected +=
-            static_cast<double>(
-                sites.estimate(position, {0, 0, 1}, static_cast<std::uint32_t>(i)).r) /
-            n;
-        mean.plain += static_cast<double>(map.fluxWithin(position, {0, 0, 1}, kRadius).r /
+        const TwoRadii irradiance =
+            sites.estimate(position, {0, 0, 1}, static_cast<std::uint32_t>(i));
+        mean.corrected += static_cast<double>(irradiance.wide.r) / n;
+        mean.narrow += static_cast<double>(irradiance.narrow.r) / n;
+        mean.plain += static_cast<double>(map.fluxWithin(position, {0, 0, 1}, kRadius).wide.r /
                                           (kPi * kRadius * kRadius)) /
                       n;
     }
@@ -56,7 +56,8 @@ Estimates estimate(const Scene& scene, const PhotonMap& map, Vec3d at, Vec3d ste
 }
 
 void report(const char* where, const Estimates& e) {
-    fmt::print("    {}: {:.3f} of E, uncorrected {:.3f}\n", where, e.corrected, e.plain);
+    fmt::print("    {}: {:.3f} of E, at the narrow radius {:.3f}, uncorrected {:.3f}\n", where,
+               e.corrected, e.narrow, e.plain);
 }
 
 // A plate in the air, lit evenly.
@@ -74,9 +75,12 @@ TEST(Edges, OfAPlate) {
     report("edge", edge);
     report("corner", corner);
     EXPECT_NEAR(middle.corrected, 1, 0.02);
+    EXPECT_NEAR(middle.narrow, 1, 0.02);
     EXPECT_NEAR(edge.corrected, 1, 0.05);
+    EXPECT_NEAR(edge.narrow, 1, 0.05);
     EXPECT_NEAR(edge.plain, 0.5, 0.03);
     EXPECT_NEAR(corner.corrected, 1, 0.05);
+    EXPECT_NEAR(corner.narrow, 1, 0.05);
     EXPECT_NEAR(corner.plain, 0.25, 0.03);
 }
 
@@ -97,10 +101,13 @@ TEST(Edges, OfARoom) {
     report("wall, .4 radii away", near);
     report("corner of three walls", corner);
     EXPECT_NEAR(edge.corrected, 1, 0.05);
+    EXPECT_NEAR(edge.narrow, 1, 0.05);
     EXPECT_NEAR(edge.plain, 0.5, 0.03);
     EXPECT_NEAR(near.corrected, 1, 0.05);
+    EXPECT_NEAR(near.narrow, 1, 0.05);
     EXPECT_LT(near.plain, 0.8);
     EXPECT_NEAR(corner.corrected, 1, 0.05);
+    EXPECT_NEAR(corner.narrow, 1, 0.05);
     EXPECT_NEAR(corner.plain, 0.25, 0.03);
 }
 
@@ -119,8 +126,10 @@ TEST(Edges, NoLightThroughAThinWall) {
     report("dark side", dark);
     report("lit side", lit);
     EXPECT_EQ(dark.corrected, 0.0);
+    EXPECT_EQ(dark.narrow, 0.0);
     EXPECT_GT(dark.plain, 0.1);
     EXPECT_NEAR(lit.corrected, 1, 0.05);
+    EXPECT_NEAR(lit.narrow, 1, 0.05);
 }
 
 // The far side of the wall itself, with photons as they are traced (P1, F8).
@@ -134,16 +143,15 @@ TEST(Edges, TheFarSideOfAWallIsDark) {
                                      std::atomic<bool>{false}, {})
                             .photons);
     ASSERT_GT(map.size(), 10'000u);
-    const IrradianceSites sites(*scene, map, {}, kRadius);
-    NearestPhotons scratch;
+    const IrradianceSites sites(*scene, map, kRadius);
     for (const double x : {-0.999, -0.5, 0.0, 0.3}) {
         const Vec3f p(Vec3d{x, 0.1, 0} - scene->centre());
-        EXPECT_EQ(sites.estimate(p, {0, 0, -1}, 1), Rgb());
-        EXPECT_EQ(sites.at(p, {0, 0, -1}, scratch), Rgb());
+        EXPECT_EQ(sites.estimate(p, {0, 0, -1}, 1).wide, Rgb());
+        EXPECT_EQ(sites.at(p, {0, 0, -1}).wide, Rgb());
         // pi L (R/d)^2 cos^2 with the distance from the lamp's centre.
         const double d2 = x * x + 0.01 + 4;
         const double expected = std::numbers::pi * 0.25 / d2 * 2 / std::sqrt(d2);
-        EXPECT_NEAR(static_cast<double>(sites.estimate(p, {0, 0, 1}, 1).r), expected,
+        EXPECT_NEAR(static_cast<double>(sites.estimate(p, {0, 0, 1}, 1).wide.r), expected,
                     0.2 * expected);
     }
 }

@@ -52,8 +52,7 @@ TEST(LightSampler, ChoosesByTheProbabilitiesItStates) {
     LightSample sample;
     int missed = 0;
     for (int i = 0; i < n; ++i) {
-        const float u = random.next();
-        ASSERT_TRUE(lamps.lights->sample(lamps.floor, u, random.next2D(), sample));
+        ASSERT_TRUE(lamps.lights->sample(lamps.floor, random.next2D(), sample));
         Surface on;
         if (!lamps.scene->intersect(rayFrom(lamps.floor, sample.direction), on) || on.light < 0) {
             ++missed;
@@ -90,8 +89,7 @@ TEST(LightSampler, SphereDensity) {
     const auto sample = [&]() -> std::optional<Vec3f> {
         LightSample s;
         Surface on;
-        const float u = random.next();
-        if (!lamps.lights->sample(lamps.floor, u, random.next2D(), s) ||
+        if (!lamps.lights->sample(lamps.floor, random.next2D(), s) ||
             !lamps.meets(2, s.direction, on))
             return std::nullopt;
         return s.direction;
@@ -124,8 +122,7 @@ TEST(LightSampler, TriangleDensity) {
     const auto sample = [&]() -> std::optional<Vec2f> {
         LightSample s;
         Surface on;
-        const float u = random.next();
-        if (!lamps.lights->sample(lamps.floor, u, random.next2D(), s) ||
+        if (!lamps.lights->sample(lamps.floor, random.next2D(), s) ||
             !lamps.meets(index, s.direction, on))
             return std::nullopt;
         const Vec3d d = Vec3d(on.position) - p0;
@@ -233,8 +230,7 @@ TEST(LightSampler, ExtremeTrianglesAreFinite) {
         Random random(6);
         for (int i = 0; i < 10'000; ++i) {
             LightSample s;
-            const float u = random.next();
-            if (!lights.sample(floor, u, random.next2D(), s)) continue;
+            if (!lights.sample(floor, random.next2D(), s)) continue;
             EXPECT_TRUE(isFinite(s.direction) && isFinite(s.radiance * (1 / s.pdfSolidAngle)));
             EXPECT_GT(s.pdfSolidAngle, 0.0f);
         }

@@ -82,13 +82,78 @@ TEST(PhotonMap, FindsTheNearest) {
         }
 }
 
+// In space, of all directions: four at a time and one at a time must agree on who counts.
+std::vector<Photon> inSpace(std::uint32_t count, std::uint64_t seed) {
+    Random random(seed);
+    std::vector<Photon> photons;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Vec2f p = random.next2D();
+        const Vec3f n = i % 2 ? Vec3f{0, 0, 1} : sampleUniformSphere(random.next2D());
+        photons.push_back(
+            photonAt({p.x, p.y, 0.05f * random.next()}, n, Rgb(static_cast<float>(i + 1))));
+    }
+    return photons;
+}
+
+TEST(PhotonMap, CountsWhatTheGateAccepts) {
+    const PhotonMap map(inSpace(3000, 8));
+    Random random(9);
+    std::size_t counted = 0;
+    for (int n = 0; n < 200; ++n) {
+        const Vec2f at = random.next2D();
+        const Vec3f position{at.x, at.y, 0.02f};
+        const Vec3f normal = n % 2 ? Vec3f{0, 0, 1} : sampleUniformSphere(random.next2D());
+        const PhotonGate gate = map.gate(position, normal);
+        const float radius = 0.3f * random.next();
+        double expected = 0;
+        std::vector<NearestPhotons::Found> all;
+        for (std::uint32_t i = 0; i < map.size(); ++i) {
+            const Photon photon = map.photon(i);
+            const float d2 = lengthSquared(photon.position - position);
+            if (d2 > radius * radius || !gate.accepts(photon)) continue;
+            expected += static_cast<double>(photon.flux.r);
+            all.push_back({d2, i});
+        }
+        counted += all.size();
+        EXPECT_EQ(map.fluxWithin(position, normal, radius).wide.r, static_cast<float>(expected));
+        NearestPhotons scratch;
+        map.findNearest({position, normal, 5, radius}, scratch);
+        std::sort(all.begin(), all.end());
+        all.resize(std::min<std::size_t>(all.size(), 5));
+        auto found = scratch.found();
+        std::sort(found.begin(), found.end());
+        ASSERT_EQ(found.size(), all.size());
+        for (std::size_t i = 0; i < all.size(); ++i) EXPECT_EQ(found[i].index, all[i].index);
+    }
+    EXPECT_GT(counted, 1000u);
+}
+
+// A walk from the thick into the thin and back, two maps taking turns: earlier queries change how
+// fast the nearest are found, never which.
+TEST(PhotonMap, WarmStartsChangeNothing) {
+    std::vector<Photon> photons = onPlane(20'000, 10, 0);
+    for (std::size_t i = 0; i < photons.size(); i += 2) {
+        photons[i].position.x = 3 + 0.01f * photons[i].position.x;
+        photons[i].position.y *= 0.01f;
+    }
+    const PhotonMap map(photons), other(onPlane(500, 11, 16));
+    NearestPhotons walking;
+    for (int n = 0; n < 400; ++n) {
+        const float x = 4.0f * std::abs(static_cast<float>(n - 200)) / 200;
+        PhotonQuery query{{x, 0.005f, 0}, {0, 0, 1}};
+        query.count = n % 7 == 0 ? 10 : 50;
+        query.maxRadius = n % 5 == 0 ? 0.1f : 10.0f;
+        expectNearest(n % 11 == 0 ? other : map, query, walking);
+    }
+}
+
 TEST(PhotonMap, EmptyAndZero) {
     NearestPhotons scratch;
     const PhotonMap map(std::vector<Photon>{});
     EXPECT_TRUE(map.empty());
     map.findNearest({{0, 0, 0}, {0, 0, 1}, 5, 10.0f}, scratch);
     EXPECT_TRUE(scratch.found().empty());
-    EXPECT_EQ(map.fluxWithin({0, 0, 0}, {0, 0, 1}, 10.0f), Rgb());
+    EXPECT_EQ(map.fluxWithin({0, 0, 0}, {0, 0, 1}, 10.0f).wide, Rgb());
     EXPECT_GT(map.typicalRadius(50), 0.0f);
     const PhotonMap one(onPlane(1, 1, 0));
     one.findNearest({{0, 0, 0}, {0, 0, 1}, 0, 10.0f}, scratch);
@@ -103,13 +168,33 @@ TEST(PhotonMap, FluxWithinARadius) {
             const Vec2f at = random.next2D();
             const Vec3f position{at.x, at.y, 0};
             const float radius = n % 2 ? 0.125f : 0.3f * random.next();
-            double expected = 0;
-            for (std::uint32_t i = 0; i < map.size(); ++i)
-                if (lengthSquared(map.photon(i).position - position) <= radius * radius)
-                    expected += static_cast<double>(map.photon(i).flux.g);
-            EXPECT_EQ(map.fluxWithin(position, {0, 0, 1}, radius).g, static_cast<float>(expected));
+            double wide = 0, narrow = 0;
+            for (std::uint32_t i = 0; i < map.size(); ++i) {
+                const float d2 = lengthSquared(map.photon(i).position - position);
+                const auto flux = static_cast<double>(map.photon(i).flux.g);
+                if (d2 <= radius * radius) wide += flux;
+                if (d2 <= 0.5f * (radius * radius)) narrow += flux;
+            }
+            const TwoRadii flux = map.fluxWithin(position, {0, 0, 1}, radius);
+            EXPECT_EQ(flux.wide.g, static_cast<float>(wide));
+            EXPECT_EQ(flux.narrow.g, static_cast<float>(narrow));
         }
     }
+}
+
+// Ties everywhere: the lowest indices are found, and the search ends once it has them.
+TEST(PhotonMap, CoincidentPhotonsGoByIndex) {
+    const PhotonMap map(std::vector<Photon>(300'000, photonAt({0.3f, 0.2f, 0.1f})));
+    NearestPhotons scratch;
+    for (const std::uint32_t leaveOut : {~0u, 7u, 299'999u})
+        for (int n = 0; n < 1000; ++n) {
+            map.findNearest({{0.3f, 0.2f, 0.1f}, {0, 0, 1}, 50, 1.0f, leaveOut}, scratch);
+            auto found = scratch.found();
+            std::sort(found.begin(), found.end());
+            ASSERT_EQ(found.size(), 50u);
+            ASSERT_EQ(found.back().index, leaveOut == 7 ? 50u : 49u);
+        }
+    EXPECT_GT(map.typicalRadius(50), 0.0f);
 }
 
 // The photons of a laser, all at one point: built and asked without trouble.
@@ -123,7 +208,7 @@ TEST(PhotonMap, ManyPhotonsAtOnePoint) {
         ASSERT_EQ(scratch.found().size(), 50u);
         EXPECT_EQ(scratch.found().front().distanceSquared, 0.0f);
     }
-    EXPECT_EQ(map.fluxWithin({0.3f, 0.2f, 0.1f}, {0, 0, 1}, 0.1f).r, 100'000.0f);
+    EXPECT_EQ(map.fluxWithin({0.3f, 0.2f, 0.1f}, {0, 0, 1}, 0.1f).wide.r, 100'000.0f);
     EXPECT_GT(map.typicalRadius(50), 0.0f);
 }
 
@@ -139,13 +224,15 @@ TEST(PhotonMap, TheSameTreeForAnyThreads) {
     for (const int threads : {2, 5}) {
         const auto many = build(threads);
         ASSERT_EQ(many->size(), one->size());
-        for (std::uint32_t i = 0; i < one->size(); ++i)
-            ASSERT_EQ(std::memcmp(&one->photon(i), &many->photon(i), sizeof(Photon)), 0);
+        for (std::uint32_t i = 0; i < one->size(); ++i) {
+            const Photon a = one->photon(i), b = many->photon(i);
+            ASSERT_EQ(std::memcmp(&a, &b, sizeof(Photon)), 0);
+        }
         Random random(5);
         for (int n = 0; n < 200; ++n) {
             const Vec2f at = random.next2D();
-            EXPECT_EQ(one->fluxWithin({at.x, at.y, 0}, {0, 0, 1}, 0.05f),
-                      many->fluxWithin({at.x, at.y, 0}, {0, 0, 1}, 0.05f));
+            EXPECT_EQ(one->fluxWithin({at.x, at.y, 0}, {0, 0, 1}, 0.05f).wide,
+                      many->fluxWithin({at.x, at.y, 0}, {0, 0, 1}, 0.05f).wide);
         }
     }
 }
@@ -158,9 +245,9 @@ TEST(PhotonMap, OtherSidesAndNormalsDoNotCount) {
     photons.push_back(photonAt({0.02f, 0, 0}, {0, 0, 1}));          // counts
     photons.push_back(photonAt({0, 0.02f, 0}, {0.1f, 0, 0.995f}));  // counts: almost flat
     const PhotonMap map(std::move(photons));
-    EXPECT_EQ(map.fluxWithin({0, 0, 0}, {0, 0, 1}, 1).r, 2.0f);
-    EXPECT_EQ(map.fluxWithin({0, 0, 0}, {0, 0, -1}, 1).r, 1.0f);
-    EXPECT_EQ(map.fluxWithin({0, 0, 0}, {1, 0, 0}, 1).r, 1.0f);
+    EXPECT_EQ(map.fluxWithin({0, 0, 0}, {0, 0, 1}, 1).wide.r, 2.0f);
+    EXPECT_EQ(map.fluxWithin({0, 0, 0}, {0, 0, -1}, 1).wide.r, 1.0f);
+    EXPECT_EQ(map.fluxWithin({0, 0, 0}, {1, 0, 0}, 1).wide.r, 1.0f);
     NearestPhotons scratch;
     map.findNearest({{0, 0, 0}, {0, 0, 1}, 2, 1.0f}, scratch);
     EXPECT_EQ(scratch.found().size(), 2u);

@@ -50,7 +50,7 @@ TEST_F(Outputs, areWrittenWithTheirLayersAndMessages) {
     const auto json = nlohmann::json::parse(readText(path("s.json")));
     EXPECT_EQ(json.at("outputs").size(), 2u);
     EXPECT_EQ(json.at("exitCode"), 0);
-    EXPECT_EQ(json.at("stopReason"), "finished");
+    EXPECT_EQ(json.at("stopReason"), "passes done");
     EXPECT_TRUE(json.at("relMseEstimate").is_number());
 }
 

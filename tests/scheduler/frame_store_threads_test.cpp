@@ -72,7 +72,7 @@ TEST(FrameStoreThreads, readersNeverSeeAPixelWithinAPass) {
         if (const auto error = frame.standardError(0, 0)) {
             EXPECT_EQ((*error)[0], (*error)[2]);
         }
-        frame.estimatedRelMse();
+        frame.estimateError();
         ++reads;
     }
     for (std::thread& writer : writers) writer.join();

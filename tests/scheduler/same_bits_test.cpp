@@ -90,7 +90,8 @@ struct Picture {
 Picture readPicture(const FrameStore& frame, const Rect& rect) {
     const auto area = static_cast<std::size_t>(rect.area());
     constexpr std::size_t kFloats = kChannels + 4;
-    Picture picture{std::vector<float>(area * kFloats), frame.estimatedRelMse().value_or(-1.0)};
+    const auto error = frame.estimateError();
+    Picture picture{std::vector<float>(area * kFloats), error ? error->noise : -1.0};
     constexpr std::int64_t kPixel = kFloats * sizeof(float);
     const std::int64_t row = kPixel * rect.width();
     frame.read(rect, 0, kChannels, picture.values.data(), kPixel, row);

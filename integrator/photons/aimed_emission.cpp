@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "integrator/photons/aimed_emission.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numeric>
+
+#include "integrator/photons/caustic_casters.h"
+#include "integrator/sampling/sampler.h"
+#include "integrator/sampling/warps.h"
+
+namespace pm {
+
+namespace {
+
+constexpr std::size_t kMostGroups = 64;
+// Points of emission from which casters are judged, over all lights by power.
+constexpr std::uint32_t kViewpoints = 32;
+// Share of the points on a sphere light that are chosen evenly.
+constexpr float kEvenPoints = 0.1f;
+// A caster's worth is the root of the share of flux that lands, within these bounds: at least a
+// twentieth, for what the pilot has missed by chance.
+constexpr double kLeastWorth = 0.05, kMostWorth = 2.0;
+// Photons that an expectation counts for beside what a pilot has measured.
+constexpr double kPriorPhotons = 8.0;
+
+// Flux, and in how many photons, of a pilot.
+struct Landing {
+    double emitted = 0, landed = 0, photons = 0;
+
+    void add(const EmissionRecord& record) {
+        emitted += static_cast<double>(record.emitted);
+        landed += static_cast<double>(record.landed);
+        photons += 1;
+    }
+    // Share that lands, where `prior` is expected and counts as so many photons.
+    double share(double prior) const {
+        if (!(emitted > 0)) return prior;
+        const double expected = kPriorPhotons * emitted / photons;
+        return (landed + prior * expected) / (emitted + expected);
+    }
+};
+
+// To make photons that land alike in flux, a strategy needs them as its flux F; to make the sum of
+// the variances F^2/(n share) least for n photons, as F over the root of the share that lands. F
+// being the flux sent out times that share, what is left is its root.
+double worthOfShare(double share) {
+    return std::clamp(std::sqrt(share), kLeastWorth, kMostWorth);
+}
+
+// Points of the unit square, evenly spread: the generalised golden ratio (Roberts 2018).
+Vec2f spreadPoint(std::uint32_t i) {
+    const double x = 0.5 + 0.7548776662466927 * i, y = 0.5 + 0.5698402909980532 * i;
+    return {static_cast<float>(x - std::floor(x)), static_cast<float>(y - std::floor(y))};
+}
+
+// Normals of a sphere light's points, mostly in the caps from which casters are seen: those whose
+// cosine to the caster's direction is above t. Within a cap the density grows with that, as what is
+// seen of the caster does. The rest is even.
+class SphereCaps {
+  public:
+    SphereCaps(const SphereShape& sphere, std::span<const Caster> casters,
+               std::span<const float> worth) {
+        float total = 0.0f, even = 0.0f;
+        for (std::size_t i = 0; i < casters.size(); ++i) {
+            const Vec3d to = casters[i].centre - sphere.centre;
+            const double d = length(to);
+            if (sphere.radius - casters[i].radius >= d) continue;  // inside the light
+            const double ratio = casters[i].radius / d;
+            const float share = worth[i] * static_cast<float>(std::min(1.0, ratio * ratio));
+            total += share;
+            if (casters[i].radius - sphere.radius >= d)
+                even += share;  // seen from everywhere
+            else
+                m_caps[m_count++] = {
+                    Vec3f(to / d),
+                    static_cast<float>(std::min(sphere.radius / d - ratio, 1 - 1e-6)), share};
+        }
+        if (!(total > 0.0f)) return;
+        const float scale = (1.0f - kEvenPoints) / total;
+        m_evenShare = kEvenPoints + even * scale;
+        for (std::size_t i = 0; i < m_count; ++i) m_caps[i].share *= scale;
+    }
+
+    // Unit normal; its density over the unit sphere. uChoice: leaves what is left of it, in [0, 1).
+    Vec3f sample(float& uChoice, Vec2f u, float& pdfSolidAngle) const {
+        float share = m_evenShare;
+        std::size_t chosen = m_count;
+        for (std::size_t i = 0; uChoice >= share && i < m_count; ++i) {
+            uChoice -= share;
+            share = m_caps[i].share;
+            chosen = i;
+        }
+        uChoice = std::min(uChoice / share, 1.0f - 0x1p-24f);
+        pdfSolidAngle = m_evenShare / (4.0f * kPi);
+        Vec3f normal;
+        if (chosen == m_count) {
+            normal = sampleUniformSphere(u);
+        } else {
+            const Cap& cap = m_caps[chosen];
+            const float z = cap.t + (1.0f - cap.t) * std::sqrt(u.x);
+            const float r = std::sqrt(std::max(0.0f, 1.0f - z * z));
+            const SinCos phi = sinCosTurns(u.y);
+            normal = normalize(Frame(cap.axis).toWorld({r * phi.cos, r * phi.sin, z}));
+            pdfSolidAngle += cap.share * cap.density(z);
+        }
+        for (std::size_t i = 0; i < m_count; ++i)
+            if (i != chosen)
+                pdfSolidAngle += m_caps[i].share * m_caps[i].density(dot(normal, m_caps[i].axis));
+        return normal;
+    }
+
+  private:
+    struct Cap {
+        Vec3f axis;
+        float t, share;
+        float density(float cosine) const {
+            return cosine > t ? (cosine - t) / (kPi * (1.0f - t) * (1.0f - t)) : 0.0f;
+        }
+    };
+    std::array<Cap, kMostCasters> m_caps;
+    std::size_t m_count = 0;
+    float m_evenShare = 1.0f;
+};
+
+}  // namespace
+
+AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights)
+    : m_scene(scene), m_lights(lights) {
+    const auto& all = scene.lights();
+    if (lights.empty()) return;
+    std::vector<double> powers;
+    for (const Light& light : all) powers.push_back(light.powerMean);
+    const LightChoice byPower(powers);
+    std::vector<EmissionPoint> viewpoints;
+    for (std::uint32_t i = 0; i < kViewpoints; ++i) {
+        float probability;
+        const float u = (static_cast<float>(i) + 0.5f) / kViewpoints;
+        viewpoints.push_back(viewpoint(byPower.choose(u, probability), spreadPoint(i)));
+    }
+    m_casters = findCasters(scene, viewpoints);
+    if (m_casters.empty()) return;
+    groupLights();
+    m_guess.resize(all.size());
+    const std::uint32_t points = all.size() <= 1024 ? 16 : 4;
+    tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+        m_guess[i] = fluxTowardsCasters(static_cast<std::uint32_t>(i), points);
+    });
+    m_choice = LightChoice(m_guess);
+}
+
+EmissionPoint AimedEmission::pointLightView(const Light& light) const {
+    EmissionPoint point;
+    point.position = light.position;
+    m_lights.pointLightCone(light, point.axis, point.oneMinusCos);
+    return point;
+}
+
+EmissionPoint AimedEmission::viewpoint(std::uint32_t index, Vec2f uPoint) const {
+    const Light& light = m_scene.lights()[index];
+    if (light.kind == Light::Kind::kPoint) return pointLightView(light);
+    const Surface surface = m_scene.pointOnLight(light, uPoint);
+    EmissionPoint point;
+    point.position = Vec3d(surface.position);
+    point.axis = surface.geometricNormal;
+    point.onSurface = true;
+    return point;
+}
+
+double AimedEmission::fluxTowardsCasters(std::uint32_t light, std::uint32_t points) const {
+    if (m_scene.lights()[light].kind == Light::Kind::kPoint) points = 1;
+    double share = 0;
+    AimCone cone;
+    for (std::uint32_t i = 0; i < points; ++i) {
+        const EmissionPoint point = viewpoint(light, spreadPoint(i));
+        double sum = 0;
+        for (const Caster& caster : m_casters)
+            if (cone.aim(caster, point)) sum += static_cast<double>(cone.solidAngle);
+        const double whole = point.onSurface ? static_cast<double>(kPi) : 4.0 * kPi;
+        share += std::min(1.0, sum / whole) / points;
+    }
+    return share * m_scene.lights()[light].powerMean;
+}
+
+// Divided by place at the median, the axis in turn, until there are enough groups.
+void AimedEmission::groupLights() {
+    const std::size_t count = m_scene.lights().size();
+    std::vector<Vec3d> places(count);
+    std::vector<std::uint32_t> order(count);
+    std::iota(order.begin(), order.end(), 0u);
+    for (std::uint32_t i = 0; i < count; ++i) places[i] = viewpoint(i, {0.5f, 0.5f}).position;
+    m_group.assign(count, 0);
+    std::size_t groups = 1;
+    for (int axis = 0; groups < kMostGroups; groups *= 2, axis = (axis + 1) % 3) {
+        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+            if (m_group[a] != m_group[b]) return m_group[a] < m_group[b];
+            return places[a][axis] < places[b][axis];
+        });
+        for (std::size_t i = 0; i < count;) {
+            std::size_t end = i;
+            while (end < count && m_group[order[end]] == m_group[order[i]]) ++end;
+            const std::size_t middle = i + (end - i + 1) / 2;
+            for (; i < end; ++i)
+                m_group[order[i]] =
+                    static_cast<std::uint8_t>(2 * m_group[order[i]] + (i < middle ? 0 : 1));
+        }
+    }
+    m_worth.assign(groups * m_casters.size(), 1.0f);
+}
+
+void AimedEmission::refine(std::span<const EmissionRecord> pilot) {
+    if (empty()) return;
+    std::vector<Landing> casters(m_worth.size()), lights(m_group.size()), groups(kMostGroups);
+    Landing total;
+    for (const EmissionRecord& record : pilot) {
+        if (record.caster == kNoCaster) continue;
+        casters[m_group[record.light] * m_casters.size() + record.caster].add(record);
+        lights[record.light].add(record);
+        groups[m_group[record.light]].add(record);
+        total.add(record);
+    }
+    // Where nothing landed at all there is nothing to learn from.
+    if (!(total.landed > 0)) return;
+    const double overall = total.landed / total.emitted;
+    for (std::size_t i = 0; i < m_worth.size(); ++i)
+        m_worth[i] = static_cast<float>(worthOfShare(casters[i].share(overall)));
+    std::vector<double> weights(m_guess);
+    for (std::size_t i = 0; i < weights.size(); ++i)
+        weights[i] *= worthOfShare(lights[i].share(groups[m_group[i]].share(overall)));
+    m_choice = LightChoice(weights);
+}
+
+void AimedEmission::place(std::uint32_t index, float& uCaster, Vec2f uPoint, Origin& origin) const {
+    const Light& light = m_scene.lights()[index];
+    if (light.kind == Light::Kind::kPoint) {
+        origin.point = pointLightView(light);
+        origin.strength = light.intensity;
+        origin.rayStart = Vec3f(light.position);
+        return;
+    }
+    Surface surface;
+    float pdfArea = 1.0f / light.area;
+    if (light.kind == Light::Kind::kSphere) {
+        const SphereShape sphere = m_scene.sphere(light.shape);
+        const SphereCaps caps(sphere, m_casters, worthOf(index));
+        const Vec3f normal = caps.sample(uCaster, uPoint, pdfArea);
+        pdfArea /= static_cast<float>(sphere.radius * sphere.radius);
+        surface.position = Vec3f(sphere.centre + Vec3d(normal) * sphere.radius);
+        surface.geometricNormal = normal;
+        surface.offset = 2.0f * surfaceOffset(surface.position, 0.0f);
+        surface.material = light.material;
+    } else {
+        surface = m_scene.pointOnLight(light, uPoint);
+    }
+    origin.point.position = Vec3d(surface.position);
+    origin.point.axis = surface.geometricNormal;
+    origin.point.onSurface = true;
+    origin.strength = m_lights.frontRadiance(surface) * (1.0f / pdfArea);
+    origin.rayStart = rayOrigin(surface, surface.geometricNormal);
+}
+
+bool AimedEmission::emit(Vec2f uChoice, Vec2f uPoint, Vec2f uDirection, AimedPhoton& photon) const {
+    if (empty()) return false;
+    float probability;
+    photon.light = m_choice.choose(uChoice.x, probability);
+    Origin origin;
+    place(photon.light, uChoice.y, uPoint, origin);
+    const AimMixture mixture(m_casters, worthOf(photon.light), origin.point);
+    AimMixture::Sample sample;
+    if (!mixture.sample(uChoice.y, uDirection, sample)) return false;
+    const float cosine = origin.point.onSurface ? dot(sample.direction, origin.point.axis) : 1.0f;
+    if (!(cosine > 0.0f)) return false;
+    photon.caster = sample.caster;
+    photon.ray = {origin.rayStart, sample.direction};
+    photon.flux = origin.strength * (cosine / (probability * sample.pdfSolidAngle));
+    return !isBlack(photon.flux);
+}
+
+std::uint64_t AimedEmission::memoryBytes() const {
+    return m_casters.size() * sizeof(Caster) + m_worth.size() * sizeof(float) +
+           m_group.size() * (sizeof(std::uint8_t) + sizeof(double) + 2 * sizeof(float));
+}
+
+}  // namespace pm

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "integrator/photons/aim_mixture.h"
+#include "integrator/scene/light_choice.h"
+#include "integrator/scene/light_sampler.h"
+#include "integrator/scene/scene.h"
+
+namespace pm {
+
+// A photon as it leaves a light, and which choices made it.
+struct AimedPhoton : EmittedPhoton {
+    std::uint32_t light = 0;
+    std::uint32_t caster = kNoCaster;
+};
+
+// What became of one photon of a pilot; flux in any unit, summed over the channels.
+struct EmissionRecord {
+    std::uint32_t light = 0;
+    std::uint32_t caster = kNoCaster;
+    float emitted = 0.0f;
+    float landed = 0.0f;  // as caustic photons
+};
+
+// Emission of photons towards what can cast caustics: lights by the flux that they send to casters,
+// points on lights by what they see of them, directions by AimMixture. Its expectation is
+// LightSampler::emit's; what makes caustics comes many times as often, with as much less flux.
+//
+// The first guess is geometric; refine() learns from a pilot what is hidden. Lights are learned one
+// by one, casters for each group of neighbouring lights; so memory and time grow with the number of
+// lights, not with that times casters.
+//
+// A light without position chooses in the other order: it has a direction first, and a disc across
+// it for each caster's sphere; a light without area is an EmissionPoint as it is.
+//
+// Source (the idea): Jensen 1996, projection maps; here as one mixture over spheres.
+// Threads: const functions from any, at once.
+class AimedEmission {
+  public:
+    // Finds the casters. lights: of this scene; both must outlive this. Runs in parallel in the
+    // calling TBB arena.
+    AimedEmission(const Scene& scene, const LightSampler& lights);
+
+    // Nothing to aim from or at: emit() has no photon to give.
+    bool empty() const { return m_casters.empty() || m_choice.empty(); }
+
+    // Weighs lights and casters anew by the records of a pilot that was emitted by this object. The
+    // same records in the same order give the same bits.
+    void refine(std::span<const EmissionRecord> pilot);
+
+    // False when the photon carries nothing. uChoice: of the light and of the caster.
+    bool emit(Vec2f uChoice, Vec2f uPoint, Vec2f uDirection, AimedPhoton& photon) const;
+
+    std::span<const Caster> casters() const { return m_casters; }
+    // Of a light's choice.
+    float lightProbability(std::size_t light) const { return m_choice.probability(light); }
+    // Of a caster for a light: how much more its directions are worth than their solid angle.
+    float worth(std::size_t light, std::size_t caster) const {
+        return worthOf(static_cast<std::uint32_t>(light))[caster];
+    }
+    std::uint64_t memoryBytes() const;
+
+  private:
+    // A point on a light, what leaves it over the point's own density, and where a ray starts.
+    struct Origin {
+        EmissionPoint point;
+        Rgb strength;  // W sr^-1: radiance times cosine (to come) over pdfArea, or intensity
+        Vec3f rayStart;
+    };
+
+    EmissionPoint viewpoint(std::uint32_t light, Vec2f uPoint) const;
+    EmissionPoint pointLightView(const Light& light) const;
+    void place(std::uint32_t light, float& uCaster, Vec2f uPoint, Origin& origin) const;
+    double fluxTowardsCasters(std::uint32_t light, std::uint32_t points) const;
+    void groupLights();
+    std::span<const float> worthOf(std::uint32_t light) const {
+        return std::span(m_worth).subspan(m_group[light] * m_casters.size(), m_casters.size());
+    }
+
+    const Scene& m_scene;
+    const LightSampler& m_lights;
+    std::vector<Caster> m_casters;
+    std::vector<std::uint8_t> m_group;  // of each light
+    std::vector<float> m_worth;         // of each group and caster
+    std::vector<double> m_guess;        // flux that each light sends to casters, unhidden, W
+    LightChoice m_choice;
+};
+
+}  // namespace pm

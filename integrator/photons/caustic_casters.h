@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "integrator/photons/aim_cone.h"
+#include "integrator/scene/scene.h"
+
+namespace pm {
+
+// Whether light can leave a surface of this material other than diffusely, which makes it caustic.
+bool castsCaustics(const MaterialDescription& material);
+
+// Casters that together hold every surface of the scene that casts caustics, at most kMostCasters:
+// as many as make the solid angle they fill, seen from the viewpoints, clearly smaller. Empty when
+// nothing casts. Time: about that of sorting the casting triangles by place.
+std::vector<Caster> findCasters(const Scene& scene, std::span<const EmissionPoint> viewpoints);
+
+}  // namespace pm

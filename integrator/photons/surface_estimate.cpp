@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "integrator/photons/surface_estimate.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "integrator/sampling/sampler.h"
+#include "integrator/sampling/warps.h"
+
+namespace pm {
+
+namespace {
+
+// The rays start this far above the point, in radii: high enough to see a hollow's whole disc, low
+// enough to see little else.
+constexpr float kApexHeight = 0.6f;
+// What starts or ends on a surface is lifted off it by this share of the length it has to go.
+constexpr float kLift = 0.01f;
+// A ray goes on this far beyond the disc's point, relative to the way there: room for surfaces that
+// curve away.
+constexpr float kRayReach = 1.5f;
+// Grazing rays see much surface each; more than this is cut, so that one ray can't decide the area.
+constexpr float kLargestAreaRatio = 4.0f;
+constexpr float kFlatTolerance = 0.02f;
+// Rays to the rim; where all of them find it flat, the disc is taken as whole.
+constexpr std::uint32_t kRimRays = 8;
+// The share of the disc in the sharpest corner that is still told apart; a square one has 1/4.
+constexpr float kSmallestShare = 0.1f;
+
+// Where area is looked for: the narrow disc, the ring around it, and beyond the rim, where surface
+// that bends towards the apex is seen that lies within the radius. Squared, in radii.
+struct Zone {
+    float from, to;
+    std::uint32_t rays;
+};
+constexpr std::array<Zone, 4> kZones{
+    {{0.0f, 0.5f, 18}, {0.5f, 1.0f, 12}, {1.0f, 1.3f, 5}, {1.3f, 2.0f, 5}}};
+
+}  // namespace
+
+SurfaceEstimate::Seen SurfaceEstimate::look(const View& view, float turns,
+                                            float radiusSquared) const {
+    const SinCos phi = sinCosTurns(turns - std::floor(turns));
+    const Vec3f inPlane =
+        (view.tangent * phi.cos + view.bitangent * phi.sin) * (std::sqrt(radiusSquared) * m_radius);
+    const Vec3f ray = view.position + inPlane - view.apex;
+    Surface surface;
+    if (!m_scene.intersect({view.apex, ray, kRayReach}, surface)) return {};
+    const MaterialDescription& material = m_scene.material(surface.material);
+    if (material.kind != MaterialKind::kSurface || isBlack(material.diffuse)) return {};
+    const Vec3f facing = dot(surface.geometricNormal, ray) < 0.0f ? surface.geometricNormal
+                                                                  : -surface.geometricNormal;
+    const Vec3f fromPoint = surface.position - view.position;
+    const float distanceSquared = lengthSquared(fromPoint);
+    if (!m_map.accepts(fromPoint, facing, view.normal) || distanceSquared > m_radius * m_radius)
+        return {};
+    // Solid angle is kept: dA cos / d^2 is the same on the plane and on the surface.
+    const float onPlane = -dot(ray, view.normal) / lengthSquared(ray);
+    const Vec3f seen = surface.position - view.apex;
+    const float onSurface = -dot(seen, facing) / lengthSquared(seen);
+    const float ratio =
+        onPlane * std::sqrt(lengthSquared(seen)) / (onSurface * std::sqrt(lengthSquared(ray)));
+    return {std::min(ratio, kLargestAreaRatio), distanceSquared};
+}
+
+bool SurfaceEstimate::isWhole(const View& view) const {
+    for (std::uint32_t i = 0; i < kRimRays; ++i) {
+        // Opposite sides first: an edge is on one of them.
+        const std::uint32_t j = (i % 2) * (kRimRays / 2) + i / 2;
+        const float area = look(view, view.turn + static_cast<float>(j) / kRimRays, 0.9f).area;
+        if (!(std::abs(area - 1.0f) < kFlatTolerance)) return false;
+    }
+    return true;
+}
+
+SurfaceEstimate::Shares SurfaceEstimate::shares(const View& view) const {
+    // Equal areas on a golden spiral (Vogel 1979) in each zone. Moved along with the turn: at fixed
+    // radii the rim of a bent disc would always fall between the same two.
+    constexpr float kGoldenTurn = 0.381966011f;
+    float wide = 0.0f, narrow = 0.0f, ray = 0.0f;
+    for (const Zone& zone : kZones) {
+        const float areaOfRay = (zone.to - zone.from) / static_cast<float>(zone.rays);
+        for (std::uint32_t i = 0; i < zone.rays; ++i, ++ray) {
+            const Seen seen = look(view, view.turn + kGoldenTurn * ray,
+                                   zone.from + (static_cast<float>(i) + view.shift) * areaOfRay);
+            wide += seen.area * areaOfRay;
+            if (seen.distanceSquared <= 0.5f * m_radius * m_radius) narrow += seen.area * areaOfRay;
+        }
+    }
+    return {std::max(kSmallestShare, wide), std::max(kSmallestShare, 2.0f * narrow)};
+}
+
+// Above the point, half as high as whatever stands there: under a ball on the floor the apex must
+// not be inside the ball.
+float SurfaceEstimate::apexHeight(const Vec3f& position, const Vec3f& normal) const {
+    const float height = kApexHeight * m_radius;
+    const Vec3f start = position + normal * (kLift * m_radius);
+    Surface above;
+    if (!m_scene.intersect({start, normal, 2.0f * height}, above)) return height;
+    return std::min(height, 0.5f * dot(above.position - position, normal));
+}
+
+TwoRadii SurfaceEstimate::at(const Vec3f& position, const Vec3f& normal,
+                             std::uint32_t pattern) const {
+    TwoRadii flux = m_map.fluxWithin(position, normal, m_radius);
+    // In the dark no rays are needed.
+    if (isBlack(flux.wide)) return {};
+    const Frame frame(normal);
+    const float height = apexHeight(position, normal);
+    const std::uint64_t random = mixBits(pattern);
+    const View view{position,
+                    normal,
+                    position + normal * height,
+                    frame.tangent,
+                    frame.bitangent,
+                    toUnitFloat(static_cast<std::uint32_t>(random)),
+                    toUnitFloat(static_cast<std::uint32_t>(random >> 32))};
+    const float discArea = kPi * m_radius * m_radius;
+    if (isWhole(view)) return {flux.wide / discArea, flux.narrow / (0.5f * discArea)};
+    flux = m_map.fluxWithin(position, normal, m_radius, [&](std::uint32_t index) {
+        const Photon photon = m_map.photon(index);
+        // Ends a little above the photon, whose own surface must not hide it.
+        const Vec3f above = photon.position + photon.normal.unpack() * (kLift * height);
+        return !m_scene.occluded({view.apex, above - view.apex, 1.0f});
+    });
+    const Shares share = shares(view);
+    return {flux.wide / (discArea * share.wide), flux.narrow / (0.5f * discArea * share.narrow)};
+}
+
+}  // namespace pm

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "integrator/transport/final_gather.h"
+
+#include "integrator/sampling/warps.h"
+#include "integrator/transport/path_walk.h"
+
+namespace pm {
+
+Gathered finalGather(const Scene& scene, const IrradianceSites& sites, const Ray& ray,
+                     Sampler& sampler) {
+    Gathered result;
+    PathWalk path(ray);
+    while (true) {
+        Surface surface;
+        ++result.rays;
+        if (!scene.intersect(path.ray, surface)) return result;
+        if (!result.hitAny) {
+            result.first = surface;
+            result.hitAny = true;
+        }
+        const Bsdf bsdf(scene, surface, -path.ray.direction, Transport::kRadiance, path.throughput);
+        if (bsdf.isBlackBody()) return result;
+        if (bsdf.has(Lobe::kDiffuse)) {
+            const TwoRadii irradiance = sites.at(surface.position, bsdf.facingGeometricNormal());
+            const Rgb reflected = path.throughput * bsdf.diffuse() * kInvPi;
+            result.radiance += {reflected * irradiance.wide, reflected * irradiance.narrow};
+            if (bsdf.isDiffuseOnly()) return result;
+        }
+        BsdfSample sample;
+        const float uLobe = sampler.next1D();
+        const Vec2f u = sampler.next2D();
+        if (!bsdf.sample(uLobe, u, sample) || sample.lobe == Lobe::kDiffuse ||
+            !path.scatter(surface, bsdf, sample, sampler))
+            return result;
+    }
+}
+
+}  // namespace pm

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <cstdint>
+
+#include "integrator/photons/irradiance_sites.h"
+#include "integrator/sampling/sampler.h"
+#include "integrator/scene/scene.h"
+
+namespace pm {
+
+// What one final-gather ray brings.
+struct Gathered {
+    TwoRadii radiance;    // light that left a diffuse surface, met at once or by way of other lobes
+    Surface first;        // what the ray met first
+    bool hitAny = false;  // `first` is valid
+    std::uint32_t rays = 0;
+};
+
+// Follows a gather ray to the diffuse surfaces where the irradiance sites end it. Light that it
+// finds at a lamp is not in `radiance`: met at once it is direct light, by way of other lobes a
+// caustic. Source: Jensen 2001, section 9.2.
+Gathered finalGather(const Scene& scene, const IrradianceSites& sites, const Ray& ray,
+                     Sampler& sampler);
+
+}  // namespace pm

@@ -1,0 +1,125 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "integrator/photons/irradiance_sites.h"
+#include "integrator/photons/surface_estimate.h"
+#include "integrator/scene/camera.h"
+#include "integrator/scene/scene.h"
+
+namespace pm {
+
+// Indirect irradiance, as final gathering finds it, kept at points that the camera sees: one in
+// each cell of a lattice over the frame, anew in each pass. A camera sample takes the weighted mean
+// of the points near it, on its surface and on the screen, so that a few gather rays serve many
+// samples. It is a density estimate of what the gather rays bring: its radius shrinks from pass to
+// pass, and what it blurs vanishes with it.
+//
+// Where other surfaces are near, irradiance changes within their distance; there the radius is a
+// share of the harmonic mean distance of what the gather rays meet.
+// Source of that measure: Ward, Rubinstein & Clear 1988, "A Ray Tracing Solution for Diffuse
+// Interreflection", eq. 2 to 4.
+//
+// A point's irradiance is computed when it is first asked for and does not depend on who asks.
+// Threads: const functions from any, at once.
+class GatherPoints {
+  public:
+    struct Request {
+        std::int32_t width = 0, height = 0;  // pixels of the frame
+        float spacing = 2.5f;                // of the lattice, pixels
+        std::uint32_t rays = 24;             // gather rays of each point, >= 1
+        float radiusFactor = 1.0f;           // this pass's radii over the first pass's
+        std::uint64_t seed = 1;
+        std::uint32_t pass = 0;
+        // Light that the gather rays leave out and that is estimated at each point; may be null.
+        const SurfaceEstimate* descended = nullptr;
+    };
+    // A place that a camera path came to.
+    struct Place {
+        Vec2f screen;  // where the path left the camera, pixels
+        Vec3f position;
+        Vec3f shadingNormal, geometricNormal;  // unit, on the side that the path came to
+    };
+    struct Estimate {
+        TwoRadii irradiance;     // W m^-2
+        float lampShare = 0.0f;  // of the gather rays that met a lamp's front
+    };
+
+    // Traces the points in parallel in the calling TBB arena; soon after `cancelled` is set the
+    // rest are left out. scene, camera and sites must outlive this.
+    GatherPoints(const Scene& scene, const Camera& camera, const IrradianceSites& sites,
+                 const Request& request, const std::atomic<bool>& cancelled);
+
+    // Indirect irradiance at a place. False where no point is near enough.
+    bool estimate(const Place& place, Estimate& result) const;
+
+    // Gather rays so far.
+    std::uint64_t raysTraced() const { return m_raysTraced.load(std::memory_order_relaxed); }
+    std::uint64_t memoryBytes() const {
+        return memoryBytes(m_request.width, m_request.height, m_request.spacing);
+    }
+    // Of the points of such a request, for memory plans.
+    static std::uint64_t memoryBytes(std::int32_t width, std::int32_t height, float spacing);
+
+  private:
+    struct Point {
+        Vec3f position;
+        Vec3f normal;  // shading, on the camera's side; 0 where there is no point
+        Vec2f screen;  // pixels
+    };
+    // Where the gather rays leave from.
+    struct Origin {
+        Vec3f geometricNormal;  // on the camera's side
+        float offset;
+    };
+    // What the gather rays of a point found.
+    struct Value {
+        TwoRadii irradiance;
+        float lampShare = 0.0f;
+        float clearance = 0.0f;  // harmonic mean distance, scene units
+    };
+    // A Value that is computed when it is first asked for.
+    struct Kept {
+        std::array<std::atomic<float>, 8> numbers;
+        std::atomic<std::uint32_t> ready{0};
+
+        float number(std::size_t i) const { return numbers[i].load(std::memory_order_relaxed); }
+        Value value() const {
+            return {{{number(0), number(1), number(2)}, {number(3), number(4), number(5)}},
+                    number(6),
+                    number(7)};
+        }
+    };
+    // A point that may count, and how far away it is.
+    struct Near {
+        std::size_t index;
+        float screenDistanceSquared;  // over the radius squared
+        float distanceSquared;        // scene units squared
+    };
+    static constexpr std::size_t kMostNear = 64;
+
+    void tracePoint(std::int32_t column, std::int32_t row);
+    std::size_t findNear(const Place& place, std::array<Near, kMostNear>& near) const;
+    void fill(std::size_t index) const;
+    Value compute(std::size_t index, std::uint64_t& rays) const;
+
+    const Scene& m_scene;
+    const Camera& m_camera;
+    const IrradianceSites& m_sites;
+    Request m_request;
+    std::int32_t m_columns, m_rows;
+    float m_radius;          // of the mean, pixels
+    float m_planeTolerance;  // scene units; what rounding may lift a point off its plane
+    std::vector<Point> m_points;
+    std::vector<Origin> m_origins;
+    std::unique_ptr<Kept[]> m_kept;
+    mutable std::atomic<std::uint64_t> m_raysTraced{0};
+};
+
+}  // namespace pm

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "integrator/transport/path_walk.h"
+
+#include <algorithm>
+
+namespace pm {
+
+namespace {
+
+// No path is longer than this; only light caught between lossless surfaces is.
+constexpr int kMaxEvents = 1000;
+constexpr int kEventsBeforeRoulette = 5;
+
+}  // namespace
+
+bool PathWalk::scatter(const Surface& surface, const Bsdf& bsdf, const BsdfSample& sample,
+                       Sampler& sampler) {
+    throughput *= sample.weight;
+    if (sample.lobe == Lobe::kRefraction) m_etaScale *= bsdf.etaSquared();
+    if (++m_events == kMaxEvents) return false;
+    if (m_events >= kEventsBeforeRoulette) {
+        const float survival = std::min(1.0f, maxChannel(throughput) * m_etaScale);
+        if (survival < 1.0f) {
+            if (sampler.next1D() >= survival) return false;
+            throughput *= 1.0f / survival;
+        }
+    }
+    ray = rayFrom(surface, sample.direction);
+    return true;
+}
+
+}  // namespace pm

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "scheduler/frame_error.h"
+
+#include <cmath>
+#include <limits>
+
+namespace pm {
+namespace {
+
+constexpr double kChannels = 3;
+// Of the pixels, those left out of the trimmed figure.
+constexpr double kTrimmedShare = 0.001;
+// Side of the squares whose shares of the bias count as independent: wider than most blurs.
+constexpr std::int32_t kSquarePixels = 32;
+
+std::int32_t squareOf(std::int32_t from, std::int32_t at) {
+    return (at - from) / kSquarePixels;
+}
+
+}  // namespace
+
+FrameErrorSum::FrameErrorSum(const Rect& window)
+    : m_window(window), m_columns(squareOf(window.x0, window.x1 - 1) + 1) {
+    const std::int32_t rows = squareOf(window.y0, window.y1 - 1) + 1;
+    m_squares.resize(static_cast<std::size_t>(m_columns) * static_cast<std::size_t>(rows));
+    m_noise.reserve(static_cast<std::size_t>(window.area()));
+}
+
+void FrameErrorSum::add(std::int32_t x, std::int32_t y, double noise, double bias) {
+    m_noise.push_back(noise);
+    const auto row = static_cast<std::size_t>(squareOf(m_window.y0, y));
+    const auto column = static_cast<std::size_t>(squareOf(m_window.x0, x));
+    Square& square = m_squares[row * static_cast<std::size_t>(m_columns) + column];
+    square.bias.add(bias);
+    ++square.pixels;
+}
+
+double FrameErrorSum::trimmedNoise() const {
+    const auto dropped =
+        static_cast<std::size_t>(std::ceil(kTrimmedShare * static_cast<double>(m_noise.size())));
+    std::vector<double> sorted = m_noise;
+    const auto limit = sorted.end() - static_cast<std::ptrdiff_t>(dropped);
+    std::nth_element(sorted.begin(), limit, sorted.end());
+    // Summed in pixel order; of those that equal the limit, as many as stay.
+    const double most = *limit;
+    auto equal = std::count(sorted.begin(), limit, most);
+    CompensatedSum sum;
+    for (const double value : m_noise) {
+        if (value < most || (value == most && equal-- > 0)) sum.add(value);
+    }
+    return sum.value() / (kChannels * static_cast<double>(m_noise.size()));
+}
+
+std::optional<FrameError> FrameErrorSum::result() const {
+    if (m_noise.empty()) return std::nullopt;
+    const double values = kChannels * static_cast<double>(m_noise.size());
+    CompensatedSum noise, bias;
+    for (const double value : m_noise) noise.add(value);
+    double squares = 0;
+    for (const Square& square : m_squares) {
+        bias.add(square.bias.value());
+        if (square.pixels > 0) ++squares;
+    }
+    FrameError error{noise.value() / values, 0, bias.value() / values, std::nullopt};
+    // NaN has no order: one pixel of it makes the frame's error NaN.
+    error.noiseTrimmed = std::isnan(error.noise) ? error.noise : trimmedNoise();
+    if (squares < 2) return error;
+    double variance = 0;
+    for (const Square& square : m_squares) {
+        const double off = square.bias.value() - kChannels * square.pixels * error.bias;
+        variance += off * off;
+    }
+    error.biasStandardError = std::sqrt(variance * squares / (squares - 1)) / values;
+    return error;
+}
+
+NeighbourRows::NeighbourRows(std::size_t width) {
+    for (std::vector<Pixel>& row : m_rows) row.resize(width);
+}
+
+std::vector<NeighbourRows::Pixel>& NeighbourRows::nextRow() {
+    return m_rows[m_next++ % 3];
+}
+
+Neighbours NeighbourRows::around(std::size_t x, std::size_t channel) const {
+    constexpr std::int32_t kFew = 4;
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    double lowest = kInfinity, second = kInfinity, highest = -kInfinity, secondHighest = -kInfinity;
+    Neighbours found;
+    for (std::size_t row = 0; row < 3; ++row) {
+        const std::vector<Pixel>& pixels = m_rows[(m_next + row) % 3];  // from the oldest on
+        for (std::size_t i = x - std::min<std::size_t>(x, 1); i <= x + 1 && i < pixels.size();
+             ++i) {
+            if ((row == 1 && i == x) || !pixels[i].sampled) continue;
+            const double value = pixels[i].values[channel];
+            found.mean += value;
+            ++found.count;
+            second = std::min(second, std::max(lowest, value));
+            lowest = std::min(lowest, value);
+            secondHighest = std::max(secondHighest, std::min(highest, value));
+            highest = std::max(highest, value);
+        }
+    }
+    if (found.count == 0) return found;
+    found.mean /= found.count;
+    found.low = found.count > kFew ? second : lowest;
+    found.high = found.count > kFew ? secondHighest : highest;
+    return found;
+}
+
+}  // namespace pm

@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "integrator/values/rect.h"
+#include "scheduler/compensated_sum.h"
+
+namespace pm {
+
+// How far a frame is from the truth, as relMSE (mean over pixels and channels of
+// (x - r)^2 / (r^2 + 0.01)), told without a reference.
+//
+// What it rests on: the passes fall into two halves, even and odd ones, that share no random
+// number. What the halves of a pixel differ by is noise, whatever the samples within a half share
+// (photons, low-discrepancy sequences); what they have in common beside the light is bias.
+//   noise: with halves of weights v, w and means a, b, E[(a - b)^2] v w / (v + w)^2 is the variance
+//          of the pixel's mean.
+//   bias:  each half's mean d of the probe, the same picture with radii narrowed by sqrt(2) minus
+//          the picture. Where light is smooth over a radius bias grows with its square, so d holds
+//          minus half of it; 4 E[d_even d_odd] is its square, free of noise.
+// Both are divided by m^2 + 0.01, m a stand-in for the reference out of the pixel's mean and its
+// neighbours' (see standIn).
+//
+// What it does not see: light that no pass has found yet; bias that narrowing by sqrt(2) doesn't
+// change; and of a blurred sharp edge, where bias falls more slowly than its radius squared, it
+// sees a part only: a third at the edge of a disc of light.
+struct FrameError {
+    double noise = 0;         // relMSE of noise
+    double noiseTrimmed = 0;  // the same without the pixels that have most of it, 1 in 1000
+    // relMSE of bias. Its own noise may make it negative: then nothing is known but that it is
+    // small.
+    double bias = 0;
+    // Of `bias`, from squares of 32 x 32 pixels; nothing where there is one square only.
+    std::optional<double> biasStandardError;
+
+    double total() const { return noise + std::max(0.0, bias); }
+    double totalTrimmed() const { return noiseTrimmed + std::max(0.0, bias); }
+};
+
+// Adds up the pixels of a frame, given in one fixed order.
+class FrameErrorSum {
+  public:
+    // window: of the frame; expected: at most so many pixels will come.
+    explicit FrameErrorSum(const Rect& window);
+
+    // Of pixel x, y: the sums over its three channels of the shares of noise and bias.
+    void add(std::int32_t x, std::int32_t y, double noise, double bias);
+    // Nothing where no pixel was added.
+    std::optional<FrameError> result() const;
+
+  private:
+    struct Square {
+        CompensatedSum bias;
+        double pixels = 0;
+    };
+    double trimmedNoise() const;
+
+    Rect m_window;
+    std::int32_t m_columns;
+    std::vector<Square> m_squares;
+    std::vector<double> m_noise;  // of each pixel
+};
+
+// What is like a pixel, by its up to 8 neighbours: an outlier is neither their mean nor within what
+// they span, even when one neighbour is an outlier too.
+struct Neighbours {
+    double low = 0, high = 0;  // the second lowest and the second highest; of few the outermost
+    double mean = 0;
+    std::int32_t count = 0;
+};
+
+// Finds neighbours in rows that are given from the top, one by one.
+class NeighbourRows {
+  public:
+    // The mean beauty of a pixel, where it has samples.
+    struct Pixel {
+        double values[3]{};
+        bool sampled = false;
+    };
+
+    explicit NeighbourRows(std::size_t width);
+
+    // The row that enters next; to be filled by the caller.
+    std::vector<Pixel>& nextRow();
+    // Around pixel x of the row that entered one before the latest.
+    Neighbours around(std::size_t x, std::size_t channel) const;
+
+  private:
+    std::vector<Pixel> m_rows[3];
+    std::size_t m_next = 0;
+};
+
+}  // namespace pm

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+
+// The frame's error out of the frame store; the method is told at FrameError.
+#include <algorithm>
+#include <array>
+
+#include "scheduler/fp_environment.h"
+#include "scheduler/frame_store.h"
+
+namespace pm {
+namespace {
+
+// The offset of relMSE's denominator, as in design and documentation.
+constexpr double kRelMseOffset = 0.01;
+// Bias is minus twice the probe, so its square four times the probe's.
+constexpr double kBiasPerProbe = 4;
+// A pixel is taken as unlike its neighbours by what is more than so many variances of its mean.
+constexpr double kUnlikeVariances = 2;
+// A lamp that a pixel sees, in a mirror or through glass too, is no outlier however bright it is
+// among what is around: so much of what the pixel has of it is believed, whatever the neighbours.
+constexpr double kBelievedEmission = 0.5;
+
+// What stands for the reference in relMSE's denominator. A pixel's own mean would excuse an outlier
+// by its own square; its neighbours know neither edges nor textures. So: the middle between the
+// neighbours' mean and the own one held within what they span, and of the distance from there to
+// the own mean as much of the square as is more than noise.
+double standIn(double own, double variance, const Neighbours& neighbours) {
+    if (neighbours.count == 0) return own;
+    // Not std::clamp, which NaN would have outside of its contract.
+    const double held = std::max(neighbours.low, std::min(own, neighbours.high));
+    const double like = 0.5 * (held + neighbours.mean);
+    const double off = own - like;
+    const double square = off * off;
+    const double noise = kUnlikeVariances * variance;
+    return square > noise ? like + off * (square - noise) / square : like;
+}
+
+}  // namespace
+
+void FrameStore::readMeans(std::int32_t y, std::vector<NeighbourRows::Pixel>& row) const {
+    std::fill(row.begin(), row.end(), NeighbourRows::Pixel{});
+    if (y < m_window.y0 || y >= m_window.y1) return;
+    const std::lock_guard lock(bandLock(y));
+    std::size_t pixel = pixelIndex(m_window.x0, y);
+    for (NeighbourRows::Pixel& to : row) {
+        if (m_weights[pixel] > 0.0) {
+            for (std::int32_t i = 0; i < kBeautyChannels; ++i)
+                to.values[i] = mean(pixel, m_beautyFirst + i);
+            to.sampled = true;
+        }
+        ++pixel;
+    }
+}
+
+void FrameStore::addError(std::int32_t x, std::int32_t y, const NeighbourRows& rows,
+                          FrameErrorSum& sum) const {
+    const std::size_t pixel = pixelIndex(x, y);
+    if (m_passes[pixel] < 2) return;
+    const double weight = m_weights[pixel], even = m_evenWeights[pixel], odd = weight - even;
+    const double* const sums = m_sums.data() + pixel * static_cast<std::size_t>(m_channels);
+    const bool hasProbe = m_biasProbeFirst >= 0;
+    const double* const evenSums =
+        m_evenSums.data() + pixel * (hasProbe ? 2 * kBeautyChannels : kBeautyChannels);
+    double noise = 0, bias = 0;
+    for (std::int32_t i = 0; i < kBeautyChannels; ++i) {
+        const double own = mean(pixel, m_beautyFirst + i);
+        const Neighbours around =
+            rows.around(static_cast<std::size_t>(x - m_window.x0), static_cast<std::size_t>(i));
+        const double emission =
+            m_emissionFirst < 0 ? 0.0 : kBelievedEmission * mean(pixel, m_emissionFirst + i);
+        const double reference = std::max(standIn(own, varianceOfMean(pixel, i), around), emission);
+        const double denominator = reference * reference + kRelMseOffset;
+        const double apart = evenSums[i] / even - (sums[m_beautyFirst + i] - evenSums[i]) / odd;
+        noise += apart * apart * (even / weight) * (odd / weight) / denominator;
+        if (!hasProbe) continue;
+        const double evenProbe = evenSums[kBeautyChannels + i];
+        const double oddProbe = sums[m_biasProbeFirst + i] - evenProbe;
+        bias += kBiasPerProbe * (evenProbe / even) * (oddProbe / odd) / denominator;
+    }
+    sum.add(x, y, noise, bias);
+}
+
+std::optional<FrameError> FrameStore::estimateError() const {
+    const FpEnvironment guard;
+    FrameErrorSum sum(m_window);
+    NeighbourRows rows(static_cast<std::size_t>(m_window.width()));
+    readMeans(m_window.y0, rows.nextRow());
+    for (std::int32_t y = m_window.y0; y < m_window.y1; ++y) {
+        readMeans(y + 1, rows.nextRow());
+        const std::lock_guard lock(bandLock(y));
+        for (std::int32_t x = m_window.x0; x < m_window.x1; ++x) addError(x, y, rows, sum);
+    }
+    return sum.result();
+}
+
+}  // namespace pm
