@@ -13,6 +13,8 @@ constexpr double kChannels = 3;
 constexpr double kTrimmedShare = 0.001;
 // Side of the squares whose shares of the bias count as independent: wider than most blurs.
 constexpr std::int32_t kSquarePixels = 32;
+// Samples that saw a lamp, from which on their number is known well enough.
+constexpr double kManySeen = 30;
 
 std::int32_t squareOf(std::int32_t from, std::int32_t at) {
     return (at - from) / kSquarePixels;
@@ -73,6 +75,33 @@ std::optional<FrameError> FrameErrorSum::result() const {
     }
     error.biasStandardError = std::sqrt(variance * squares / (squares - 1)) / values;
     return error;
+}
+
+SeldomLight::SeldomLight(double lampSquare, double variance)
+    : m_seen(std::max(1.0, lampSquare / variance)), m_many(!(m_seen < kManySeen)) {
+    if (m_many) return;
+    // Even steps of the count's logarithm.
+    constexpr double kLeast = 1e-6, kMost = 2 * kManySeen;
+    const double step = std::log(kMost / kLeast) / static_cast<double>(kNodes - 1);
+    double sum = 0;
+    for (std::size_t i = 0; i < kNodes; ++i) {
+        const double logarithm = std::log(kLeast) + step * static_cast<double>(i);
+        m_counts[i] = std::exp(logarithm);
+        m_weights[i] = std::exp((m_seen + 1) * logarithm - m_counts[i]);
+        sum += m_weights[i];
+    }
+    for (double& weight : m_weights) weight /= sum;
+}
+
+double SeldomLight::meanInverse(double lamp, double rest, double offset) const {
+    if (m_many) return 1 / ((lamp + rest) * (lamp + rest) + offset);
+    const double each = lamp / m_seen;
+    double mean = 0;
+    for (std::size_t i = 0; i < kNodes; ++i) {
+        const double truth = rest + each * m_counts[i];
+        mean += m_weights[i] / (truth * truth + offset);
+    }
+    return mean;
 }
 
 NeighbourRows::NeighbourRows(std::size_t width) {

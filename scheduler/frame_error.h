@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -25,11 +26,13 @@ namespace pm {
 //          the picture. Where light is smooth over a radius bias grows with its square, so d holds
 //          minus half of it; 4 E[d_even d_odd] is its square, free of noise.
 // Both are divided by m^2 + 0.01, m a stand-in for the reference out of the pixel's mean and its
-// neighbours' (see standIn).
+// neighbours' (see standIn). Where a pixel sees a lamp neither will do (see SeldomLight).
 //
 // What it does not see: light that no pass has found yet; bias that narrowing by sqrt(2) doesn't
 // change; and of a blurred sharp edge, where bias falls more slowly than its radius squared, it
-// sees a part only: a third at the edge of a disc of light.
+// sees a part only: a third at the edge of a disc of light. Where a handful of pixels makes most of
+// the error, as rims of small lamps in mirrors and glass do, it knows their error to a factor only:
+// that of the rest is in noiseTrimmed.
 struct FrameError {
     double noise = 0;         // relMSE of noise
     double noiseTrimmed = 0;  // the same without the pixels that have most of it, 1 in 1000
@@ -73,6 +76,29 @@ struct Neighbours {
     double low = 0, high = 0;  // the second lowest and the second highest; of few the outermost
     double mean = 0;
     std::int32_t count = 0;
+};
+
+// A pixel that few samples saw a lamp from: at its rim, in a mirror or through glass. Its own mean
+// is the worse a guess the larger the error is: had the lamp's true share of the pixel been a tenth
+// of what came up by chance, the relative error would be a hundredfold of what the mean makes of
+// it. So the mean of 1 / (r^2 + 0.01) over what r may be. How many samples saw the lamp is told
+// from the noise, (mean / its standard error)^2 as of a Poisson count; where any share of the pixel
+// was as likely as another, the count to be expected has the Gamma distribution of shape one more.
+class SeldomLight {
+  public:
+    // Square of the pixel's mean light from lamps and variance of its mean, each summed over the
+    // channels; both above 0.
+    SeldomLight(double lampSquare, double variance);
+
+    // Mean of 1 / (r^2 + offset), r the truth of a channel whose means are `lamp` of lamps and
+    // `rest` of all else.
+    double meanInverse(double lamp, double rest, double offset) const;
+
+  private:
+    static constexpr std::size_t kNodes = 128;
+    double m_seen;
+    bool m_many;  // so many that the mean is as good as the truth
+    std::array<double, kNodes> m_counts{}, m_weights{};
 };
 
 // Finds neighbours in rows that are given from the top, one by one.

@@ -17,6 +17,7 @@ constexpr double kRelMseOffset = 0.01;
 constexpr double kBiasPerProbe = 4;
 // A pixel is taken as unlike its neighbours by what is more than so many variances of its mean.
 constexpr double kUnlikeVariances = 2;
+
 // A lamp that a pixel sees, in a mirror or through glass too, is no outlier however bright it is
 // among what is around: so much of what the pixel has of it is believed, whatever the neighbours.
 constexpr double kBelievedEmission = 0.5;
@@ -34,6 +35,38 @@ double standIn(double own, double variance, const Neighbours& neighbours) {
     const double square = off * off;
     const double noise = kUnlikeVariances * variance;
     return square > noise ? like + off * (square - noise) / square : like;
+}
+
+using Channels = std::array<double, FrameStore::kBeautyChannels>;
+
+// A pixel's means, and what is known of their noise.
+struct PixelMeans {
+    Channels beauty{}, lamps{};  // lamps: the part of the beauty from lamps that the pixel sees
+    Channels halves{};           // variance of the mean, by what the halves differ by
+    Channels passes{};           // by what the passes differ by
+};
+
+// 1 / (r^2 + offset) of a pixel's channels, r what stands for the reference.
+Channels inverseSquares(const PixelMeans& pixel, std::size_t column, const NeighbourRows& rows) {
+    double lampSquare = 0, variance = 0;
+    Channels inverses{};
+    for (std::size_t i = 0; i < inverses.size(); ++i) {
+        const double like = standIn(pixel.beauty[i], pixel.passes[i], rows.around(column, i));
+        const double reference = std::max(like, kBelievedEmission * pixel.lamps[i]);
+        inverses[i] = 1 / (reference * reference + kRelMseOffset);
+        lampSquare += pixel.lamps[i] * pixel.lamps[i];
+        variance += pixel.halves[i];
+    }
+    if (!(lampSquare > 0 && variance > 0)) return inverses;
+    // Of the two guesses the one that makes more of the error: each of them knows of errors that
+    // the other takes for light.
+    const SeldomLight seldom(lampSquare, variance);
+    for (std::size_t i = 0; i < inverses.size(); ++i) {
+        const double rest = std::max(0.0, pixel.beauty[i] - pixel.lamps[i]);
+        inverses[i] =
+            std::max(inverses[i], seldom.meanInverse(pixel.lamps[i], rest, kRelMseOffset));
+    }
+    return inverses;
 }
 
 }  // namespace
@@ -62,21 +95,25 @@ void FrameStore::addError(std::int32_t x, std::int32_t y, const NeighbourRows& r
     const bool hasProbe = m_biasProbeFirst >= 0;
     const double* const evenSums =
         m_evenSums.data() + pixel * (hasProbe ? 2 * kBeautyChannels : kBeautyChannels);
+    PixelMeans means;
+    for (std::int32_t i = 0; i < kBeautyChannels; ++i) {
+        const auto to = static_cast<std::size_t>(i);
+        const double apart = evenSums[i] / even - (sums[m_beautyFirst + i] - evenSums[i]) / odd;
+        means.beauty[to] = mean(pixel, m_beautyFirst + i);
+        means.lamps[to] = m_emissionFirst < 0 ? 0.0 : mean(pixel, m_emissionFirst + i);
+        means.halves[to] = apart * apart * (even / weight) * (odd / weight);
+        means.passes[to] = varianceOfMean(pixel, i);
+    }
+    const Channels inverses =
+        inverseSquares(means, static_cast<std::size_t>(x - m_window.x0), rows);
     double noise = 0, bias = 0;
     for (std::int32_t i = 0; i < kBeautyChannels; ++i) {
-        const double own = mean(pixel, m_beautyFirst + i);
-        const Neighbours around =
-            rows.around(static_cast<std::size_t>(x - m_window.x0), static_cast<std::size_t>(i));
-        const double emission =
-            m_emissionFirst < 0 ? 0.0 : kBelievedEmission * mean(pixel, m_emissionFirst + i);
-        const double reference = std::max(standIn(own, varianceOfMean(pixel, i), around), emission);
-        const double denominator = reference * reference + kRelMseOffset;
-        const double apart = evenSums[i] / even - (sums[m_beautyFirst + i] - evenSums[i]) / odd;
-        noise += apart * apart * (even / weight) * (odd / weight) / denominator;
+        const double inverse = inverses[static_cast<std::size_t>(i)];
+        noise += means.halves[static_cast<std::size_t>(i)] * inverse;
         if (!hasProbe) continue;
         const double evenProbe = evenSums[kBeautyChannels + i];
         const double oddProbe = sums[m_biasProbeFirst + i] - evenProbe;
-        bias += kBiasPerProbe * (evenProbe / even) * (oddProbe / odd) / denominator;
+        bias += kBiasPerProbe * (evenProbe / even) * (oddProbe / odd) * inverse;
     }
     sum.add(x, y, noise, bias);
 }

@@ -32,12 +32,13 @@ struct SettingOption {
     const char* setting;
     const char* placeholder;
 };
-constexpr std::array<SettingOption, 13> kSettingOptions{{
+constexpr std::array<SettingOption, 14> kSettingOptions{{
     {"--threads", "threads", "N"},
     {"--bucket-size", "bucketSize", "N"},
     {"--bucket-order", "bucketOrder", "NAME"},
     {"--aa", "aaLevel", "N|N:N"},
     {"--integrator", "integrator", "photon|path"},
+    {"--plan", "plan", "auto|everything"},
     {"--photons", "photons", "N|auto"},
     {"--estimate-photons", "estimatePhotons", "K"},
     {"--gather-rays", "gatherRays", "N|auto"},

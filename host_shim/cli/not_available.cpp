@@ -13,9 +13,9 @@
 namespace pm::host {
 namespace {
 
-constexpr std::array<std::string_view, 10> kLaterOptions{
-    "--buckets",    "--aa-threshold", "--filter", "--plan",         "--photon-map",
-    "--checkpoint", "--resume",       "--report", "--photons-only", "--denoise"};
+constexpr std::array<std::string_view, 9> kLaterOptions{
+    "--buckets", "--aa-threshold", "--filter",       "--photon-map", "--checkpoint",
+    "--resume",  "--report",       "--photons-only", "--denoise"};
 
 }  // namespace
 

@@ -13,9 +13,9 @@ namespace {
 
 // Fewer than this of the pilot say too little about the density.
 constexpr std::uint32_t kFewestPilotPhotons = 4;
-// Where the pilot has less than 1/64 of its typical density the estimate grows no wider: what is
+// Where the pilot has less than 1/16 of its typical density the estimate grows no wider: what is
 // thinner than that is too dim to matter, and too wide a disc reaches round corners.
-constexpr float kLargestRadius = 2.0f;
+constexpr float kLargestRadius = 4.0f;
 constexpr float kSmallestRadius = 1e-3f;
 
 }  // namespace

@@ -15,7 +15,7 @@ namespace pm {
 // Threads: const functions from any, at once.
 class PilotRadius {
   public:
-    static constexpr std::uint32_t kPilotShare = 8;
+    static constexpr std::uint32_t kPilotShare = 4;
 
     // pilot: photons as the map's, 1/kPilotShare as many of them emitted, so that a radius with
     // estimatePhotons / kPilotShare of the pilot's holds about estimatePhotons of the map's.
@@ -50,7 +50,8 @@ class CausticMap {
     CausticMap(std::vector<Photon> photons, const CausticRadius& radius, float radiusFactor)
         : m_map(std::move(photons)), m_radius(radius), m_radiusFactor(radiusFactor) {}
 
-    // Irradiance, W m^-2, on the side of the normal, at the radius that belongs there.
+    // Irradiance, W m^-2, on the side of the normal, at the radius that belongs there; where the
+    // disc is not all surface it is too dark, see estimateAt.
     TwoRadii irradiance(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const;
 
     std::uint64_t memoryBytes() const { return m_map.memoryBytes(); }

@@ -2,9 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/scene/light_sampler.h"
 
-#include <algorithm>
-#include <cmath>
+#include <tbb/parallel_for.h>
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <vector>
+
+#include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
 
 namespace pm {
@@ -32,10 +37,100 @@ LightChoice choiceByPower(const std::vector<Light>& lights) {
     return LightChoice(powers);
 }
 
+Receiver receiverAt(const Surface& surface, const Vec3f& side) {
+    const bool front = dot(side, surface.geometricNormal) >= 0.0f;
+    return {surface.position, front ? surface.shadingNormal : -surface.shadingNormal};
+}
+
+// The random numbers have steps of 2^-24, which ten thousand lights would use up: the steps' own
+// fractions are made of both numbers' bits.
+double refined(Vec2f u) {
+    const std::uint64_t bits = mixBits(std::uint64_t{std::bit_cast<std::uint32_t>(u.x)} << 32 |
+                                       std::bit_cast<std::uint32_t>(u.y));
+    return static_cast<double>(u.x) + static_cast<double>(bits >> 40) * 0x1p-48;
+}
+
+// Random numbers for trials, which nothing else uses.
+constexpr std::uint64_t kTrialSeed = 0x6c69676874677565ull;
+constexpr std::uint64_t kNoNode = ~std::uint64_t{0};
+
+// Shadow rays that look which lights are hidden.
+constexpr std::size_t kSightingsOfAPlace = 32;
+constexpr std::size_t kMostSightings = 1 << 17;
+
 }  // namespace
 
 LightSampler::LightSampler(const Scene& scene)
-    : m_scene(scene), m_choice(choiceByPower(scene.lights())) {}
+    : m_scene(scene), m_choice(choiceByPower(scene.lights())) {
+    if (!empty() && scene.lights().size() > kFewLights) m_tree = std::make_unique<LightTree>(scene);
+}
+
+void LightSampler::learn(std::span<const LitPlace> places, std::uint64_t seed) {
+    if (!isGuided() || places.empty()) return;
+    std::vector<Receiver> receivers;
+    receivers.reserve(places.size());
+    for (const LitPlace& place : places) receivers.push_back(receiverAt(place.surface, place.side));
+    const std::uint64_t key = combineBits(seed, kTrialSeed);
+    m_tree->learn(look(places, key));
+    m_guide = std::make_unique<const LightGuide>(
+        *m_tree, receivers, [&](std::size_t place, std::uint32_t node, std::uint32_t number) {
+            return lookFrom(places[place], node, Sampler(key, node, place, number).next2D());
+        });
+}
+
+std::vector<Sighting> LightSampler::look(std::span<const LitPlace> places,
+                                         std::uint64_t key) const {
+    const std::size_t count = std::min(kSightingsOfAPlace * places.size(), kMostSightings);
+    std::vector<std::optional<Sighting>> found(count);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        const std::size_t place = i % places.size(), number = i / places.size();
+        Sampler sampler(key, kNoNode, place, static_cast<std::uint32_t>(number));
+        found[i] = lookFrom(places[place], LightTree::kRoot, sampler.next2D());
+    });
+    std::vector<Sighting> sightings;
+    for (const auto& sighting : found)
+        if (sighting) sightings.push_back(*sighting);
+    return sightings;
+}
+
+std::optional<Sighting> LightSampler::lookFrom(const LitPlace& place, std::uint32_t node,
+                                               Vec2f u) const {
+    const Receiver receiver = receiverAt(place.surface, place.side);
+    double x = refined(u);
+    float probability = 1.0f;
+    const std::uint32_t light = m_tree->choose(node, receiver, x, probability);
+    u.x = std::min(static_cast<float>(x), 1.0f - 0x1p-24f);
+    LightSample sample;
+    if (!sampleOn(m_scene.lights()[light], probability, place.surface, u, sample) ||
+        !(dot(sample.direction, receiver.normal) > 0.0f))
+        return std::nullopt;
+    return Sighting{light, !m_scene.occluded(sample.shadowRay)};
+}
+
+std::uint32_t LightSampler::choose(const Surface& surface, const Vec3f& side, Vec2f& u,
+                                   float& probability) const {
+    if (!isGuided()) return m_choice.chooseAndStretch(u.x, probability);
+    const Receiver receiver = receiverAt(surface, side);
+    double x = refined(u);
+    probability = 1.0f;
+    const std::uint32_t light = m_guide
+                                    ? m_guide->choose(receiver, x, probability)
+                                    : m_tree->choose(LightTree::kRoot, receiver, x, probability);
+    u.x = std::min(static_cast<float>(x), 1.0f - 0x1p-24f);
+    return light;
+}
+
+float LightSampler::probability(const Surface& surface, const Vec3f& side,
+                                std::uint32_t light) const {
+    if (!isGuided()) return m_choice.probability(light);
+    const Receiver receiver = receiverAt(surface, side);
+    return m_guide ? m_guide->probability(receiver, light)
+                   : m_tree->probability(LightTree::kRoot, receiver, light);
+}
+
+std::uint64_t LightSampler::memoryBytes() const {
+    return (m_tree ? m_tree->memoryBytes() : 0) + (m_guide ? m_guide->memoryBytes() : 0);
+}
 
 Rgb LightSampler::emittedRadiance(const Surface& surface, const Vec3f& direction) const {
     if (surface.light == kNoLight || dot(direction, surface.geometricNormal) <= 0.0f) return {};
@@ -49,10 +144,16 @@ Rgb LightSampler::frontRadiance(const Surface& surface) const {
     return material.emission * Rgb(texel.r, texel.g, texel.b);
 }
 
-bool LightSampler::sample(const Surface& surface, Vec2f uPoint, LightSample& sample) const {
+bool LightSampler::sample(const Surface& surface, const Vec3f& side, Vec2f uPoint,
+                          LightSample& sample) const {
     if (empty()) return false;
     float probability;
-    const Light& light = m_scene.lights()[m_choice.chooseAndStretch(uPoint.x, probability)];
+    const std::uint32_t light = choose(surface, side, uPoint, probability);
+    return sampleOn(m_scene.lights()[light], probability, surface, uPoint, sample);
+}
+
+bool LightSampler::sampleOn(const Light& light, float probability, const Surface& surface,
+                            Vec2f uPoint, LightSample& sample) const {
     switch (light.kind) {
         case Light::Kind::kTriangle:
             return sampleTriangle(surface, light, probability, uPoint, sample);
@@ -126,7 +227,7 @@ float LightSampler::pdfSolidAngle(const Surface& from, const Vec3f& direction,
                                   const Surface& onLight) const {
     const auto index = static_cast<std::size_t>(onLight.light);
     const Light& light = m_scene.lights()[index];
-    const float probability = m_choice.probability(index);
+    const float probability = this->probability(from, direction, static_cast<std::uint32_t>(index));
     if (light.kind == Light::Kind::kSphere) {
         const SphereShape sphere = m_scene.sphere(light.shape);
         const double d2 = lengthSquared(sphere.centre - Vec3d(from.position));

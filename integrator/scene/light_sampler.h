@@ -2,10 +2,17 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
 
 #include "integrator/rays/ray_tracer.h"
 #include "integrator/scene/light_choice.h"
+#include "integrator/scene/light_guide.h"
+#include "integrator/scene/light_tree.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/surface.h"
 #include "integrator/values/rgb.h"
@@ -30,20 +37,41 @@ struct EmittedPhoton {
     Rgb flux;  // W, of one photon if only one were emitted: divide by the number emitted
 };
 
-// Chooses lights by power, with a floor so that none is starved, and points on them.
+// A place where light is asked for, and any direction on the side of the surface that is lit.
+struct LitPlace {
+    Surface surface;
+    Vec3f side;
+};
+
+// Chooses lights and points on them. Few lights are chosen by power, with a floor so that none is
+// starved; of many (isGuided()) each receiver has its own choice, by a LightTree and, once learn()
+// was called, a LightGuide. Photons leave lights by power.
 // Threads: const functions from any, at once.
 class LightSampler {
   public:
     explicit LightSampler(const Scene& scene);
 
+    // More lights than this are many.
+    static constexpr std::size_t kFewLights = 16;
+
     bool empty() const { return m_choice.empty(); }
+    bool isGuided() const { return m_tree != nullptr; }
+
+    // Learns by shadow rays which lights reach `places`, the places where most samples will be
+    // asked for. Nothing happens without many lights or without places. A function of scene, places
+    // and seed; works in parallel in the calling TBB arena.
+    void learn(std::span<const LitPlace> places, std::uint64_t seed);
 
     // False when the chosen point can't shine on the surface.
+    // side: any direction on the side of the surface that is lit; without it, the front.
     // u: of the light by its first number, of the point on it by both.
-    bool sample(const Surface& surface, Vec2f u, LightSample& sample) const;
+    bool sample(const Surface& surface, const Vec3f& side, Vec2f u, LightSample& sample) const;
+    bool sample(const Surface& surface, Vec2f u, LightSample& sample) const {
+        return this->sample(surface, surface.geometricNormal, u, sample);
+    }
 
-    // Density with which sample() at `from` finds the point `onLight` (whose primitive is a light)
-    // along the unit direction `direction`; sr^-1.
+    // Density with which sample() at `from`, of the side of `direction`, finds the point `onLight`
+    // (whose primitive is a light) along the unit direction `direction`; sr^-1.
     float pdfSolidAngle(const Surface& from, const Vec3f& direction, const Surface& onLight) const;
 
     // A photon: light by power, point uniform over its area, direction by the cosine; of a point
@@ -60,7 +88,17 @@ class LightSampler {
     // The same of a point that is known to be on a light, in any direction on its front.
     Rgb frontRadiance(const Surface& surface) const;
 
+    // Of the tree and what was learnt.
+    std::uint64_t memoryBytes() const;
+
   private:
+    std::uint32_t choose(const Surface& surface, const Vec3f& side, Vec2f& u,
+                         float& probability) const;
+    float probability(const Surface& surface, const Vec3f& side, std::uint32_t light) const;
+    std::vector<Sighting> look(std::span<const LitPlace> places, std::uint64_t key) const;
+    std::optional<Sighting> lookFrom(const LitPlace& place, std::uint32_t node, Vec2f u) const;
+    bool sampleOn(const Light& light, float probability, const Surface& surface, Vec2f u,
+                  LightSample& sample) const;
     bool sampleTriangle(const Surface& surface, const Light& light, float probability, Vec2f u,
                         LightSample& sample) const;
     bool sampleSphere(const Surface& surface, const Light& light, float probability, Vec2f u,
@@ -72,6 +110,8 @@ class LightSampler {
 
     const Scene& m_scene;
     LightChoice m_choice;
+    std::unique_ptr<LightTree> m_tree;  // of many lights
+    std::unique_ptr<const LightGuide> m_guide;
 };
 
 }  // namespace pm

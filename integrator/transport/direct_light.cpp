@@ -15,7 +15,9 @@ DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
     // Drawn in any case: the dimensions that follow keep their numbers.
     const Vec2f u = sampler.next2D();
     LightSample light;
-    if (!lights.sample(surface, u, light) || !(light.pdfSolidAngle > 0.0f)) return result;
+    if (!lights.sample(surface, bsdf.facingGeometricNormal(), u, light) ||
+        !(light.pdfSolidAngle > 0.0f))
+        return result;
     const auto contribution = [&](Lobe lobe) {
         if (!bsdf.has(lobe)) return Rgb{};
         const Rgb value = bsdf.evaluate(lobe, light.direction);

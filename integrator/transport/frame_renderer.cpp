@@ -12,6 +12,7 @@
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/lit_places.h"
 #include "integrator/transport/path_integrator.h"
 #include "integrator/transport/photon_integrator.h"
 #include "integrator/transport/photon_pass.h"
@@ -72,7 +73,9 @@ struct FrameRenderer::Impl {
           plan(makePlan(*scene, settings_)),
           camera(*scene, settings_.width, settings_.height),
           lights(*scene),
-          photons(*scene, camera, lights, plan, settings) {}
+          photons(*scene, camera, lights, plan, settings) {
+        if (lights.isGuided()) lights.learn(findLitPlaces(*scene, camera, settings), settings.seed);
+    }
 
     SampleRadiance sample(std::int32_t x, std::int32_t y, std::uint32_t index,
                           NearestPhotons& scratch) const;

@@ -22,9 +22,9 @@ namespace pm {
 // pass, and what it blurs vanishes with it.
 //
 // Where other surfaces are near, irradiance changes within their distance; there the radius is a
-// share of the harmonic mean distance of what the gather rays meet.
-// Source of that measure: Ward, Rubinstein & Clear 1988, "A Ray Tracing Solution for Diffuse
-// Interreflection", eq. 2 to 4.
+// share of the smallest distance at which the gather rays meet one.
+// Source of the idea: Ward, Rubinstein & Clear 1988, "A Ray Tracing Solution for Diffuse
+// Interreflection", with the harmonic mean of the distances; that misses what few rays meet.
 //
 // A point's irradiance is computed when it is first asked for and does not depend on who asks.
 // Threads: const functions from any, at once.
@@ -82,7 +82,7 @@ class GatherPoints {
     struct Value {
         TwoRadii irradiance;
         float lampShare = 0.0f;
-        float clearance = 0.0f;  // harmonic mean distance, scene units
+        float clearance = 0.0f;  // smallest distance met, scene units
     };
     // A Value that is computed when it is first asked for.
     struct Kept {

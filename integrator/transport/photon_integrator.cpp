@@ -15,6 +15,8 @@ namespace {
 // Lamps that fill less than this share of the cosine-weighted view are found by next-event
 // estimation alone: the other strategy's weight is below its square there.
 constexpr float kLargeLampShare = 0.02f;
+// Where there are no gather points a sample sends rays of its own: few, as it is one of many.
+constexpr std::uint32_t kOwnGatherRays = 4;
 
 }  // namespace
 
@@ -46,12 +48,17 @@ SampleRadiance PhotonIntegrator::sample(Vec2f screen, const Ray& ray, Sampler& s
             return result;
         BsdfSample sample;
         const float uLobe = sampler.next1D();
-        const bool valid = bsdf.sample(uLobe, sampler.next2D(), sample);
-        if (!valid) return result;
+        bool valid = bsdf.sample(uLobe, sampler.next2D(), sample);
         if (sample.lobe == Lobe::kDiffuse) {
-            followDiffuse(surface, sample, still, path.throughput, sampler, result);
+            const std::uint32_t rays = still.indirect ? kOwnGatherRays : 1;
+            const Rgb share = path.throughput / static_cast<float>(rays);
+            for (std::uint32_t i = 0; i < rays; ++i) {
+                if (i > 0) valid = bsdf.sample(uLobe, sampler.next2D(), sample);
+                if (valid) followDiffuse(surface, sample, still, share, sampler, result);
+            }
             return result;
         }
+        if (!valid) return result;
         if (!path.scatter(surface, bsdf, sample, sampler)) return result;
         state.scatter(sample.lobe);
         last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle};
@@ -67,9 +74,6 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(Vec2f screen, const Sur
         part += reflected * irradiance.wide;
         result.biasProbe += reflected * (irradiance.narrow - irradiance.wide);
     };
-    if (m_maps.caustic)
-        add(m_maps.caustic->irradiance(surface.position, bsdf.facingGeometricNormal(), scratch),
-            result.caustic);
     StillToFind still;
     GatherPoints::Estimate indirect;
     const bool kept = m_maps.points &&
@@ -80,13 +84,15 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(Vec2f screen, const Sur
         add(indirect.irradiance, result.indirect);
         if (indirect.lampShare < kLargeLampShare) still.lamps = LampStrategy::kNextEventOnly;
     }
+    const Vec3f& normal = bsdf.facingGeometricNormal();
+    if (m_maps.caustic)
+        add(m_maps.caustic->irradiance(surface.position, normal, scratch), result.caustic);
     still.indirect = !kept && m_maps.global;
     if (still.indirect && m_maps.descended) {
         // Any pattern that depends on the place alone.
         const auto pattern = std::bit_cast<std::uint32_t>(surface.position.x) ^
                              std::bit_cast<std::uint32_t>(surface.position.y);
-        add(m_maps.descended->at(surface.position, bsdf.facingGeometricNormal(), pattern),
-            result.indirect);
+        add(m_maps.descended->at(surface.position, normal, pattern), result.indirect);
     }
     return still;
 }

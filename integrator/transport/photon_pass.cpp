@@ -15,6 +15,9 @@ namespace pm {
 
 namespace {
 
+// Descended light is smoother than caustics: so many times as many photons an estimate.
+constexpr std::uint32_t kDescendedPhotons = 2;
+
 // Radius of a pass over the first one's: r^2 shrinks by (i + a)/(i + 1) from pass i to the next, so
 // that bias and variance both go to 0 over the passes.
 // Source: Knaus & Zwicker 2011, eq. 20, alpha = 2/3.
@@ -104,8 +107,9 @@ void PhotonPass::findRadii(Control& control) {
         m_causticRadius =
             std::make_unique<CausticRadius>(std::move(pilot.photons), estimatePhotons, fallback);
         if (m_plan.descent > 0.0f)
-            m_descendedRadius =
-                PilotRadius(std::move(pilot.descended), estimatePhotons, fallback).typical();
+            m_descendedRadius = PilotRadius(std::move(pilot.descended),
+                                            kDescendedPhotons * estimatePhotons, fallback)
+                                    .typical();
     }
     m_haveRadii = true;
 }

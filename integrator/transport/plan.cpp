@@ -15,15 +15,15 @@ namespace pm {
 
 namespace {
 
-// Photons a pass where nothing else is asked for: at 50 to an estimate the Cornell box is then
-// resolved to a hundredth of its width. Measured figures are in docs/benchmarks.md.
-constexpr std::uint64_t kAutoGlobalPhotons = 50'000;
-constexpr std::uint64_t kAutoCausticPhotons = 250'000;
+// Photons a pass where nothing else is asked for. Halving or doubling them changes the time to a
+// relMSE of 1e-3 by a few per cent; see docs/decisions.md.
+constexpr std::uint64_t kAutoGlobalPhotons = 30'000;
+constexpr std::uint64_t kAutoCausticPhotons = 150'000;
 constexpr std::uint32_t kAutoGatherRays = 24;
 // Gather points: one for 2.5 x 2.5 pixels, but no more than these in a frame.
 constexpr float kGatherSpacing = 2.5f;
 constexpr double kMostGatherPoints = 1 << 20;
-constexpr float kAutoDescent = 0.25f;
+constexpr float kAutoDescent = 1.0f;
 // Arrivals a photon: 1/(1 - albedo) for an albedo of 0.75.
 constexpr std::uint64_t kExpectedArrivals = 4;
 
@@ -56,6 +56,27 @@ SceneTraits findTraits(const Scene& scene) {
     return traits;
 }
 
+// Memory at most; time from what each part took where docs/benchmarks.md was measured.
+void estimateCosts(const RenderSettings& settings, Plan& plan) {
+    constexpr double kPerSample = 0.6e-6, kPerSampleOfCaustics = 0.9e-6, kPerGatherRay = 0.5e-6;
+    constexpr double kPerGlobalPhoton = 3e-6, kPerCausticPhoton = 4e-6;
+    const double descended = static_cast<double>(plan.descent) * kExpectedArrivals;
+    const auto global = static_cast<double>(plan.globalPhotons);
+    const auto caustic = static_cast<double>(plan.causticPhotons);
+    plan.mapBytes = static_cast<std::uint64_t>(
+        (global * kExpectedArrivals + caustic * (1.0 + descended)) * PhotonMap::kBytesPerPhoton);
+    const double samples = static_cast<double>(settings.window.area()) *
+                           std::pow(4.0, static_cast<double>(settings.aaLevel) - 2.0);
+    plan.processorSecondsPerPass =
+        samples * (kPerSample + (plan.causticMap ? kPerSampleOfCaustics : 0.0)) +
+        global * kPerGlobalPhoton + caustic * kPerCausticPhoton;
+    if (!plan.globalMap) return;
+    plan.mapBytes += GatherPoints::memoryBytes(settings.width, settings.height, plan.gatherSpacing);
+    const double points = static_cast<double>(settings.window.area()) /
+                          static_cast<double>(plan.gatherSpacing * plan.gatherSpacing);
+    plan.processorSecondsPerPass += points * plan.gatherRays * kPerGatherRay;
+}
+
 }  // namespace
 
 Plan makePlan(const Scene& scene, const RenderSettings& settings) {
@@ -72,17 +93,21 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
                                     "caustics of point lights can't be found by path tracing"});
         return plan;
     }
-    if (!traits.lights) {
+    const bool everything = settings.plan == PlanKind::kEverything;
+    if (everything) plan.reasons.push_back("everything: asked for by --plan everything");
+    if (!traits.lights && !everything) {
         plan.reasons.push_back("no photons: nothing emits");
         return plan;
     }
-    if (!traits.diffuse) {
+    if (!traits.diffuse && !everything) {
         plan.reasons.push_back("no photons: no surface reflects diffusely, paths are followed");
         return plan;
     }
-    plan.reasons.push_back("direct light: next-event estimation, weighted against gather rays");
-    plan.globalMap = !traits.flat;
-    plan.causticMap = traits.specular && !traits.flat;
+    plan.reasons.push_back(
+        "direct light: next-event estimation, weighted against rays along the diffuse lobe where "
+        "lamps fill much of the view");
+    plan.globalMap = !traits.flat || everything;
+    plan.causticMap = (traits.specular && !traits.flat) || everything;
     plan.tracePhotons = plan.globalMap || plan.causticMap;
     if (plan.globalMap) {
         plan.globalPhotons = settings.photons > 0 ? settings.photons : kAutoGlobalPhotons;
@@ -103,9 +128,10 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     }
     if (plan.causticMap) {
         plan.causticPhotons = settings.photons > 0 ? settings.photons : kAutoCausticPhotons;
-        plan.reasons.push_back(fmt::format(
-            "caustic map: {} photons a pass, since the scene has surfaces that are not diffuse",
-            plan.causticPhotons));
+        plan.reasons.push_back(
+            fmt::format("caustic map: {} photons a pass, aimed, {}", plan.causticPhotons,
+                        traits.specular ? "since the scene has surfaces that are not diffuse"
+                                        : "though every surface is diffuse"));
         if (plan.globalMap) {
             plan.descent = kAutoDescent;
             plan.reasons.push_back(fmt::format(
@@ -116,11 +142,7 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     } else {
         plan.reasons.push_back("no caustic map: every surface is diffuse");
     }
-    plan.mapBytes =
-        (plan.globalPhotons * kExpectedArrivals + plan.causticPhotons) * PhotonMap::kBytesPerPhoton;
-    if (plan.globalMap)
-        plan.mapBytes +=
-            GatherPoints::memoryBytes(settings.width, settings.height, plan.gatherSpacing);
+    estimateCosts(settings, plan);
     return plan;
 }
 
@@ -140,8 +162,10 @@ std::string Plan::explain() const {
     std::string text;
     for (const std::string& reason : reasons) text += reason + "\n";
     if (tracePhotons)
-        text += fmt::format("maps: at most about {:.1f} MB at a time\n",
-                            static_cast<double>(mapBytes) / 1e6);
+        text += fmt::format(
+            "maps: at most about {:.1f} MB at a time\ntime: about {:.2g} processor seconds a "
+            "pass, to a factor of two\n",
+            static_cast<double>(mapBytes) / 1e6, processorSecondsPerPass);
     return text;
 }
 

@@ -24,10 +24,11 @@ struct Plan {
     // Share of the caustic photons that is followed on, for a density estimate of the light
     // descended from caustics; 0: that light is left to the gather rays.
     float descent = 0.0f;
-    float gatherSpacing = 0.0f;        // of gather points on the screen, pixels
-    std::uint32_t gatherRays = 0;      // of each gather point
-    std::uint64_t mapBytes = 0;        // estimated peak of the maps
-    std::vector<std::string> reasons;  // one line each: what and why
+    float gatherSpacing = 0.0f;          // of gather points on the screen, pixels
+    std::uint32_t gatherRays = 0;        // of each gather point
+    std::uint64_t mapBytes = 0;          // estimated peak of the maps
+    double processorSecondsPerPass = 0;  // estimated, to a factor of about two
+    std::vector<std::string> reasons;    // one line each: what and why
     std::vector<Notice> notices;
 
     std::uint64_t photonsPerPass() const { return globalPhotons + causticPhotons; }

@@ -10,12 +10,16 @@ namespace pm {
 
 enum class IntegratorKind { kPhoton, kPath };
 
+// What the photon integrator uses: the maps that a scene needs, or all there are.
+enum class PlanKind { kAuto, kEverything };
+
 // Everything that a picture depends on beside the scene. Ranges are checked by whoever fills it.
 struct RenderSettings {
     std::int32_t width = 640;  // pixels of the frame
     std::int32_t height = 480;
     Rect window{0, 0, 640, 480};  // pixels to render; may exceed the frame
     IntegratorKind integrator = IntegratorKind::kPhoton;
+    PlanKind plan = PlanKind::kAuto;
     std::uint64_t photons = 0;           // emitted a pass; 0 = chosen by the plan
     std::uint32_t estimatePhotons = 50;  // k of the k-nearest estimates, >= 2
     std::uint32_t gatherRays = 0;        // of each gather point; 0 = chosen by the plan

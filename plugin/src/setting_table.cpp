@@ -71,6 +71,10 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
      "Begins no pass that would not end by then, counted from the render's start and judged by the "
      "passes before; 0 = none. The first pass is always made, whole.",
      "Decides only how many passes there are."},
+    {Setting::kPlan, "plan", PMR_SETTING_CHOICE, "", "auto", 0, 0, 1, "auto,everything", true,
+     "auto: the maps and estimators that the scene needs (see --explain); everything: all there "
+     "are, for the same picture in more time.",
+     "everything takes up to several times as long."},
 }};
 
 constexpr bool inOrder() {

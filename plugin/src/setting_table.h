@@ -34,6 +34,7 @@ enum class Setting : std::size_t {
     kMemoryLimit,
     kErrorTarget,
     kTimeLimit,
+    kPlan,
     kCount
 };
 inline constexpr std::size_t kSettingCount = static_cast<std::size_t>(Setting::kCount);

@@ -221,6 +221,7 @@ RenderSettings SettingValues::toRenderSettings() const {
     settings.window = window();
     settings.integrator =
         word(Setting::kIntegrator) == "path" ? IntegratorKind::kPath : IntegratorKind::kPhoton;
+    settings.plan = word(Setting::kPlan) == "everything" ? PlanKind::kEverything : PlanKind::kAuto;
     settings.photons = static_cast<std::uint64_t>(integer(Setting::kPhotons));
     settings.estimatePhotons = static_cast<std::uint32_t>(integer(Setting::kEstimatePhotons));
     settings.gatherRays = static_cast<std::uint32_t>(integer(Setting::kGatherRays));

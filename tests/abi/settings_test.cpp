@@ -44,7 +44,7 @@ TEST(Settings, EnumerationIsWhole) {
     for (const char* name :
          {"width", "height", "crop", "threads", "bucketSize", "bucketOrder", "aaLevel",
           "integrator", "photons", "estimatePhotons", "gatherRays", "passes", "seed", "layers",
-          "memoryLimitGib", "errorTarget", "timeLimitSeconds"})
+          "memoryLimitGib", "errorTarget", "timeLimitSeconds", "plan"})
         EXPECT_EQ(1u, names.count(name)) << name;
     EXPECT_EQ(PMR_OK, api().destroyRender(render));
 }

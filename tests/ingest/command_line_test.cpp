@@ -59,8 +59,8 @@ TEST(CommandLine, refusesWhatIsUnknownOrToCome) {
     EXPECT_TRUE(refusal({"--bogus"}).starts_with("2 "));
     EXPECT_TRUE(refusal({"another.obj"}).starts_with("2 "));
     EXPECT_TRUE(refusal({"-o"}).starts_with("2 "));
-    for (const char* later : {"--checkpoint", "--resume", "--buckets", "--filter", "--plan",
-                              "--photon-map", "--report"}) {
+    for (const char* later :
+         {"--checkpoint", "--resume", "--buckets", "--filter", "--photon-map", "--report"}) {
         EXPECT_EQ(refusal({later, "x"}), std::string("2 ") + later + ": not available yet");
         EXPECT_EQ(refusal({std::string(later) + "=x"}),
                   std::string("2 ") + later + ": not available yet");

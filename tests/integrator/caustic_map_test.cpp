@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Density estimates of independent photons on an evenly lit plane, where theory says all about
+// them: no bias (analytic F1), which an estimate that counts the photon that made its radius, or
+// the one it stands on, has (F2).
+#include "integrator/photons/caustic_map.h"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "tests/integrator/statistics.h"
+
+namespace pm::test {
+namespace {
+
+// Photons that make an irradiance of 1 on the unit square.
+std::vector<Photon> evenly(std::size_t count, std::uint64_t seed) {
+    Random random(seed);
+    std::vector<Photon> photons;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec2f at = random.next2D();
+        photons.push_back(
+            {{at.x, at.y, 0}, Rgb(1.0f / static_cast<float>(count)), PackedNormal(Vec3f{0, 0, 1})});
+    }
+    return photons;
+}
+
+struct Mean {
+    double sum = 0, squares = 0, count = 0;
+
+    void add(double v) { sum += v, squares += v * v, count += 1; }
+    double mean() const { return sum / count; }
+    double deviation() const { return std::sqrt(squares / count - mean() * mean()); }
+};
+
+TEST(CausticMap, MeanOfAnEvenlyLitPlane) {
+    constexpr std::size_t kCount = 200'000;
+    for (const std::uint32_t k : {16u, 50u}) {
+        const CausticRadius radius(evenly(kCount / PilotRadius::kPilotShare, 1), k, 0.1f);
+        const CausticMap map(evenly(kCount, 2), radius, 1);
+        NearestPhotons scratch;
+        Random random(3);
+        Mean wide, narrow;
+        for (int i = 0; i < 20'000; ++i) {
+            const Vec2f at = random.next2D();
+            const TwoRadii e =
+                map.irradiance({0.1f + 0.8f * at.x, 0.1f + 0.8f * at.y, 0}, {0, 0, 1}, scratch);
+            wide.add(static_cast<double>(e.wide.r));
+            narrow.add(static_cast<double>(e.narrow.r));
+        }
+        fmt::print("    k = {}: {:.4f} of E, at the narrow radius {:.4f}, deviation {:.3f}\n", k,
+                   wide.mean(), narrow.mean(), wide.deviation());
+        // Some 2000 discs' worth of independent photons; k/(k-1) would be 2 % or more off.
+        const double error = 1 / std::sqrt(0.64 * kCount);
+        EXPECT_NEAR(wide.mean(), 1, 4 * error + 0.002);
+        EXPECT_NEAR(narrow.mean(), 1, 4 * error + 0.002);
+    }
+}
+
+// What half of the photons need to find k others: k - 1/3 (the median of a gamma distribution) are
+// expected on that disc. To find themselves would make it k - 4/3.
+TEST(PilotRadius, LeavesOutThePhotonItStandsOn) {
+    constexpr std::size_t kCount = 100'000;
+    Mean ratio;
+    for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+        const PhotonMap map(evenly(kCount, seed));
+        const auto r = static_cast<double>(map.typicalRadius(6));
+        ratio.add(std::numbers::pi * r * r * kCount / (6 - 1 / 3.0));
+    }
+    fmt::print("    {:.4f} of the area expected\n", ratio.mean());
+    EXPECT_NEAR(ratio.mean(), 1, 0.05);
+}
+
+}  // namespace
+}  // namespace pm::test

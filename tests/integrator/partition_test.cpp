@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Every light path in exactly one class, every class with exactly one estimator: the sum of the
+// classes, and each class, against path tracing; and the same light by another estimator.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/integrator/replicates.h"
+#include "tests/integrator/rooms.h"
+
+namespace pm::test {
+namespace {
+
+constexpr std::int32_t kSize = 64, kRegion = 8;
+constexpr int kRenders = 12;
+
+RenderSettings settingsOf(IntegratorKind integrator, std::uint64_t seed) {
+    const bool photon = integrator == IntegratorKind::kPhoton;
+    RenderSettings settings = smallFrame(kSize, kSize, integrator, photon ? 4 : 2, photon ? 3 : 4);
+    settings.photons = 40'000;
+    settings.seed = seed;
+    return settings;
+}
+
+class Partition : public ::testing::TestWithParam<Room> {};
+
+INSTANTIATE_TEST_SUITE_P(Rooms, Partition, ::testing::ValuesIn(roomsOfEveryLobe()), roomName);
+
+// By 8 x 8 regions, and of the whole frame. Biases allowed to single layers: caustics are blurred
+// from one region into the next and fade towards edges, indirect light is blurred, too. Of the
+// whole picture the estimated bias is taken off, and nothing is allowed for what is left.
+TEST_P(Partition, AgreesWithPath) {
+    const auto scene = GetParam().maker.build();
+    const std::string& name = GetParam().name;
+    const std::vector<Rect> regions = squares(kSize, kSize, kRegion);
+    const auto rendered = [&](IntegratorKind integrator) {
+        return replicate(kRenders, [&](std::uint64_t seed) {
+            return render(scene, settingsOf(integrator, seed), regions);
+        });
+    };
+    const auto photon = rendered(IntegratorKind::kPhoton), path = rendered(IntegratorKind::kPath);
+    const auto compare = [&](Layer layer, double regionBias, double frameBias) {
+        expectAgreement(photon, path, layer, regionBias, 4, name);
+        expectAgreement(wholeFrames(photon), wholeFrames(path), layer, frameBias, 4, name);
+    };
+    compare(kEmission, 0, 0);
+    compare(kDirect, 0, 0);
+    compare(kCaustic, 0.15, 0.03);
+    compare(kIndirect, 0.03, 0.012);
+    compare(kCorrected, 0, 0.003);
+    // The classes sum to the picture.
+    for (const auto& renders : {photon, path})
+        for (const LayerMeans& m : renders.front())
+            for (std::size_t c = 0; c < 3; ++c)
+                EXPECT_NEAR(m[kEmission][c] + m[kDirect][c] + m[kCaustic][c] + m[kIndirect][c],
+                            m[kBeauty][c], 1e-6 * m[kBeauty][c]);
+}
+
+// Light descended from caustics, found by gather rays that meet those, and by an estimate of its
+// own, where it is a tenth of all light. PhotonClasses.AddUp looks closer.
+TEST(PartitionMoves, LightDescendedFromCaustics) {
+    for (const Room& room : roomsOfEveryLobe()) {
+        if (room.name != "mirror behind glass" && room.name != "partly transparent") continue;
+        const auto scene = room.maker.build();
+        const std::vector<Rect> regions = squares(kSize, kSize, 16);
+        const auto rendered = [&](float descent) {
+            return replicate(8, [&](std::uint64_t seed) {
+                RenderSettings settings = settingsOf(IntegratorKind::kPhoton, seed);
+                settings.passes = 2;
+                Plan plan = makePlan(*scene, settings);
+                EXPECT_GT(plan.descent, 0);
+                plan.descent = descent;
+                return PlannedRender(scene, settings, plan).render(regions, 2);
+            });
+        };
+        const auto gathered = rendered(0), estimated = rendered(0.5f);
+        expectAgreement(estimated, gathered, kCorrected, 0.01, 4, room.name);
+        expectAgreement(wholeFrames(estimated), wholeFrames(gathered), kCorrected, 0.002, 4,
+                        room.name);
+        const Replicated whole = spread(wholeFrames(gathered), 0, kCorrected, 1);
+        EXPECT_LT(whole.standardError, 0.01 * whole.mean);
+    }
+}
+
+}  // namespace
+}  // namespace pm::test
