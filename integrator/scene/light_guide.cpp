@@ -40,7 +40,7 @@ class LightGuide::Learner {
         for (const Receiver& receiver : receivers) m_keys.push_back(guide.key(receiver));
         m_order.resize(receivers.size());
         std::iota(m_order.begin(), m_order.end(), 0u);
-        addCell(0, receivers.size());
+        addCell(0, receivers.size(), 0.0f);
         m_seen.resize(guide.m_cells.size() * m_clusters);
         guide.m_tables.resize(m_leaves.size() * m_clusters);
         tbb::parallel_for(std::size_t{0}, m_leaves.size(), [&](std::size_t i) { lookFromLeaf(i); });
@@ -68,7 +68,8 @@ class LightGuide::Learner {
         }
     };
 
-    void addCell(std::size_t begin, std::size_t end) {
+    // extentAbove: of the cell that this is part of, scene units.
+    void addCell(std::size_t begin, std::size_t end, float extentAbove) {
         const std::size_t index = m_guide.m_cells.size();
         m_guide.m_cells.emplace_back();
         std::size_t axis = 0, middle = begin;
@@ -76,15 +77,32 @@ class LightGuide::Learner {
         if (end - begin > kPlacesOfALeaf) middle = divide(begin, end, axis, at);
         if (middle == begin) {
             m_guide.m_cells[index].axis = static_cast<std::uint32_t>(m_leaves.size());
+            m_guide.m_regions.push_back(around(begin, end, extentAbove));
             m_leaves.push_back({begin, end, index});
             return;
         }
-        addCell(begin, middle);
+        const Region region = around(begin, end, 0.0f);
+        const float extent = maxAbsComponent(region.hi - region.lo);
+        addCell(begin, middle, extent);
         Cell& cell = m_guide.m_cells[index];
         cell.at = at;
         cell.axis = static_cast<std::uint32_t>(axis);
         cell.right = static_cast<std::uint32_t>(m_guide.m_cells.size());
-        addCell(middle, end);
+        addCell(middle, end, extent);
+    }
+
+    Region around(std::size_t begin, std::size_t end, float margin) const {
+        Region region{m_receivers[m_order[begin]].position, m_receivers[m_order[begin]].position};
+        for (std::size_t i = begin; i < end; ++i) {
+            const Vec3f& p = m_receivers[m_order[i]].position;
+            for (int axis = 0; axis < 3; ++axis) {
+                region.lo[axis] = std::min(region.lo[axis], p[axis]);
+                region.hi[axis] = std::max(region.hi[axis], p[axis]);
+            }
+        }
+        region.lo -= Vec3f(margin);
+        region.hi += Vec3f(margin);
+        return region;
     }
 
     // At the median of the longest axis; `begin` where all are alike.
@@ -226,11 +244,13 @@ const float* LightGuide::table(const Receiver& receiver) const {
     const Cell* cell = m_cells.data();
     while (cell->right != 0)
         cell = k[cell->axis] < cell->at ? cell + 1 : m_cells.data() + cell->right;
+    if (!m_regions[cell->axis].holds(receiver.position)) return nullptr;
     return m_tables.data() + std::size_t{cell->axis} * m_clusters.size();
 }
 
 std::uint32_t LightGuide::choose(const Receiver& receiver, double& u, float& probability) const {
     const float* cumulative = table(receiver);
+    if (!cumulative) return m_tree.choose(LightTree::kRoot, receiver, u, probability);
     const float* last = cumulative + m_clusters.size() - 1;
     const float* chosen = std::upper_bound(
         cumulative, last, u, [](double x, float sum) { return x < static_cast<double>(sum); });
@@ -243,15 +263,17 @@ std::uint32_t LightGuide::choose(const Receiver& receiver, double& u, float& pro
 }
 
 float LightGuide::probability(const Receiver& receiver, std::uint32_t light) const {
+    const float* cumulative = table(receiver);
+    if (!cumulative) return m_tree.probability(LightTree::kRoot, receiver, light);
     const auto after = std::upper_bound(m_begins.begin(), m_begins.end(), m_tree.position(light));
     const auto cluster = static_cast<std::size_t>(after - m_begins.begin()) - 1;
-    const float* cumulative = table(receiver);
     const float share = cumulative[cluster] - (cluster == 0 ? 0.0f : cumulative[cluster - 1]);
     return share * m_tree.probability(m_clusters[cluster], receiver, light);
 }
 
 std::uint64_t LightGuide::memoryBytes() const {
     return m_tables.size() * sizeof(float) + m_cells.size() * sizeof(Cell) +
+           m_regions.size() * sizeof(Region) +
            (m_clusters.size() + m_begins.size()) * sizeof(std::uint32_t);
 }
 

@@ -51,8 +51,19 @@ class LightGuide {
     };
     class Learner;
 
+    // Where a table counts: around the places from which it was learnt.
+    struct Region {
+        Vec3f lo, hi;
+
+        bool holds(const Vec3f& p) const {
+            return p.x >= lo.x && p.x <= hi.x && p.y >= lo.y && p.y <= hi.y && p.z >= lo.z &&
+                   p.z <= hi.z;
+        }
+    };
+
     Key key(const Receiver& receiver) const;
-    // Cumulative probabilities of the clusters; the first is above 0, the last 1.
+    // Cumulative probabilities of the clusters; the first is above 0, the last 1. Null far from
+    // all that was learnt: there the tree chooses alone.
     const float* table(const Receiver& receiver) const;
 
     const LightTree& m_tree;
@@ -60,7 +71,8 @@ class LightGuide {
     std::vector<std::uint32_t> m_clusters;  // nodes of the light tree
     std::vector<std::uint32_t> m_begins;    // of the clusters' lights in the light tree's order
     std::vector<Cell> m_cells;
-    std::vector<float> m_tables;  // one cluster after another, one leaf after another
+    std::vector<Region> m_regions;  // of the leaves
+    std::vector<float> m_tables;    // one cluster after another, one leaf after another
 };
 
 }  // namespace pm

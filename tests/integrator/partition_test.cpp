@@ -84,5 +84,46 @@ TEST(PartitionMoves, LightDescendedFromCaustics) {
     }
 }
 
+// What a plan leaves out, since the scene has no need of it, would have brought nothing.
+TEST(PartitionMoves, PlanEverything) {
+    std::vector<Room> rooms = {roomsOfEveryLobe().front()};
+    const auto seen = [](SceneMaker maker) {
+        maker.camera({0, 2, 3}, {0, 0, 0}, {0, 1, 0}, 40);
+        return maker;
+    };
+    SceneMaker flat;
+    flat.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, flat.diffuse(Rgb(0.5f)));
+    flat.pointLight({0.3, 1, 0}, Rgb(1.0f));
+    rooms.push_back({"flat floor", seen(flat)});
+    SceneMaker mirrors;
+    mirrors.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, mirrors.material(mirror()));
+    mirrors.sphere({0, 0.5, 0}, 0.3, mirrors.diffuse({}, Rgb(1.0f)));
+    rooms.push_back({"nothing diffuse", seen(mirrors)});
+    SceneMaker dark;
+    dark.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, dark.diffuse(Rgb(0.5f)));
+    dark.sphere({0, 0.5, 0}, 0.3, dark.material(glass()));
+    rooms.push_back({"nothing shines", seen(dark)});
+    for (const Room& room : rooms) {
+        const auto scene = room.maker.build();
+        const std::vector<Rect> regions = squares(32, 32, 8);
+        const auto rendered = [&](PlanKind plan) {
+            return replicate(8, [&](std::uint64_t seed) {
+                RenderSettings settings = smallFrame(32, 32, IntegratorKind::kPhoton, 2, 3);
+                settings.photons = 20'000;
+                settings.seed = seed;
+                settings.plan = plan;
+                EXPECT_TRUE(plan == PlanKind::kAuto || makePlan(*scene, settings).causticMap);
+                return render(scene, settings, regions);
+            });
+        };
+        const auto automatic = rendered(PlanKind::kAuto);
+        const auto everything = rendered(PlanKind::kEverything);
+        EXPECT_EQ(spread(automatic, 5, kBeauty, 1).mean == 0, room.name == "nothing shines");
+        expectAgreement(everything, automatic, kCorrected, 0, 4, room.name);
+        expectAgreement(wholeFrames(everything), wholeFrames(automatic), kCorrected, 0, 4,
+                        room.name);
+    }
+}
+
 }  // namespace
 }  // namespace pm::test

@@ -62,8 +62,8 @@ Replicated spread(const std::vector<RegionMeans>& renders, std::size_t region, L
 // rare as Student's t with Welch's degrees of freedom is. Source: Wallace 1959, for t to z.
 double zScore(const Replicated& a, const Replicated& b, double allowed);
 
-// The largest z over regions and channels; `allowed` is relative to the larger of b and the mean of
-// b over all regions. Regions beyond `limit` are reported as failures.
+// Fails where the largest z over regions and channels is not below `limit`; returns it. `allowed`
+// is relative to the larger of b and the mean of b over all regions.
 double expectAgreement(const std::vector<RegionMeans>& a, const std::vector<RegionMeans>& b,
                        Layer layer, double allowed, double limit, const std::string& what);
 
