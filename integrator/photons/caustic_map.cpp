@@ -3,8 +3,10 @@
 #include "integrator/photons/caustic_map.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
+#include "integrator/photons/surface_estimate.h"
 #include "integrator/sampling/warps.h"
 
 namespace pm {
@@ -37,9 +39,27 @@ float CausticRadius::at(const Vec3f& position, const Vec3f& normal, NearestPhoto
 TwoRadii CausticMap::irradiance(const Vec3f& position, const Vec3f& normal,
                                 NearestPhotons& scratch) const {
     const float radius = m_radius.at(position, normal, scratch) * m_radiusFactor;
-    const TwoRadii flux = m_map.fluxWithin(position, normal, radius);
+    TwoRadii flux = m_map.fluxWithin(position, normal, radius);
+    SurfacePatch::Shares share;
+    // In the dark there is nothing to correct.
+    if (m_patches && !isBlack(flux.wide)) {
+        const Scene& scene = m_patches->scene();
+        SurfacePatch spare;
+        const SurfacePatch& patch = m_patches->at(position, normal, radius, spare);
+        if (!patch.speaksFor(scene, position, normal)) {
+            // Any pattern that depends on the place alone.
+            const auto pattern =
+                std::bit_cast<std::uint32_t>(position.x) ^ std::bit_cast<std::uint32_t>(position.y);
+            return SurfaceEstimate(scene, m_map, radius).at(position, normal, pattern);
+        }
+        share = patch.shares(position, radius);
+        if (patch.hidesSurface())
+            flux = m_map.fluxWithin(position, normal, radius, [&](std::uint32_t index) {
+                return patch.counts(scene, m_map.photon(index));
+            });
+    }
     const float discArea = kPi * radius * radius;
-    return {flux.wide / discArea, flux.narrow / (0.5f * discArea)};
+    return {flux.wide / (discArea * share.wide), flux.narrow / (0.5f * discArea * share.narrow)};
 }
 
 }  // namespace pm

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "integrator/photons/photon_map.h"
+#include "integrator/photons/surface_patches.h"
 
 namespace pm {
 
@@ -46,12 +47,18 @@ class CausticRadius : public PilotRadius {
 // Threads: const functions from any, at once.
 class CausticMap {
   public:
-    // radiusFactor: this pass's radii over the first pass's. radius must outlive this.
-    CausticMap(std::vector<Photon> photons, const CausticRadius& radius, float radiusFactor)
-        : m_map(std::move(photons)), m_radius(radius), m_radiusFactor(radiusFactor) {}
+    // radiusFactor: this pass's radii over the first pass's. radius and patches must outlive this.
+    // patches: null where all discs are to be taken as whole.
+    CausticMap(std::vector<Photon> photons, const CausticRadius& radius, float radiusFactor,
+               const SurfacePatches* patches = nullptr)
+        : m_map(std::move(photons)),
+          m_radius(radius),
+          m_radiusFactor(radiusFactor),
+          m_patches(patches) {}
 
-    // Irradiance, W m^-2, on the side of the normal, at the radius that belongs there; where the
-    // disc is not all surface it is too dark, see estimateAt.
+    // Irradiance, W m^-2, on the side of the normal, at the radius that belongs there. Where the
+    // disc is not all surface the flux is divided by the area that is, and only photons seen from
+    // above it count.
     TwoRadii irradiance(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const;
 
     std::uint64_t memoryBytes() const { return m_map.memoryBytes(); }
@@ -60,6 +67,7 @@ class CausticMap {
     PhotonMap m_map;
     const CausticRadius& m_radius;
     float m_radiusFactor;
+    const SurfacePatches* m_patches;
 };
 
 }  // namespace pm

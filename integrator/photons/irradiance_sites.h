@@ -10,18 +10,17 @@
 #include <vector>
 
 #include "integrator/photons/photon_map.h"
+#include "integrator/photons/surface_cells.h"
 #include "integrator/photons/surface_estimate.h"
 #include "integrator/scene/scene.h"
 
 namespace pm {
 
 // Irradiance of a photon map, kept at points on the surfaces (sites): what final gathering looks
-// up. Space is divided into cells of about half a radius; the surfaces of one direction in a cell
-// have one site, where a ray along that direction finds them, from the cell's middle if it can be.
-// So a site depends on the cell alone, never on who asks first, and sites are spread evenly over
-// all surfaces, dark ones too. Its value is computed when it is first asked for. Source:
-// Christensen 1999, "Faster Photon Map Global Illumination" (irradiance kept at points). Threads:
-// const functions from any, at once.
+// up. One site in each of the SurfaceCells, of about half a radius, so on dark surfaces too. Its
+// value is computed when it is first asked for.
+// Source: Christensen 1999, "Faster Photon Map Global Illumination" (irradiance kept at points).
+// Threads: const functions from any, at once.
 class IrradianceSites {
   public:
     // scene and map must outlive this. radius: of the estimates, scene units, > 0.
@@ -39,13 +38,7 @@ class IrradianceSites {
     std::uint64_t memoryBytes() const;
 
   private:
-    // A cell and a rough direction.
-    struct Cell {
-        std::array<std::int64_t, 3> place;
-        std::array<std::int64_t, 3> direction;
-
-        std::uint64_t hash() const;
-    };
+    using Cell = SurfaceCells::Cell;
     // A point of a surface and its irradiance; the normal is 0 where a cell has no surface.
     struct Value {
         Vec3f position, normal;
@@ -61,18 +54,12 @@ class IrradianceSites {
         void operator()(void* p) const { std::free(p); }
     };
 
-    Cell cellAt(const Vec3f& position, const Vec3f& normal) const;
-    bool findSurface(const Cell& cell, Vec3f& position, Vec3f& normal) const;
-    bool findAlong(const Vec3f& middle, const Vec3f& through, const Vec3f& direction,
-                   Vec3f& position, Vec3f& normal) const;
     Slot* slotOf(std::uint64_t hash) const;
     Value compute(const Cell& cell, std::uint64_t hash) const;
     Value valueOf(const Cell& cell) const;
 
-    const Scene& m_scene;
     SurfaceEstimate m_estimate;
-    float m_cellSize;
-    Vec3f m_origin;  // of the cells: another in each pass
+    SurfaceCells m_cells;
     // Open addressing by the cell's hash; all zero where nobody has asked yet.
     std::size_t m_slotCount;
     std::unique_ptr<Slot[], Free> m_slots;

@@ -25,12 +25,20 @@ struct PhotonGate {
     // becomes a disc, yet a curved surface (height d^2/2R at distance d) stays inside up to 0.4 R.
     static constexpr float kFlatness = 0.2f;
 
+    // Positions are rounded to within this share of the largest coordinate, with room to spare.
+    static constexpr float kRounding = 8.0f * 0x1p-24f;
+
     Vec3f position, normal;
     float planeToleranceSquared = 0.0f;  // what rounding may lift a photon off its plane
 
     bool isNearPlane(const Vec3f& fromPoint, float distanceSquared) const {
         const float height = dot(fromPoint, normal);
         return height * height <= kFlatness * kFlatness * distanceSquared + planeToleranceSquared;
+    }
+    // Whether photons `fromPoint` from the gate's point, on a surface of this normal, count.
+    bool accepts(const Vec3f& fromPoint, const Vec3f& surfaceNormal) const {
+        return dot(surfaceNormal, normal) >= kNormalCosine &&
+               isNearPlane(fromPoint, lengthSquared(fromPoint));
     }
     bool accepts(const Photon& photon) const {
         const Vec3f fromPoint = photon.position - position;

@@ -27,7 +27,7 @@ constexpr std::uint32_t kColdCount = 24;
 
 PhotonMap::PhotonMap(std::span<const Photon> photons) : m_tree(buildPhotonTree(photons)) {
     const float largest = std::max(maxAbsComponent(m_tree.lo), maxAbsComponent(m_tree.hi));
-    const float tolerance = 8.0f * 0x1p-24f * largest;
+    const float tolerance = PhotonGate::kRounding * largest;
     m_planeToleranceSquared = tolerance * tolerance;
 }
 

@@ -105,13 +105,6 @@ class PhotonMap {
     TwoRadii fluxWithin(const Vec3f& position, const Vec3f& normal, float radius,
                         const Accept& accept) const;
 
-    // Whether a photon at `fromPoint` from a point with `normal`, on a surface with
-    // `surfaceNormal`, would be counted there; distance aside.
-    bool accepts(const Vec3f& fromPoint, const Vec3f& surfaceNormal, const Vec3f& normal) const {
-        return dot(surfaceNormal, normal) >= PhotonGate::kNormalCosine &&
-               gate({}, normal).isNearPlane(fromPoint, lengthSquared(fromPoint));
-    }
-
     // The radius within which half of the photons find count others; of fewer photons, the size of
     // what they cover. Scene units, > 0.
     float typicalRadius(std::uint32_t count) const;

@@ -16,8 +16,6 @@ namespace {
 // The rays start this far above the point, in radii: high enough to see a hollow's whole disc, low
 // enough to see little else.
 constexpr float kApexHeight = 0.6f;
-// What starts or ends on a surface is lifted off it by this share of the length it has to go.
-constexpr float kLift = 0.01f;
 // A ray goes on this far beyond the disc's point, relative to the way there: room for surfaces that
 // curve away.
 constexpr float kRayReach = 1.5f;
@@ -26,8 +24,6 @@ constexpr float kLargestAreaRatio = 4.0f;
 constexpr float kFlatTolerance = 0.02f;
 // Rays to the rim; where all of them find it flat, the disc is taken as whole.
 constexpr std::uint32_t kRimRays = 8;
-// The share of the disc in the sharpest corner that is still told apart; a square one has 1/4.
-constexpr float kSmallestShare = 0.1f;
 
 // Where area is looked for: the narrow disc, the ring around it, and beyond the rim, where surface
 // that bends towards the apex is seen that lies within the radius. Squared, in radii.
@@ -40,29 +36,46 @@ constexpr std::array<Zone, 4> kZones{
 
 }  // namespace
 
+SeenArea lookFor(const Scene& scene, const PhotonGate& gate, const Vec3f& apex,
+                 const Vec3f& inPlane) {
+    const Vec3f ray = gate.position + inPlane - apex;
+    Surface surface;
+    if (!scene.intersect({apex, ray, kRayReach}, surface)) return {};
+    const MaterialDescription& material = scene.material(surface.material);
+    if (material.kind != MaterialKind::kSurface || isBlack(material.diffuse)) return {};
+    const Vec3f facing = dot(surface.geometricNormal, ray) < 0.0f ? surface.geometricNormal
+                                                                  : -surface.geometricNormal;
+    const Vec3f fromPoint = surface.position - gate.position;
+    if (!gate.accepts(fromPoint, facing)) return {};
+    // Solid angle is kept: dA cos / d^2 is the same on the plane and on the surface.
+    const float onPlane = -dot(ray, gate.normal) / lengthSquared(ray);
+    const Vec3f seen = surface.position - apex;
+    const float onSurface = -dot(seen, facing) / lengthSquared(seen);
+    const float ratio =
+        onPlane * std::sqrt(lengthSquared(seen)) / (onSurface * std::sqrt(lengthSquared(ray)));
+    return {std::min(ratio, kLargestAreaRatio), fromPoint, facing};
+}
+
+float apexHeight(const Scene& scene, const Vec3f& position, const Vec3f& normal, float radius) {
+    const float height = kApexHeight * radius;
+    // Off the surface itself, but below a ball as close to where it touches as can be told.
+    const float lift = 4.0f * PhotonGate::kRounding * static_cast<float>(scene.radius());
+    const Vec3f start = position + normal * lift;
+    Surface above;
+    if (!scene.intersect({start, normal, 2.0f * height}, above)) return height;
+    return std::min(height, 0.5f * dot(above.position - position, normal));
+}
+
 SurfaceEstimate::Seen SurfaceEstimate::look(const View& view, float turns,
                                             float radiusSquared) const {
     const SinCos phi = sinCosTurns(turns - std::floor(turns));
     const Vec3f inPlane =
         (view.tangent * phi.cos + view.bitangent * phi.sin) * (std::sqrt(radiusSquared) * m_radius);
-    const Vec3f ray = view.position + inPlane - view.apex;
-    Surface surface;
-    if (!m_scene.intersect({view.apex, ray, kRayReach}, surface)) return {};
-    const MaterialDescription& material = m_scene.material(surface.material);
-    if (material.kind != MaterialKind::kSurface || isBlack(material.diffuse)) return {};
-    const Vec3f facing = dot(surface.geometricNormal, ray) < 0.0f ? surface.geometricNormal
-                                                                  : -surface.geometricNormal;
-    const Vec3f fromPoint = surface.position - view.position;
-    const float distanceSquared = lengthSquared(fromPoint);
-    if (!m_map.accepts(fromPoint, facing, view.normal) || distanceSquared > m_radius * m_radius)
-        return {};
-    // Solid angle is kept: dA cos / d^2 is the same on the plane and on the surface.
-    const float onPlane = -dot(ray, view.normal) / lengthSquared(ray);
-    const Vec3f seen = surface.position - view.apex;
-    const float onSurface = -dot(seen, facing) / lengthSquared(seen);
-    const float ratio =
-        onPlane * std::sqrt(lengthSquared(seen)) / (onSurface * std::sqrt(lengthSquared(ray)));
-    return {std::min(ratio, kLargestAreaRatio), distanceSquared};
+    const SeenArea seen =
+        lookFor(m_scene, m_map.gate(view.position, view.normal), view.apex, inPlane);
+    const float distanceSquared = lengthSquared(seen.fromPoint);
+    if (distanceSquared > m_radius * m_radius) return {};
+    return {seen.area, distanceSquared};
 }
 
 bool SurfaceEstimate::isWhole(const View& view) const {
@@ -89,17 +102,7 @@ SurfaceEstimate::Shares SurfaceEstimate::shares(const View& view) const {
             if (seen.distanceSquared <= 0.5f * m_radius * m_radius) narrow += seen.area * areaOfRay;
         }
     }
-    return {std::max(kSmallestShare, wide), std::max(kSmallestShare, 2.0f * narrow)};
-}
-
-// Above the point, half as high as whatever stands there: under a ball on the floor the apex must
-// not be inside the ball.
-float SurfaceEstimate::apexHeight(const Vec3f& position, const Vec3f& normal) const {
-    const float height = kApexHeight * m_radius;
-    const Vec3f start = position + normal * (kLift * m_radius);
-    Surface above;
-    if (!m_scene.intersect({start, normal, 2.0f * height}, above)) return height;
-    return std::min(height, 0.5f * dot(above.position - position, normal));
+    return {wide, 2.0f * narrow};
 }
 
 TwoRadii SurfaceEstimate::at(const Vec3f& position, const Vec3f& normal,
@@ -108,7 +111,7 @@ TwoRadii SurfaceEstimate::at(const Vec3f& position, const Vec3f& normal,
     // In the dark no rays are needed.
     if (isBlack(flux.wide)) return {};
     const Frame frame(normal);
-    const float height = apexHeight(position, normal);
+    const float height = apexHeight(m_scene, position, normal, m_radius);
     const std::uint64_t random = mixBits(pattern);
     const View view{position,
                     normal,
@@ -118,15 +121,19 @@ TwoRadii SurfaceEstimate::at(const Vec3f& position, const Vec3f& normal,
                     toUnitFloat(static_cast<std::uint32_t>(random)),
                     toUnitFloat(static_cast<std::uint32_t>(random >> 32))};
     const float discArea = kPi * m_radius * m_radius;
-    if (isWhole(view)) return {flux.wide / discArea, flux.narrow / (0.5f * discArea)};
+    const TwoRadii whole{flux.wide / discArea, flux.narrow / (0.5f * discArea)};
+    if (isWhole(view)) return whole;
+    const Shares share = shares(view);
+    // What sees nothing at all is inside of something that stands there, and tells nothing.
+    if (!(share.wide > 0.0f)) return whole;
     flux = m_map.fluxWithin(position, normal, m_radius, [&](std::uint32_t index) {
         const Photon photon = m_map.photon(index);
         // Ends a little above the photon, whose own surface must not hide it.
         const Vec3f above = photon.position + photon.normal.unpack() * (kLift * height);
         return !m_scene.occluded({view.apex, above - view.apex, 1.0f});
     });
-    const Shares share = shares(view);
-    return {flux.wide / (discArea * share.wide), flux.narrow / (0.5f * discArea * share.narrow)};
+    return {flux.wide / (discArea * std::max(kSmallestShare, share.wide)),
+            flux.narrow / (0.5f * discArea * std::max(kSmallestShare, share.narrow))};
 }
 
 }  // namespace pm

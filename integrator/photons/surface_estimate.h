@@ -9,6 +9,24 @@
 
 namespace pm {
 
+// What ends on a surface is lifted off it by this share of the height it is seen from.
+inline constexpr float kLift = 0.01f;
+// The share of the disc in the sharpest corner that is still told apart; a square one has 1/4.
+inline constexpr float kSmallestShare = 0.1f;
+
+// A piece of surface: its area for each unit of the plane through a point; 0 where there is none
+// whose photons count for the point, 1 where the surface is the plane.
+struct SeenArea {
+    float area = 0.0f;
+    Vec3f fromPoint, normal;  // the normal on the apex's side
+};
+// What is seen from the apex, above the gate's point, towards a place of the point's plane.
+SeenArea lookFor(const Scene& scene, const PhotonGate& gate, const Vec3f& apex,
+                 const Vec3f& inPlane);
+// How far above a point to look from, scene units: enough to see a disc of this radius, but half as
+// high as whatever stands there; under a ball on the floor the apex must not be inside the ball.
+float apexHeight(const Scene& scene, const Vec3f& position, const Vec3f& normal, float radius);
+
 // Irradiance of a photon map at a point of a surface.
 //
 // Near an edge a part of the estimate's disc is not on the surface. It is found by short rays from
@@ -33,8 +51,7 @@ class SurfaceEstimate {
     struct Shares {
         float wide = 1.0f, narrow = 1.0f;
     };
-    // A piece of surface: its area for each unit of the disc's plane; 0 where there is none whose
-    // photons the map would count, 1 where the surface is the plane.
+    // What a ray found: area as SeenArea has it, 0 beyond the radius.
     struct Seen {
         float area = 0.0f, distanceSquared = 0.0f;
     };
@@ -44,7 +61,6 @@ class SurfaceEstimate {
         Vec3f tangent, bitangent;
         float turn, shift;  // [0, 1)
     };
-    float apexHeight(const Vec3f& position, const Vec3f& normal) const;
     Seen look(const View& view, float turns, float radiusSquared) const;
     bool isWhole(const View& view) const;
     Shares shares(const View& view) const;

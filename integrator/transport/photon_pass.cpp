@@ -106,6 +106,7 @@ void PhotonPass::findRadii(Control& control) {
             trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), 0, control);
         m_causticRadius =
             std::make_unique<CausticRadius>(std::move(pilot.photons), estimatePhotons, fallback);
+        m_patches = std::make_unique<SurfacePatches>(m_scene, m_causticRadius->typical());
         if (m_plan.descent > 0.0f)
             m_descendedRadius = PilotRadius(std::move(pilot.descended),
                                             kDescendedPhotons * estimatePhotons, fallback)
@@ -118,8 +119,9 @@ void PhotonPass::buildCaustics(std::uint32_t pass, Control& control) {
     PhotonTraceResult traced = trace(PhotonKind::kCaustic, m_plan.causticPhotons, pass, control);
     const Stopwatch watch;
     const float factor = radiusFactor(pass);
-    m_causticMap =
-        std::make_unique<CausticMap>(std::move(traced.photons), *m_causticRadius, factor);
+    m_patches->makeRoom();
+    m_causticMap = std::make_unique<CausticMap>(std::move(traced.photons), *m_causticRadius, factor,
+                                                m_patches.get());
     if (m_plan.descent > 0.0f) {
         m_descendedMap = std::make_unique<PhotonMap>(std::move(traced.descended));
         m_descended =

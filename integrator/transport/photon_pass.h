@@ -76,13 +76,14 @@ class PhotonPass {
     float m_globalRadius = 0.0f, m_descendedRadius = 0.0f;
     std::unique_ptr<AimedEmission> m_aim;  // of caustic photons
     std::unique_ptr<CausticRadius> m_causticRadius;
+    std::unique_ptr<SurfacePatches> m_patches;  // of caustic estimates; filled as the passes go on
     // Of this pass.
     std::unique_ptr<PhotonMap> m_globalMap;
     std::unique_ptr<IrradianceSites> m_sites;  // refers to m_globalMap
     std::unique_ptr<PhotonMap> m_descendedMap;
     std::unique_ptr<SurfaceEstimate> m_descended;  // refers to m_descendedMap
     std::unique_ptr<GatherPoints> m_points;        // refers to m_sites and m_descended
-    std::unique_ptr<CausticMap> m_causticMap;      // refers to m_causticRadius
+    std::unique_ptr<CausticMap> m_causticMap;      // refers to m_causticRadius and m_patches
 
     mutable std::mutex m_mutex;  // of what follows
     PhotonBalance m_allKinds, m_global;

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <vector>
 
+#include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"
 
 namespace pm::test {
@@ -73,6 +74,49 @@ TEST(PilotRadius, LeavesOutThePhotonItStandsOn) {
     }
     fmt::print("    {:.4f} of the area expected\n", ratio.mean());
     EXPECT_NEAR(ratio.mean(), 1, 0.05);
+}
+
+// A point lamp and a mirror above a floor: beside the lamp's own light (layer `direct`) the floor
+// has that of its image, as far above the mirror as the lamp is below it: I cos / d^2, smooth up to
+// the floor's edges. The lamp is at height 1, the mirror at 2.
+TEST(CausticMap, SmoothUpToTheEdgesOfAFloor) {
+    constexpr int kSide = 64;
+    constexpr double kEye = 1.9, kHalf = 1.0, kSeen = 1.02;
+    SceneMaker maker;
+    maker.quad({-kHalf, 0, kHalf}, {2 * kHalf, 0, 0}, {0, 0, -2 * kHalf}, maker.diffuse(Rgb(0.5f)));
+    MaterialDescription mirror;
+    mirror.kind = MaterialKind::kMirror;
+    mirror.glossy = Rgb(1.0f);
+    maker.quad({-0.36, 2, -0.36}, {0.72, 0, 0}, {0, 0, 0.72}, maker.material(mirror));
+    maker.pointLight({0, 1, 0}, Rgb(1.0f));
+    maker.camera({0, kEye, 0}, {0, 0, 0}, {0, 0, -1},
+                 2 * std::atan(kSeen / kEye) * 180 / std::numbers::pi);
+    RenderSettings settings = smallFrame(kSide, kSide, IntegratorKind::kPhoton, 4, 3);
+    settings.photons = 40'000;
+    const struct {
+        const char* name;
+        Rect region;
+    } kRegions[] = {
+        {"middle", {24, 24, 40, 40}}, {"edge", {16, 1, 48, 3}}, {"corner", {1, 1, 3, 3}}};
+    std::vector<Rect> regions;
+    for (const auto& r : kRegions) regions.push_back(r.region);
+    const auto measured = measureRegions(maker.build(), settings, {0, 0, kSide, kSide}, regions);
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+        Mean expected;
+        for (std::int32_t y = regions[i].y0; y < regions[i].y1; ++y)
+            for (std::int32_t x = regions[i].x0; x < regions[i].x1; ++x) {
+                const double px = kSeen * ((x + 0.5) / kSide * 2 - 1);
+                const double pz = kSeen * ((y + 0.5) / kSide * 2 - 1);
+                const double d2 = 9 + px * px + pz * pz;
+                expected.add(0.5 / std::numbers::pi * 3 / (d2 * std::sqrt(d2)));
+            }
+        const Measured& caustic = measured[i].caustic;
+        fmt::print("    {}: {:.3f} of what is expected, +- {:.3f}\n", kRegions[i].name,
+                   caustic.mean[0] / expected.mean(), caustic.standardError[0] / expected.mean());
+        EXPECT_NEAR(caustic.mean[0], expected.mean(),
+                    0.05 * expected.mean() + 3 * caustic.standardError[0])
+            << kRegions[i].name;
+    }
 }
 
 }  // namespace

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "integrator/scene/scene.h"
+
+namespace pm {
+
+// Space in cells, and the surfaces in them: the surfaces of about one direction in a cell are found
+// where a ray along that direction meets them, from the cell's middle if it can be. So what is
+// found depends on the cell alone, never on who asks first, and is spread evenly over all surfaces.
+// Threads: const functions from any, at once.
+class SurfaceCells {
+  public:
+    // scene must outlive this. cellSize: scene units, > 0; origin: a corner of one of the cells.
+    SurfaceCells(const Scene& scene, float cellSize, const Vec3f& origin)
+        : m_scene(scene), m_cellSize(cellSize), m_origin(origin) {}
+
+    // A cell and a rough direction.
+    struct Cell {
+        std::array<std::int64_t, 3> place;
+        std::array<std::int64_t, 3> direction;
+
+        std::uint64_t hash() const;  // never 0
+    };
+
+    // normal: unit.
+    Cell at(const Vec3f& position, const Vec3f& normal) const;
+    // A point of diffuse surface and its geometric normal on the side of the cell's direction;
+    // false where there is none.
+    bool findSurface(const Cell& cell, Vec3f& position, Vec3f& normal) const;
+
+    float cellSize() const { return m_cellSize; }
+    const Vec3f& origin() const { return m_origin; }
+
+  private:
+    bool findAlong(const Vec3f& middle, const Vec3f& through, const Vec3f& direction,
+                   Vec3f& position, Vec3f& normal) const;
+
+    const Scene& m_scene;
+    float m_cellSize;
+    Vec3f m_origin;
+};
+
+}  // namespace pm

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "integrator/photons/surface_patch.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "integrator/photons/surface_estimate.h"
+#include "integrator/sampling/sampler.h"
+#include "integrator/sampling/warps.h"
+
+namespace pm {
+
+namespace {
+
+// Rays that tell whether a patch is whole: on two circles, radii in radii, an even number each.
+struct Circle {
+    float radius;
+    int rays;
+};
+constexpr std::array<Circle, 2> kCircles{{{1.85f, 14}, {0.9f, 8}}};
+// Squares that an edge goes through get as many rays along a side.
+constexpr std::uint32_t kEdgeRays = 3;
+constexpr float kEdgeRayArea = 1.0f / static_cast<float>(kEdgeRays * kEdgeRays);
+// A square at least so full has no edge, but perhaps at its rim.
+constexpr float kFull = 0.999f;
+// What bends by more than this (14 degrees), or is farther off the plane, in radii, is not flat:
+// its area is another than that of the plane behind it.
+constexpr float kFlatCosine = 0.97f, kFlatHeight = 0.1f;
+// Between a point and the site the surface bends evenly: the way is at right angles to the sum of
+// both normals, within this, and within so many radii of rounding.
+constexpr float kFlatness = 0.2f, kRounding = 1e-3f;
+// How far off the plane, in radii, surface is looked for that is hidden.
+constexpr float kHiddenHeight = 0.02f;
+
+Vec2f randomPair(std::uint64_t pattern, std::uint32_t index) {
+    const std::uint64_t random = mixBits(pattern + index);
+    return {toUnitFloat(static_cast<std::uint32_t>(random)),
+            toUnitFloat(static_cast<std::uint32_t>(random >> 32))};
+}
+
+}  // namespace
+
+bool SurfacePatch::Place::isInside() const {
+    constexpr auto side = static_cast<float>(kSquares);
+    return x >= 0.0f && x < side && y >= 0.0f && y < side;
+}
+
+SurfacePatch::SurfacePatch(const Scene& scene, const Vec3f& position, const Vec3f& normal,
+                           float radius, std::uint64_t pattern)
+    : m_position(position),
+      m_normal(normal),
+      m_radius(radius),
+      m_height(apexHeight(scene, position, normal, radius)),
+      m_grid(std::make_unique<Grid>()) {
+    m_apex = position + normal * m_height;
+    const Frame frame(normal);
+    m_grid->tangent = frame.tangent;
+    m_grid->bitangent = frame.bitangent;
+    const float tolerance = PhotonGate::kRounding * static_cast<float>(scene.radius());
+    const PhotonGate gate{position, normal, tolerance * tolerance};
+    if (looksWhole(scene, gate)) {
+        m_grid.reset();
+    } else if (!measure(scene, gate, pattern)) {
+        *this = {};
+    }
+}
+
+SurfacePatch::Place SurfacePatch::placeOf(const Vec3f& position) const {
+    const Vec3f fromSite = position - m_position;
+    const float scale = kSquaresPerRadius / m_radius;
+    return {kMiddle + dot(fromSite, m_grid->tangent) * scale,
+            kMiddle + dot(fromSite, m_grid->bitangent) * scale};
+}
+
+Vec3f SurfacePatch::inPlane(Place place) const {
+    return (m_grid->tangent * (place.x - kMiddle) + m_grid->bitangent * (place.y - kMiddle)) *
+           (m_radius / kSquaresPerRadius);
+}
+
+SurfacePatch::Seen SurfacePatch::look(const Scene& scene, const PhotonGate& gate,
+                                      Place towards) const {
+    const SeenArea seen = lookFor(scene, gate, m_apex, inPlane(towards));
+    if (!(seen.area > 0.0f)) return Seen::kNothing;
+    return dot(seen.normal, m_normal) >= kFlatCosine &&
+                   std::abs(dot(seen.fromPoint, m_normal)) <= kFlatHeight * m_radius
+               ? Seen::kFlat
+               : Seen::kBent;
+}
+
+bool SurfacePatch::looksWhole(const Scene& scene, const PhotonGate& gate) const {
+    for (const Circle& circle : kCircles) {
+        const float reach = circle.radius * kSquaresPerRadius;
+        for (int i = 0; i < circle.rays; ++i) {
+            // Opposite sides first: an edge is on one of them.
+            const int j = (i % 2) * (circle.rays / 2) + i / 2;
+            const SinCos phi =
+                sinCosTurns((static_cast<float>(j) + 0.5f) / static_cast<float>(circle.rays));
+            const Place place{kMiddle + phi.cos * reach, kMiddle + phi.sin * reach};
+            if (look(scene, gate, place) == Seen::kNothing) return false;
+        }
+    }
+    return true;
+}
+
+// Whether there is surface at a place of the plane where none was seen.
+bool SurfacePatch::hides(const Scene& scene, const PhotonGate& gate, Place place) const {
+    const float height = kHiddenHeight * m_radius;
+    return lookFor(scene, gate, m_position + inPlane(place) + m_normal * height, inPlane(place))
+               .area > 0.0f;
+}
+
+// One ray a square, and more where a square beside it is found to be otherwise. False where what is
+// seen isn't flat.
+bool SurfacePatch::measure(const Scene& scene, const PhotonGate& gate, std::uint64_t pattern) {
+    constexpr std::uint32_t n = kSquares;
+    const auto towards = [](std::uint32_t square, Vec2f inside) {
+        return Place{static_cast<float>(square % n) + inside.x,
+                     static_cast<float>(square / n) + inside.y};
+    };
+    std::array<Seen, std::size_t{n} * n> first;
+    for (std::uint32_t i = 0; i < n * n; ++i) {
+        first[i] = look(scene, gate, towards(i, randomPair(pattern, i)));
+        if (first[i] == Seen::kBent) return false;
+    }
+    for (std::uint32_t i = 0; i < n * n; ++i) {
+        const std::uint32_t x = i % n, y = i / n;
+        const bool isSame =
+            (x == 0 || first[i - 1] == first[i]) && (x == n - 1 || first[i + 1] == first[i]) &&
+            (y == 0 || first[i - n] == first[i]) && (y == n - 1 || first[i + n] == first[i]);
+        float area = first[i] == Seen::kFlat ? 1.0f : 0.0f;
+        const Vec2f done = randomPair(pattern, i);
+        if (!isSame) area *= kEdgeRayArea;
+        for (std::uint32_t k = 0; !isSame && k < kEdgeRays * kEdgeRays; ++k) {
+            const auto column = static_cast<float>(k % kEdgeRays);
+            const auto row = static_cast<float>(k / kEdgeRays);
+            if (std::floor(done.x * kEdgeRays) == column && std::floor(done.y * kEdgeRays) == row)
+                continue;
+            const Vec2f u = randomPair(pattern, (k + 1) * n * n + i);
+            const Vec2f inside{(column + u.x) / kEdgeRays, (row + u.y) / kEdgeRays};
+            const Seen seen = look(scene, gate, towards(i, inside));
+            if (seen == Seen::kBent) return false;
+            if (seen == Seen::kFlat) area += kEdgeRayArea;
+        }
+        if (first[i] == Seen::kNothing && !m_grid->hasHidden)
+            m_grid->hasHidden = hides(scene, gate, towards(i, done));
+        auto& row = m_grid->areaUpTo[y];
+        if (x == 0) row[0] = 0.0f;
+        row[x + 1] = row[x] + area;
+    }
+    findInner();
+    return true;
+}
+
+void SurfacePatch::findInner() {
+    const auto isFull = [this](std::size_t x, std::size_t y) {
+        return m_grid->areaUpTo[y][x + 1] - m_grid->areaUpTo[y][x] >= kFull;
+    };
+    constexpr std::size_t last = kSquares - 1;
+    for (std::size_t y = 0; y <= last; ++y)
+        for (std::size_t x = 0; x <= last; ++x) {
+            bool inner = true;
+            for (std::size_t v = y - (y > 0); v <= std::min(y + 1, last); ++v)
+                for (std::size_t u = x - (x > 0); u <= std::min(x + 1, last); ++u)
+                    inner = inner && isFull(u, v);
+            m_grid->isInner[y] |= std::uint32_t{inner} << x;
+        }
+}
+
+bool SurfacePatch::isInner(Place place) const {
+    return place.isInside() && (m_grid->isInner[static_cast<std::size_t>(place.y)] >>
+                                    static_cast<std::uint32_t>(place.x) &
+                                1) != 0;
+}
+
+// From a little above it, or its own surface would hide it.
+bool SurfacePatch::sees(const Scene& scene, const Vec3f& position, const Vec3f& normal) const {
+    return !scene.occluded({m_apex, position + normal * (kLift * m_height) - m_apex, 1.0f});
+}
+
+bool SurfacePatch::speaksFor(const Scene& scene, const Vec3f& position, const Vec3f& normal) const {
+    if (!(dot(normal, m_normal) >= PhotonGate::kNormalCosine)) return false;
+    const Vec3f way = position - m_position;
+    const float height = dot(way, m_normal + normal);
+    const float tolerance = kRounding * m_radius;
+    if (height * height > kFlatness * kFlatness * lengthSquared(way) + tolerance * tolerance)
+        return false;
+    if (isWhole()) return true;
+    const Place place = placeOf(position);
+    return place.isInside() && (isInner(place) || sees(scene, position, normal));
+}
+
+bool SurfacePatch::counts(const Scene& scene, const Photon& photon) const {
+    return isInner(placeOf(photon.position)) ||
+           sees(scene, photon.position, photon.normal.unpack());
+}
+
+// The part of a disc that lies on the grid stands for all of it. In squares.
+float SurfacePatch::share(Place middle, float radius) const {
+    constexpr auto side = static_cast<float>(kSquares);
+    const auto first = static_cast<std::int32_t>(std::clamp(middle.y - radius, 0.0f, side));
+    const auto last = static_cast<std::int32_t>(std::clamp(middle.y + radius + 1.0f, 0.0f, side));
+    float area = 0.0f, disc = 0.0f;
+    for (std::int32_t y = first; y < last; ++y) {
+        const auto& areaUpTo = m_grid->areaUpTo[static_cast<std::size_t>(y)];
+        const auto upTo = [&](float x) {
+            const auto column = std::min(static_cast<std::size_t>(x), std::size_t{kSquares - 1});
+            return areaUpTo[column] +
+                   (x - static_cast<float>(column)) * (areaUpTo[column + 1] - areaUpTo[column]);
+        };
+        for (const float inside : {0.25f, 0.75f}) {
+            const float away = static_cast<float>(y) + inside - middle.y;
+            const float halfSquared = radius * radius - away * away;
+            if (!(halfSquared > 0.0f)) continue;
+            const float half = std::sqrt(halfSquared);
+            const float from = std::clamp(middle.x - half, 0.0f, side);
+            const float to = std::clamp(middle.x + half, 0.0f, side);
+            area += upTo(to) - upTo(from);
+            disc += to - from;
+        }
+    }
+    return disc > 0.0f ? std::max(kSmallestShare, area / disc) : 1.0f;
+}
+
+SurfacePatch::Shares SurfacePatch::shares(const Vec3f& position, float radius) const {
+    if (isWhole()) return {};
+    const Place middle = placeOf(position);
+    const float squares = radius / m_radius * kSquaresPerRadius;
+    return {share(middle, squares), share(middle, squares * std::sqrt(0.5f))};
+}
+
+}  // namespace pm

@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+
+#include "integrator/photons/photon_leaf.h"
+#include "integrator/scene/scene.h"
+
+namespace pm {
+
+// The surface around a site, for density estimates whose discs lie about it: which share of a disc
+// is surface that is seen from above the site, and which photons are on that surface. Learnt by
+// short rays, once, and kept as areas on a grid in the site's plane.
+// Threads: const functions from any, at once.
+class SurfacePatch {
+  public:
+    // Share of a disc and of the one of half its area.
+    struct Shares {
+        float wide = 1.0f, narrow = 1.0f;
+    };
+
+    // Speaks for no point.
+    SurfacePatch() = default;
+    // position, normal: of the site. radius: the largest of the discs, scene units, > 0; what is
+    // farther than kHalfWidth radii from the site along an axis of its plane is left out.
+    // pattern: chooses the rays.
+    SurfacePatch(const Scene& scene, const Vec3f& position, const Vec3f& normal, float radius,
+                 std::uint64_t pattern);
+    static constexpr float kHalfWidth = 1.75f;
+
+    // Whether what is known here holds for discs around this point: it is on the site's surface and
+    // seen from above the site, and the surface is whole or nearly flat.
+    bool speaksFor(const Scene& scene, const Vec3f& position, const Vec3f& normal) const;
+    // No edge, bend or obstacle within reach: all discs are whole, all photons count.
+    bool isWhole() const { return !m_grid; }
+    // Photons may lie where surface is not seen, beyond a wall or under a ball: see counts().
+    bool hidesSurface() const { return m_grid && m_grid->hasHidden; }
+    // Of a disc around a point that this speaks for; at least kSmallestShare. radius: scene units.
+    Shares shares(const Vec3f& position, float radius) const;
+    // Whether a photon, within a disc around a point that this speaks for, is to be counted.
+    bool counts(const Scene& scene, const Photon& photon) const;
+
+    std::uint64_t memoryBytes() const { return sizeof(*this) + (m_grid ? sizeof(Grid) : 0); }
+
+  private:
+    // Squares along a side.
+    static constexpr std::int32_t kSquares = 16;
+    static constexpr float kSquaresPerRadius = kSquares / (2.0f * kHalfWidth);
+    static constexpr float kMiddle = 0.5f * kSquares;
+    struct Grid {
+        Vec3f tangent, bitangent;
+        bool hasHidden = false;
+        // Of each row, the area seen up to a column; 1 is a square.
+        std::array<std::array<float, kSquares + 1>, kSquares> areaUpTo;
+        // Bit x of row y: this square and those around it are all seen; no edge is near.
+        std::array<std::uint32_t, kSquares> isInner{};
+    };
+    // A place on the grid, in squares.
+    struct Place {
+        float x, y;
+
+        bool isInside() const;
+    };
+    enum class Seen { kNothing, kFlat, kBent };
+
+    Vec3f inPlane(Place place) const;
+    Place placeOf(const Vec3f& position) const;
+    Seen look(const Scene& scene, const PhotonGate& gate, Place towards) const;
+    bool looksWhole(const Scene& scene, const PhotonGate& gate) const;
+    bool measure(const Scene& scene, const PhotonGate& gate, std::uint64_t pattern);
+    bool hides(const Scene& scene, const PhotonGate& gate, Place place) const;
+    void findInner();
+    bool isInner(Place place) const;
+    float share(Place middle, float radius) const;
+    bool sees(const Scene& scene, const Vec3f& position, const Vec3f& normal) const;
+
+    Vec3f m_position, m_normal, m_apex;  // the normal is 0 where this speaks for no point
+    float m_radius = 0.0f, m_height = 0.0f;
+    std::unique_ptr<Grid> m_grid;
+};
+
+}  // namespace pm
