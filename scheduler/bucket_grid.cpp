@@ -58,6 +58,30 @@ Rect wholeAtoms(const Rect& pixels) {
             ceilToAtom(pixels.y1)};
 }
 
+std::int32_t atomCount(const Rect& bucket) {
+    const Rect atoms = wholeAtoms(bucket);
+    return atoms.width() / kAtomSizePixels * (atoms.height() / kAtomSizePixels);
+}
+
+Rect atomOf(const Rect& bucket, std::int32_t index) {
+    const Rect atoms = wholeAtoms(bucket);
+    const std::int32_t columns = atoms.width() / kAtomSizePixels;
+    const std::int32_t x = atoms.x0 + index % columns * kAtomSizePixels;
+    const std::int32_t y = atoms.y0 + index / columns * kAtomSizePixels;
+    return intersect({x, y, x + kAtomSizePixels, y + kAtomSizePixels}, bucket);
+}
+
+std::int32_t autoBucketSize(const Rect& window) {
+    constexpr std::int64_t kMostBuckets = 65536;
+    const Rect atoms = wholeAtoms(window);
+    std::int32_t size = 32;
+    const auto buckets = [&] {
+        return std::int64_t{ceilDivide(atoms.width(), size)} * ceilDivide(atoms.height(), size);
+    };
+    while (size < kMaxBucketSizePixels && buckets() > kMostBuckets) size *= 2;
+    return size;
+}
+
 BucketGrid::BucketGrid(const Rect& window, std::int32_t bucketSize)
     : m_window(window), m_bucketSize(bucketSize) {
     checkWindow(window);

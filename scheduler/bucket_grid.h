@@ -12,6 +12,7 @@ namespace pm {
 // display window, never at a crop: rays that are batched together then don't depend on the crop or
 // on the buckets, and buckets are unions of atoms.
 inline constexpr std::int32_t kAtomSizePixels = 8;
+inline constexpr std::int32_t kAtomPixels = kAtomSizePixels * kAtomSizePixels;
 inline constexpr std::int32_t kMinBucketSizePixels = 8;
 inline constexpr std::int32_t kMaxBucketSizePixels = 1024;
 
@@ -21,6 +22,17 @@ void checkWindow(const Rect& window);
 // The smallest rectangle of whole atoms that holds the given one; what a renderer works on where a
 // bucket was clipped by the window.
 Rect wholeAtoms(const Rect& pixels);
+
+// The atoms that a bucket has pixels of. bucket: not empty.
+std::int32_t atomCount(const Rect& bucket);
+
+// Its pixels of one of them. index: row by row, from 0, below atomCount().
+Rect atomOf(const Rect& bucket, std::int32_t index);
+
+// The size of buckets in pixels where none is asked for: 32, or twice that as often as it takes for
+// no more than 65,536 of them. docs/orders.md has the measurement behind it (P15 of the paper of
+// Yavuz et al. 2010).
+std::int32_t autoBucketSize(const Rect& window);
 
 // The buckets of a window (the crop): a grid of squares whose origin is the window's top left
 // corner moved out to the atom grid, each bucket clipped to the window. A plain value.

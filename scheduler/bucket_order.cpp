@@ -6,17 +6,31 @@
 
 #include <array>
 #include <limits>
-#include <numeric>
 
 #include "integrator/values/error.h"
 #include "scheduler/hilbert_order.h"
+#include "scheduler/static_orders.h"
 
 namespace pm {
 namespace {
 
+// The table's form of a function without a seed.
+template <std::vector<std::uint32_t> (*cells)(std::int32_t, std::int32_t)>
+std::vector<std::uint32_t> unseeded(std::int32_t columns, std::int32_t rows, std::uint64_t) {
+    return cells(columns, rows);
+}
+
 constexpr std::array kBucketOrders{
-    BucketOrder{"hilbert", "one continuous Hilbert curve through the frame", &hilbertOrder},
-    BucketOrder{"row", "row after row, each from left to right", &rowOrder},
+    BucketOrder{"hilbert", "one continuous Hilbert curve through the frame",
+                &unseeded<hilbertOrder>},
+    BucketOrder{"row", "row after row, each from left to right", &unseeded<rowOrder>},
+    BucketOrder{"column", "column after column, each from top to bottom", &unseeded<columnOrder>},
+    BucketOrder{"diagonal", "diagonal after diagonal from the top left corner",
+                &unseeded<diagonalOrder>},
+    BucketOrder{"spiral", "from the middle outwards", &unseeded<spiralOrder>},
+    BucketOrder{"random", "shuffled by the seed", &randomOrder},
+    BucketOrder{"correlated", "Hilbert's, but next the neighbour whose finished edges agree best",
+                &unseeded<hilbertOrder>, true},
 };
 
 }  // namespace
@@ -30,12 +44,6 @@ std::uint32_t checkedCellCount(std::int32_t columns, std::int32_t rows) {
                                 columns, rows, std::numeric_limits<std::uint32_t>::max()));
     }
     return static_cast<std::uint32_t>(cells);
-}
-
-std::vector<std::uint32_t> rowOrder(std::int32_t columns, std::int32_t rows) {
-    std::vector<std::uint32_t> order(checkedCellCount(columns, rows));
-    std::iota(order.begin(), order.end(), 0u);
-    return order;
 }
 
 std::span<const BucketOrder> bucketOrders() {

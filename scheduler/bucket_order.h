@@ -11,17 +11,16 @@ namespace pm {
 
 // A bucket order is a pure function from a grid's (columns, rows) to a permutation of its cell
 // indices (row * columns + column): the buckets in the order in which workers draw them. A grid of
-// no cells gives an empty order. O(columns * rows).
+// no cells gives an empty order. O(columns * rows). seed: enters the random order only.
 // Errors: kInvalidArgument for a negative count or more than 2^32 - 1 cells.
-using BucketOrderFunction = std::vector<std::uint32_t> (*)(std::int32_t columns, std::int32_t rows);
-
-// Row after row, each from left to right.
-std::vector<std::uint32_t> rowOrder(std::int32_t columns, std::int32_t rows);
+using BucketOrderFunction = std::vector<std::uint32_t> (*)(std::int32_t columns, std::int32_t rows,
+                                                           std::uint64_t seed);
 
 struct BucketOrder {
     std::string_view name;  // as given on a command line
     std::string_view help;  // one line
     BucketOrderFunction cells;
+    bool isCorrelated = false;  // the next bucket is chosen while rendering: see CorrelatedChoice
 };
 
 // Every order there is, the default first.

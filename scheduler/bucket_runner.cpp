@@ -10,6 +10,8 @@
 #include <chrono>
 #include <exception>
 #include <mutex>
+#include <thread>
+#include <utility>
 
 #include "integrator/values/error.h"
 #include "scheduler/fp_environment.h"
@@ -37,22 +39,44 @@ void checkArguments(const BucketGrid& grid, std::span<const std::uint32_t> order
     }
 }
 
+using Clock = std::chrono::steady_clock;
+
+// A worker's bucket in work; its atoms are handed out to whoever asks. Only its owner changes rect,
+// cell, place and pixels, and only while all atoms are handed out and done. On cache lines of its
+// own.
+struct alignas(128) OpenBucket {
+    std::vector<float> pixels;
+    Clock::time_point begun;
+    std::size_t place{};  // in the order
+    std::uint32_t cell{};
+    Rect rect;
+
+    std::mutex mutex;  // of what follows
+    std::int32_t atoms{};
+    std::int32_t atomsBegun{};
+    std::int32_t atomsDone{};
+};
+
 // One run: what its workers share.
 class Runner {
   public:
     Runner(const BucketGrid& grid, std::span<const std::uint32_t> order, const CancelToken& cancel,
-           const BucketWork& work)
-        : m_grid(grid), m_order(order), m_cancel(cancel), m_work(work), m_seconds(order.size()) {}
+           const BucketWork& work, int workers)
+        : m_grid(grid),
+          m_order(order),
+          m_cancel(cancel),
+          m_work(work),
+          m_seconds(order.size()),
+          m_open(usefulWorkers(workers)),
+          m_ended(m_open.size()) {}
 
     void runOn(WorkerArena& arena) {
-        const auto workers = static_cast<std::size_t>(arena.threads());
-        const int tasks = static_cast<int>(std::min(workers, m_order.size()));
-        arena.execute([this, tasks] {
+        arena.execute([this] {
             // Isolated: a host that cancels TBB tasks of its own must not silently cancel ours.
             using Context = oneapi::tbb::task_group_context;
             Context context(Context::isolated, Context::default_traits | Context::fp_settings);
             oneapi::tbb::task_group group(context);
-            for (int worker = 0; worker < tasks; ++worker) {
+            for (std::size_t worker = 0; worker < m_open.size(); ++worker) {
                 group.run([this, worker] { runWorker(worker); });
             }
             group.wait();
@@ -61,51 +85,127 @@ class Runner {
     }
 
     BucketRun take() {
-        const std::size_t done = m_done.load();
-        return {done, done < m_order.size() && m_cancel.cancelled(), std::move(m_seconds)};
+        BucketRun run;
+        run.bucketsDone = m_done.load();
+        run.cancelled = run.bucketsDone < m_order.size() && m_cancel.cancelled();
+        run.seconds = std::move(m_seconds);
+        if (m_ended.empty()) return run;
+        const Clock::time_point end = *std::max_element(m_ended.begin(), m_ended.end());
+        for (const Clock::time_point& ended : m_ended) {
+            run.idleSeconds += std::chrono::duration<double>(end - ended).count();
+        }
+        return run;
     }
 
   private:
-    // Draws buckets until there are none left. A bucket that was drawn is always begun: so, when
-    // one fails, all before it in the order have run too, and the first failure is well defined.
-    void runWorker(int worker) {
-        const FpEnvironment guard;
-        std::vector<float> buffer;
-        while (!m_stop.load(std::memory_order_relaxed) && !m_cancel.cancelled()) {
-            const std::size_t ticket = m_ticket.fetch_add(1, std::memory_order_relaxed);
-            if (ticket >= m_order.size()) break;
-            try {
-                runBucket(ticket, worker, buffer);
-            } catch (...) {
-                fail(ticket);
-            }
-        }
+    // No more than there can be atoms.
+    std::size_t usefulWorkers(int workers) const {
+        const auto side = static_cast<std::size_t>(m_grid.bucketSize() / kAtomSizePixels);
+        return std::min(static_cast<std::size_t>(workers), m_order.size() * side * side);
     }
 
-    void runBucket(std::size_t ticket, int worker, std::vector<float>& buffer) {
-        using Clock = std::chrono::steady_clock;
-        const auto begin = Clock::now();
-        const std::uint32_t cell = m_order[ticket];
-        const Rect rect = m_grid.cellRect(cell);
-        // What an earlier bucket left in the buffer would depend on who rendered it.
-        buffer.assign(
-            static_cast<std::size_t>(rect.area()) * static_cast<std::size_t>(m_work.floatsPerPixel),
-            0.0f);
-        if (m_work.started) m_work.started(cell, rect);
-        m_work.render(cell, rect, worker, buffer);
-        if (m_cancel.cancelled()) return;  // render may have given up half-way
-        m_work.deliver(cell, rect, buffer);
-        m_seconds[ticket] = std::chrono::duration<double>(Clock::now() - begin).count();
+    bool goesOn() const { return !m_stop.load(std::memory_order_relaxed) && !m_cancel.cancelled(); }
+
+    void runWorker(std::size_t worker) {
+        const FpEnvironment guard;
+        while (goesOn() && beginBucket(worker)) {
+            while (renderAtom(m_open[worker], worker)) {
+            }
+        }
+        help(worker);
+        m_ended[worker] = Clock::now();
+    }
+
+    // Draws a bucket and opens it; false where there is none left. A bucket that was drawn is
+    // always begun, and by its owner's hands finished: so, when one fails, all before it in the
+    // order have run too, and the first failure is well defined.
+    bool beginBucket(std::size_t worker) {
+        OpenBucket& bucket = m_open[worker];
+        std::size_t place = m_order.size();
+        try {
+            place = m_work.choose ? m_work.choose(static_cast<int>(worker))
+                                  : m_ticket.fetch_add(1, std::memory_order_relaxed);
+            // Others may still be at work on the bucket before: it stays as it is.
+            if (place >= m_order.size()) return false;
+            prepare(bucket, place);
+        } catch (...) {
+            fail(place, 0);
+            return true;  // it has no atom to render
+        }
+        const std::lock_guard lock(bucket.mutex);
+        bucket.atoms = atomCount(bucket.rect);
+        bucket.atomsBegun = bucket.atomsDone = 0;
+        m_opened.fetch_add(1, std::memory_order_release);
+        return true;
+    }
+
+    void prepare(OpenBucket& bucket, std::size_t place) {
+        bucket.begun = Clock::now();
+        bucket.place = place;
+        bucket.cell = m_order[place];
+        bucket.rect = m_grid.cellRect(bucket.cell);
+        // What an earlier bucket left would depend on who rendered it.
+        bucket.pixels.assign(static_cast<std::size_t>(bucket.rect.area()) *
+                                 static_cast<std::size_t>(m_work.floatsPerPixel),
+                             0.0f);
+        if (m_work.started) m_work.started(bucket.cell, bucket.rect);
+    }
+
+    // Renders an atom of the bucket, and delivers the bucket when it was the last one; false where
+    // all were begun.
+    bool renderAtom(OpenBucket& bucket, std::size_t worker) {
+        std::int32_t atom = 0;
+        {
+            const std::lock_guard lock(bucket.mutex);
+            if (bucket.atomsBegun == bucket.atoms) return false;
+            atom = bucket.atomsBegun++;
+        }
+        try {
+            m_work.render(bucket.cell, bucket.rect, atomOf(bucket.rect, atom),
+                          static_cast<int>(worker), bucket.pixels);
+            if (m_cancel.cancelled()) return false;  // render may have given up half-way
+            {
+                const std::lock_guard lock(bucket.mutex);
+                if (++bucket.atomsDone < bucket.atoms) return true;
+            }
+            deliver(bucket);
+        } catch (...) {
+            fail(bucket.place, atom);
+            const std::lock_guard lock(bucket.mutex);
+            bucket.atomsBegun = bucket.atoms;
+        }
+        return true;
+    }
+
+    void deliver(const OpenBucket& bucket) {
+        m_work.deliver(bucket.cell, bucket.rect, bucket.pixels);
+        m_seconds[bucket.place] =
+            std::chrono::duration<double>(Clock::now() - bucket.begun).count();
         m_done.fetch_add(1, std::memory_order_relaxed);
     }
 
+    // No bucket is left to draw, so none is begun in another's place while it is helped with. Those
+    // that were drawn but not opened yet are waited for: microseconds.
+    void help(std::size_t worker) {
+        bool allOpen = false;
+        while (!allOpen && goesOn()) {
+            allOpen = m_opened.load(std::memory_order_acquire) == m_order.size();
+            for (std::size_t i = 1; i < m_open.size(); ++i) {
+                OpenBucket& bucket = m_open[(worker + i) % m_open.size()];
+                while (goesOn() && renderAtom(bucket, worker)) {
+                }
+            }
+            if (!allOpen) std::this_thread::yield();
+        }
+    }
+
     // Called while an exception is handled.
-    void fail(std::size_t ticket) {
+    void fail(std::size_t place, std::int32_t atom) {
         m_stop.store(true, std::memory_order_relaxed);
         const std::lock_guard lock(m_failureMutex);
-        if (!m_failure || ticket < m_failedTicket) {
+        if (!m_failure || std::pair(place, atom) < m_failedAt) {
             m_failure = std::current_exception();
-            m_failedTicket = ticket;
+            m_failedAt = {place, atom};
         }
     }
 
@@ -115,13 +215,16 @@ class Runner {
     const BucketWork& m_work;
 
     std::atomic<std::size_t> m_ticket{0};
+    std::atomic<std::size_t> m_opened{0};
     std::atomic<std::size_t> m_done{0};
     std::atomic<bool> m_stop{false};
-    std::vector<double> m_seconds;  // each element written by the one worker that drew its ticket
+    std::vector<double> m_seconds;           // each element written by the worker that delivers
+    std::vector<OpenBucket> m_open;          // one a worker
+    std::vector<Clock::time_point> m_ended;  // of each worker
 
     std::mutex m_failureMutex;  // for the two below
     std::exception_ptr m_failure;
-    std::size_t m_failedTicket{};
+    std::pair<std::size_t, std::int32_t> m_failedAt;
 };
 
 }  // namespace
@@ -130,7 +233,7 @@ BucketRun runBuckets(WorkerArena& arena, const BucketGrid& grid,
                      std::span<const std::uint32_t> order, const CancelToken& cancel,
                      const BucketWork& work) {
     checkArguments(grid, order, work);
-    Runner runner(grid, order, cancel, work);
+    Runner runner(grid, order, cancel, work, arena.threads());
     runner.runOn(arena);
     return runner.take();
 }

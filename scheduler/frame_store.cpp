@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <new>
 
 #include "integrator/values/error.h"
@@ -18,8 +19,18 @@ std::size_t bandCount(const Rect& window) {
 }
 
 // Doubles that a pixel keeps of its even passes.
-std::size_t evenChannels(std::int32_t biasProbeFirst) {
+std::size_t evenChannels(std::int32_t channels, std::int32_t biasProbeFirst, bool adaptive) {
+    if (adaptive) return static_cast<std::size_t>(channels);
     return biasProbeFirst < 0 ? FrameStore::kBeautyChannels : 2 * FrameStore::kBeautyChannels;
+}
+
+// Floats of SeenSamples.
+constexpr std::int32_t kSeenChannels = 5;
+
+void addSeen(const float* values, SeenSamples& seen) {
+    seen.samples += static_cast<double>(values[0]);
+    for (int c = 0; c < 3; ++c) seen.sums[c] += static_cast<double>(values[c + 1]);
+    seen.square += static_cast<double>(values[4]);
 }
 
 void checkNotEmpty(const Rect& window) {
@@ -55,56 +66,70 @@ void checkOptional(const char* name, std::int32_t first, std::int32_t channels) 
 }  // namespace
 
 FrameStore::FrameStore(const Rect& window, std::int32_t channels, std::int32_t beautyFirst,
-                       std::int32_t biasProbeFirst, std::int32_t emissionFirst)
+                       std::int32_t biasProbeFirst, std::int32_t emissionFirst,
+                       const std::optional<SampleRule>& rule)
     : m_window(window),
-      m_channels(channels),
+      m_area(wholeAtoms(window)),
+      m_channels(rule ? channels - kSeenChannels : channels),
       m_beautyFirst(beautyFirst),
       m_biasProbeFirst(biasProbeFirst),
-      m_emissionFirst(emissionFirst) {
+      m_emissionFirst(emissionFirst),
+      m_rule(rule) {
     checkNotEmpty(window);
-    checkChannels(channels, beautyFirst);
-    checkOptional("bias probe", biasProbeFirst, channels);
-    checkOptional("emission", emissionFirst, channels);
-    const auto pixels = static_cast<std::size_t>(window.area());
+    checkChannels(m_channels, beautyFirst);
+    checkOptional("bias probe", biasProbeFirst, m_channels);
+    checkOptional("emission", emissionFirst, m_channels);
+    if (rule) checkSampleRule(*rule);
+    const auto pixels = static_cast<std::size_t>(m_area.area());
     try {
-        m_sums.resize(pixels * static_cast<std::size_t>(channels));
+        m_sums.resize(pixels * static_cast<std::size_t>(m_channels));
         m_weights.resize(pixels);
         m_deviations.resize(pixels * kBeautyChannels);
         m_passes.resize(pixels);
-        m_evenSums.resize(pixels * evenChannels(biasProbeFirst));
+        m_evenSums.resize(pixels * evenChannels(m_channels, biasProbeFirst, isAdaptive()));
         m_evenWeights.resize(pixels);
+        m_evenPasses.resize(pixels);
+        if (rule) {
+            m_allotted.assign(2 * pixels, static_cast<std::uint16_t>(rule->least));
+            m_seen.resize(2 * pixels);
+        }
         m_bandLocks = std::make_unique<std::mutex[]>(bandCount(window));
     } catch (const std::exception&) {  // bad_alloc, or length_error for sizes beyond any memory
         throw Error(
             Status::kOutOfMemory,
             fmt::format("no memory for a frame of {} x {} pixels with {} channels: {} bytes",
                         window.width(), window.height(), channels,
-                        memoryBytes(window, channels, biasProbeFirst)));
+                        memoryBytes(window, channels, biasProbeFirst, isAdaptive())));
     }
 }
 
 std::uint64_t FrameStore::memoryBytes(const Rect& window, std::int32_t channels,
-                                      std::int32_t biasProbeFirst) {
+                                      std::int32_t biasProbeFirst, bool adaptive) {
     if (window.empty() || channels < 0) return sizeof(FrameStore);
-    const std::uint64_t pixelBytes = (static_cast<std::uint64_t>(channels) + 2 + kBeautyChannels +
-                                      evenChannels(biasProbeFirst)) *
-                                         sizeof(double) +
-                                     sizeof(std::uint32_t);
-    return sizeof(FrameStore) + static_cast<std::uint64_t>(window.area()) * pixelBytes +
+    if (adaptive) channels -= kSeenChannels;
+    const std::uint64_t pixelBytes =
+        (static_cast<std::uint64_t>(channels) + 2 + kBeautyChannels +
+         evenChannels(channels, biasProbeFirst, adaptive)) *
+            sizeof(double) +
+        2 * sizeof(std::uint32_t) +
+        (adaptive ? 2 * (sizeof(std::uint16_t) + sizeof(SeenSamples)) : 0);
+    return sizeof(FrameStore) + static_cast<std::uint64_t>(wholeAtoms(window).area()) * pixelBytes +
            bandCount(window) * sizeof(std::mutex);
 }
 
-void FrameStore::addPass(const Rect& rect, std::span<const float> pixels,
+void FrameStore::addPass(std::uint32_t pass, const Rect& rect, std::span<const float> pixels,
                          std::span<const float> weights) {
     if (rect.empty()) return;
-    if (intersect(rect, m_window) != rect) {
-        throw Error(Status::kInvalidArgument,
-                    fmt::format("pass of [{},{}) x [{},{}) is not within the frame's window",
-                                rect.x0, rect.x1, rect.y0, rect.y1));
+    if (intersect(rect, m_area) != rect || (isAdaptive() && wholeAtoms(rect) != rect)) {
+        throw Error(
+            Status::kInvalidArgument,
+            fmt::format("pass of [{},{}) x [{},{}) is not {} the frame's window", rect.x0, rect.x1,
+                        rect.y0, rect.y1, isAdaptive() ? "of whole atoms of" : "within"));
     }
     const FpEnvironment guard;
     const auto area = static_cast<std::size_t>(rect.area());
-    const auto channels = static_cast<std::size_t>(m_channels);
+    const auto channels =
+        static_cast<std::size_t>(isAdaptive() ? m_channels + kSeenChannels : m_channels);
     if (pixels.size() != area * channels || weights.size() != area) {
         throw Error(Status::kInvalidArgument,
                     fmt::format("pass of {} pixels has {} floats and {} weights; it must have {} "
@@ -117,8 +142,52 @@ void FrameStore::addPass(const Rect& rect, std::span<const float> pixels,
         std::size_t pixel = pixelIndex(rect.x0, y);
         for (std::int32_t x = rect.x0; x < rect.x1; ++x, ++pixel, ++source) {
             if (!(weights[source] > 0.0f)) continue;
-            addPixel(pixel, pixels.data() + source * channels,
-                     static_cast<double>(weights[source]));
+            const float* const values = pixels.data() + source * channels;
+            const auto weight = static_cast<double>(weights[source]);
+            addPixel(pixel, values, weight);
+            if (pass % 2 == 0) addToEvenPasses(pixel, values, weight);
+            if (isAdaptive()) addSeen(values + m_channels, m_seen[2 * pixel + pass % 2]);
+        }
+    }
+    if (!isAdaptive() || !allotsAfter(pass + 1)) return;
+    for (std::int32_t y = rect.y0; y < rect.y1; y += kAtomSizePixels) {
+        const std::lock_guard lock(bandLock(y));
+        for (std::int32_t x = rect.x0; x < rect.x1; x += kAtomSizePixels)
+            allot({x, y, x + kAtomSizePixels, y + kAtomSizePixels});
+    }
+}
+
+// Each half by what the other has seen.
+void FrameStore::allot(const Rect& atom) {
+    std::array<SeenSamples, kAtomPixels> seen;
+    std::array<std::uint16_t, kAtomPixels> samples{};
+    for (int half = 0; half < 2; ++half) {
+        std::size_t i = 0;
+        const auto forEachPixel = [&](const auto& use) {
+            i = 0;
+            for (std::int32_t y = atom.y0; y < atom.y1; ++y)
+                for (std::int32_t x = atom.x0; x < atom.x1; ++x, ++i) use(pixelIndex(x, y));
+        };
+        forEachPixel([&](std::size_t pixel) {
+            seen[i] = m_seen[2 * pixel + static_cast<std::size_t>(1 - half)];
+        });
+        allotSamples(*m_rule, seen, samples);
+        forEachPixel([&](std::size_t pixel) {
+            m_allotted[2 * pixel + static_cast<std::size_t>(half)] = samples[i];
+        });
+    }
+}
+
+void FrameStore::nextSamples(std::uint32_t pass, const Rect& rect,
+                             std::span<NextSamples> next) const {
+    auto to = next.begin();
+    for (std::int32_t y = rect.y0; y < rect.y1; ++y) {
+        const std::lock_guard lock(bandLock(y));
+        for (std::int32_t x = rect.x0; x < rect.x1; ++x, ++to) {
+            const std::size_t pixel = pixelIndex(x, y);
+            const double even = m_evenWeights[pixel];
+            *to = {static_cast<std::uint32_t>(pass % 2 == 0 ? even : m_weights[pixel] - even),
+                   m_allotted[2 * pixel + pass % 2]};
         }
     }
 }
@@ -139,27 +208,43 @@ void FrameStore::addPixel(std::size_t pixel, const float* values, double weight)
         sums[c] += weight * static_cast<double>(values[c]);
     }
     m_weights[pixel] = newWeight;
-    if (m_passes[pixel]++ % 2 == 0) addToEvenPasses(pixel, values, weight);
+    ++m_passes[pixel];
 }
 
 void FrameStore::addToEvenPasses(std::size_t pixel, const float* values, double weight) {
-    double* const sums = m_evenSums.data() + pixel * evenChannels(m_biasProbeFirst);
-    for (std::int32_t i = 0; i < kBeautyChannels; ++i) {
-        sums[i] += weight * static_cast<double>(values[m_beautyFirst + i]);
-        if (m_biasProbeFirst < 0) continue;
-        sums[kBeautyChannels + i] += weight * static_cast<double>(values[m_biasProbeFirst + i]);
+    double* sum =
+        m_evenSums.data() + pixel * evenChannels(m_channels, m_biasProbeFirst, isAdaptive());
+    const auto add = [&](std::int32_t first, std::int32_t count) {
+        for (std::int32_t c = first; c < first + count; ++c)
+            *sum++ += weight * static_cast<double>(values[c]);
+    };
+    if (isAdaptive()) {
+        add(0, m_channels);
+    } else {
+        add(m_beautyFirst, kBeautyChannels);
+        if (m_biasProbeFirst >= 0) add(m_biasProbeFirst, kBeautyChannels);
     }
     m_evenWeights[pixel] += weight;
+    ++m_evenPasses[pixel];
+}
+
+double FrameStore::evenSum(std::size_t pixel, std::int32_t channel) const {
+    const std::size_t first = pixel * evenChannels(m_channels, m_biasProbeFirst, isAdaptive());
+    if (isAdaptive()) return m_evenSums[first + static_cast<std::size_t>(channel)];
+    const bool ofProbe = m_biasProbeFirst >= 0 && channel >= m_biasProbeFirst &&
+                         channel < m_biasProbeFirst + kBeautyChannels;
+    const std::int32_t at =
+        ofProbe ? kBeautyChannels + channel - m_biasProbeFirst : channel - m_beautyFirst;
+    return m_evenSums[first + static_cast<std::size_t>(at)];
 }
 
 std::size_t FrameStore::pixelIndex(std::int32_t x, std::int32_t y) const {
-    return static_cast<std::size_t>(y - m_window.y0) * static_cast<std::size_t>(m_window.width()) +
-           static_cast<std::size_t>(x - m_window.x0);
+    return static_cast<std::size_t>(y - m_area.y0) * static_cast<std::size_t>(m_area.width()) +
+           static_cast<std::size_t>(x - m_area.x0);
 }
 
 std::mutex& FrameStore::bandLock(std::int32_t y) const {
-    const std::int32_t firstRow = wholeAtoms(m_window).y0;
-    return m_bandLocks[static_cast<std::size_t>((y - firstRow) / kAtomSizePixels)];
+    return m_bandLocks[static_cast<std::size_t>((y - m_area.y0) / kAtomSizePixels)];
 }
 
 }  // namespace pm

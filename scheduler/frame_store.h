@@ -13,6 +13,7 @@
 
 #include "integrator/values/rect.h"
 #include "scheduler/frame_error.h"
+#include "scheduler/sample_allotment.h"
 
 namespace pm {
 
@@ -27,8 +28,15 @@ namespace pm {
 // needs no assumption on how variance depends on w_k, so it also holds what the samples of a pass
 // share, such as its photons. Where passes avoid what others did (one low-discrepancy sequence over
 // several of them) it is too large, never too small.
-// For the frame's error (see FrameError) the sums of a pixel's even passes are kept apart, counted
-// from 0 by those in which it had samples.
+// For the frame's error (see FrameError) the sums of a pixel's even passes are kept apart.
+//
+// Adaptive renders give a pixel more samples in the even passes by what its odd passes show, and
+// the reverse (see SampleRule). There the sums of the even passes are kept for all channels, and
+//     mean = (n_even mean_even + n_odd mean_odd) / (n_even + n_odd),   n the passes with samples:
+// weights that no sample decides on, so that this has no bias. Its variance is then that of a
+// sample, M2 / (n - 1), times the sum over the halves of (n_half / n)^2 / W_half. An atom's samples
+// are allotted as soon as its pass 1, 3, 7, ... is there, so the store holds whole atoms, also
+// those that the window cuts.
 //
 // [1] Welford, "Note on a method for calculating corrected sums of squares and products",
 //     Technometrics 4(3), 1962; with weights as West, Communications of the ACM 22(9), 1979.
@@ -46,25 +54,28 @@ class FrameStore {
     // kBeautyChannels. beautyFirst: the first of the three channels whose error is told.
     // biasProbeFirst: the first of three that hold their bias probe, -1 where nothing is biased.
     // emissionFirst: the first of three with the part of the beauty that comes from lamps the pixel
-    // sees, -1 where that is not told apart.
-    // Errors: kInvalidArgument outside of that; kOutOfMemory.
+    // sees, -1 where that is not told apart. rule: of adaptive renders; there the last 5 channels
+    // of a pass are its SeenSamples, which are added up by halves and can't be read. Errors:
+    // kInvalidArgument outside of that; kOutOfMemory.
     FrameStore(const Rect& window, std::int32_t channels, std::int32_t beautyFirst,
-               std::int32_t biasProbeFirst = -1, std::int32_t emissionFirst = -1);
+               std::int32_t biasProbeFirst = -1, std::int32_t emissionFirst = -1,
+               const std::optional<SampleRule>& rule = std::nullopt);
 
     const Rect& window() const { return m_window; }
     std::int32_t channels() const { return m_channels; }
 
     // Bytes that a store of this size takes.
     static std::uint64_t memoryBytes(const Rect& window, std::int32_t channels,
-                                     std::int32_t biasProbeFirst = -1);
+                                     std::int32_t biasProbeFirst = -1, bool adaptive = false);
 
-    // Adds one pass of the pixels of rect. pixels: for each pixel, row by row, the means of its
-    // samples in this pass, channels() floats side by side. weights: for each pixel its number of
-    // samples in this pass; 0 (or anything that is not above it, as NaN) where it had none, and its
-    // floats are then not looked at. A NaN or infinity in pixels stays in the pixel: whoever makes
-    // them replaces and counts bad values before.
-    // Errors: kInvalidArgument when rect is not within the window or a span has another size.
-    void addPass(const Rect& rect, std::span<const float> pixels, std::span<const float> weights);
+    // Adds pass `pass`, from 0, of the pixels of rect. pixels: for each pixel, row by row, the
+    // means of its samples in this pass, channels() floats side by side. weights: for each pixel
+    // its number of samples in this pass; 0 (or anything that is not above it, as NaN) where it had
+    // none, and its floats are then not looked at. A NaN or infinity in pixels stays in the pixel:
+    // whoever makes them replaces and counts bad values before. Errors: kInvalidArgument when rect
+    // is not within the window's atoms, if adaptive not of whole ones, or a span has another size.
+    void addPass(std::uint32_t pass, const Rect& rect, std::span<const float> pixels,
+                 std::span<const float> weights);
 
     // Copies the means of channelCount channels from firstChannel on; 0 for pixels outside the
     // window and for those that have no sample yet. destination is where the first channel of pixel
@@ -91,11 +102,21 @@ class FrameStore {
     // window and where fewer than two passes had samples.
     std::optional<std::array<float, 3>> standardError(std::int32_t x, std::int32_t y) const;
 
+    // The samples that the pixels of rect, row by row, are to get in a pass of an adaptive render:
+    // how many, and how many the pixel's passes of that half have had so far. rect within the
+    // window's atoms.
+    struct NextSamples {
+        std::uint32_t had = 0, count = 0;
+    };
+    void nextSamples(std::uint32_t pass, const Rect& rect, std::span<NextSamples> next) const;
+
     // What is known of the frame's error without a reference: of the pixels whose even and odd
     // passes both had samples; nothing where there is no such pixel.
     std::optional<FrameError> estimateError() const;
 
   private:
+    friend class FrameStoreBytes;  // the arrays below as bytes; a new one belongs there too
+
     // Reads one pixel, index in the window, to floats; called under its band's lock.
     template <typename ReadPixel>
     void readRows(const Rect& rect, std::int32_t floatsPerPixel, float* destination,
@@ -104,6 +125,11 @@ class FrameStore {
 
     void addPixel(std::size_t pixel, const float* values, double weight);
     void addToEvenPasses(std::size_t pixel, const float* values, double weight);
+    bool isAdaptive() const { return m_rule.has_value(); }
+    void allot(const Rect& atom);
+    // Where the sum of a pixel's even passes stands; of beauty, probe and, if adaptive, any
+    // channel.
+    double evenSum(std::size_t pixel, std::int32_t channel) const;
     void readMeans(std::int32_t y, std::vector<NeighbourRows::Pixel>& row) const;
     void addError(std::int32_t x, std::int32_t y, const NeighbourRows& rows,
                   FrameErrorSum& sum) const;
@@ -113,17 +139,24 @@ class FrameStore {
     std::mutex& bandLock(std::int32_t y) const;
 
     Rect m_window;
-    std::int32_t m_channels{};
+    Rect m_area;                // what is held: the window's atoms
+    std::int32_t m_channels{};  // that are read; without SeenSamples
     std::int32_t m_beautyFirst{};
     std::int32_t m_biasProbeFirst{};
     std::int32_t m_emissionFirst{};
+    std::optional<SampleRule> m_rule;
 
     std::vector<double> m_sums;           // sum w_k x_k, for each pixel and channel
     std::vector<double> m_weights;        // W, for each pixel
     std::vector<double> m_deviations;     // M2, for each pixel and beauty channel
     std::vector<std::uint32_t> m_passes;  // n, for each pixel
-    std::vector<double> m_evenSums;     // of even passes: for each pixel, of beauty, then the probe
-    std::vector<double> m_evenWeights;  // as well
+    // Of even passes. Sums: for each pixel those of beauty, then of the probe; all if adaptive.
+    std::vector<double> m_evenSums, m_evenWeights;
+    std::vector<std::uint32_t> m_evenPasses;
+    // If adaptive: for each pixel of even passes, then of odd ones, the samples a pass and what was
+    // seen.
+    std::vector<std::uint16_t> m_allotted;
+    std::vector<SeenSamples> m_seen;
 
     // One for each row of atoms on the frame's grid: buckets of one row of buckets share a few,
     // which are held for microseconds; others share none.

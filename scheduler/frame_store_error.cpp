@@ -89,19 +89,24 @@ void FrameStore::readMeans(std::int32_t y, std::vector<NeighbourRows::Pixel>& ro
 void FrameStore::addError(std::int32_t x, std::int32_t y, const NeighbourRows& rows,
                           FrameErrorSum& sum) const {
     const std::size_t pixel = pixelIndex(x, y);
-    if (m_passes[pixel] < 2) return;
+    const double evenPasses = m_evenPasses[pixel], oddPasses = m_passes[pixel] - evenPasses;
+    if (evenPasses == 0 || oddPasses == 0) return;
     const double weight = m_weights[pixel], even = m_evenWeights[pixel], odd = weight - even;
-    const double* const sums = m_sums.data() + pixel * static_cast<std::size_t>(m_channels);
-    const bool hasProbe = m_biasProbeFirst >= 0;
-    const double* const evenSums =
-        m_evenSums.data() + pixel * (hasProbe ? 2 * kBeautyChannels : kBeautyChannels);
+    const auto meanEven = [&](std::int32_t channel) { return evenSum(pixel, channel) / even; };
+    const auto meanOdd = [&](std::int32_t channel) {
+        const double sum = m_sums[pixel * static_cast<std::size_t>(m_channels) +
+                                  static_cast<std::size_t>(channel)];
+        return (sum - evenSum(pixel, channel)) / odd;
+    };
+    // The halves' shares in the mean; see mean().
+    const double share = isAdaptive() ? evenPasses / (evenPasses + oddPasses) : even / weight;
     PixelMeans means;
     for (std::int32_t i = 0; i < kBeautyChannels; ++i) {
         const auto to = static_cast<std::size_t>(i);
-        const double apart = evenSums[i] / even - (sums[m_beautyFirst + i] - evenSums[i]) / odd;
+        const double apart = meanEven(m_beautyFirst + i) - meanOdd(m_beautyFirst + i);
         means.beauty[to] = mean(pixel, m_beautyFirst + i);
         means.lamps[to] = m_emissionFirst < 0 ? 0.0 : mean(pixel, m_emissionFirst + i);
-        means.halves[to] = apart * apart * (even / weight) * (odd / weight);
+        means.halves[to] = apart * apart * share * (1 - share);
         means.passes[to] = varianceOfMean(pixel, i);
     }
     const Channels inverses =
@@ -110,10 +115,9 @@ void FrameStore::addError(std::int32_t x, std::int32_t y, const NeighbourRows& r
     for (std::int32_t i = 0; i < kBeautyChannels; ++i) {
         const double inverse = inverses[static_cast<std::size_t>(i)];
         noise += means.halves[static_cast<std::size_t>(i)] * inverse;
-        if (!hasProbe) continue;
-        const double evenProbe = evenSums[kBeautyChannels + i];
-        const double oddProbe = sums[m_biasProbeFirst + i] - evenProbe;
-        bias += kBiasPerProbe * (evenProbe / even) * (oddProbe / odd) * inverse;
+        if (m_biasProbeFirst < 0) continue;
+        bias += kBiasPerProbe * meanEven(m_biasProbeFirst + i) * meanOdd(m_biasProbeFirst + i) *
+                inverse;
     }
     sum.add(x, y, noise, bias);
 }

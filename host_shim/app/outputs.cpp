@@ -38,10 +38,11 @@ void checkTextName(const fs::path& file) {
     for (const char* extension : {".obj", ".mtl", ".pov", ".inc", ".ocio", ".exr", ".png", ".jpg",
                                   ".jpeg", ".tif", ".tiff", ".tga", ".hdr", ".bmp", ".tx"}) {
         if (identity(file).extension() != extension) continue;
-        throw HostError(ExitCode::kUsage,
-                        fmt::format("{}: statistics and logs may not end in {}, like an input or a "
-                                    "picture; .json, .txt or .log would do",
-                                    file.string(), extension));
+        throw HostError(
+            ExitCode::kUsage,
+            fmt::format("{}: statistics, logs, parts and checkpoints may not end in {}, "
+                        "like an input or a picture; .json, .log or .pmcheck would do",
+                        file.string(), extension));
     }
 }
 

@@ -15,6 +15,14 @@
 namespace pm::host {
 namespace {
 
+constexpr const char* kColourConfig = "colour config: ";
+constexpr const char* kColourSpace = "rendering space of the host: ";
+
+std::string oneLine(std::string text) {
+    std::ranges::replace(text, '\n', ';');
+    return text;
+}
+
 std::vector<std::string> channelNames(std::string_view list) {
     std::vector<std::string> names;
     while (true) {
@@ -25,16 +33,13 @@ std::vector<std::string> channelNames(std::string_view list) {
     }
 }
 
-void addLayer(const RenderRun& run, const PmrLayerInfo& info, Picture& picture) {
+void addLayer(const PictureSource& source, const PmrLayerInfo& info, Picture& picture) {
     const PixelRect& window = picture.dataWindow;
     const PmrRectangle rectangle{window.x0, window.y0, window.x1, window.y1};
     const std::size_t stride = info.channelCount;
     const auto pixels = static_cast<std::size_t>(window.area());
     std::vector<float> values(pixels * stride);
-    const auto pixelBytes = static_cast<int64_t>(stride * sizeof(float));
-    run.context().check(run.api().readPixels(run.handle(), &rectangle, info.name, values.data(),
-                                             pixelBytes, pixelBytes * window.width()),
-                        fmt::format("layer {}", info.name));
+    source.readPixels(rectangle, info.name, values.data());
     const auto names = channelNames(info.channels);
     for (std::size_t c = 0; c < names.size() && c < stride; ++c) {
         Channel& channel = picture.channels.emplace_back();
@@ -46,17 +51,17 @@ void addLayer(const RenderRun& run, const PmrLayerInfo& info, Picture& picture) 
 }
 
 // Settings that change no pixel are left out: the same picture gives the same bytes.
-void addSettings(const RenderRun& run, Picture& picture) {
-    for (uint32_t i = 0; i < run.api().settingCount(); ++i) {
+void addSettings(const PictureSource& source, Picture& picture) {
+    for (uint32_t i = 0; i < source.api().settingCount(); ++i) {
         auto info = PMR_INIT(PmrSettingInfo);
-        if (run.api().settingInfo(i, &info) != PMR_OK || info.changesPixels == 0) continue;
-        picture.attributes[fmt::format("pm:{}", info.name)] = run.settingText(info.name);
+        if (source.api().settingInfo(i, &info) != PMR_OK || info.changesPixels == 0) continue;
+        picture.attributes[fmt::format("pm:{}", info.name)] = source.settingText(info.name);
     }
 }
 
 // What was really done, and checksums by which a later run tells whether it may go on with it.
-void addStatistics(const RenderRun& run, Picture& picture) {
-    const auto json = nlohmann::json::parse(run.statistics(), nullptr, false);
+void addStatistics(const PictureSource& source, Picture& picture) {
+    const auto json = nlohmann::json::parse(source.statistics(), nullptr, false);
     if (!json.is_object()) return;
     if (const auto isa = json.find("isa"); isa != json.end() && isa->is_string())
         picture.attributes["pm:isa"] = isa->get<std::string>();
@@ -77,19 +82,14 @@ void addStatistics(const RenderRun& run, Picture& picture) {
 
 }  // namespace
 
-Picture assemblePicture(const RenderRun& run, const Options& options, const ColourPipeline& colour,
-                        bool complete) {
+Picture assemblePicture(const PictureSource& source, const Options& options,
+                        const ColourPipeline& colour, bool complete) {
     Picture picture;
     picture.width = options.width;
     picture.height = options.height;
     picture.dataWindow = dataWindowOf(options);
-    uint32_t count = 0;
-    run.context().check(run.api().renderLayerCount(run.handle(), &count), "layers");
-    for (uint32_t i = 0; i < count; ++i) {
-        auto info = PMR_INIT(PmrLayerInfo);
-        run.context().check(run.api().renderLayerInfo(run.handle(), i, &info), "layers");
-        addLayer(run, info, picture);
-    }
+    for (std::uint32_t i = 0; i < source.layerCount(); ++i)
+        addLayer(source, source.layerInfo(i), picture);
     if (const auto chromaticities = colour.chromaticities()) {
         picture.attributes["chromaticities"] =
             std::vector<float>(chromaticities->begin(), chromaticities->end());
@@ -97,13 +97,32 @@ Picture assemblePicture(const RenderRun& run, const Options& options, const Colo
     if (!colour.colorInteropId().empty()) {
         picture.attributes["colorInteropID"] = colour.colorInteropId();
     }
-    addSettings(run, picture);
-    addStatistics(run, picture);
+    addSettings(source, picture);
+    addStatistics(source, picture);
     picture.attributes["pm:complete"] = std::int32_t{complete ? 1 : 0};
-    picture.attributes["pm:version"] = std::string(run.api().versionText());
+    picture.attributes["pm:version"] = std::string(source.api().versionText());
     picture.attributes["pm:renderingSpace"] = colour.renderingSpace();
     picture.attributes["pm:ocioCacheId"] = colour.cacheId();
     return picture;
+}
+
+std::string colourIdentity(const ColourPipeline& colour) {
+    return fmt::format("{}{}\n{}{}", kColourConfig, colour.cacheId(), kColourSpace,
+                       colour.renderingSpace());
+}
+
+ColourPipeline colourOfParts(const std::string& identity, ColourOptions options) {
+    const std::size_t space = identity.find(kColourSpace);
+    if (options.renderingSpace.empty() && space != std::string::npos)
+        options.renderingSpace = identity.substr(space + std::string_view(kColourSpace).size());
+    ColourPipeline colour(options);
+    if (const std::string ours = colourIdentity(colour); ours != identity)
+        throw HostError(
+            ExitCode::kBadInput,
+            fmt::format("merge: the parts were rendered with [{}], this is [{}]; give their --ocio "
+                        "and --rendering-space",
+                        oneLine(identity), oneLine(ours)));
+    return colour;
 }
 
 PixelRect dataWindowOf(const Options& options) {

@@ -2,16 +2,24 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/app/render_run.h"
+#include "host_shim/app/picture_source.h"
+#include "host_shim/cli/options.h"
 #include "host_shim/colour/colour_pipeline.h"
 #include "host_shim/pictures/picture.h"
 
 namespace pm::host {
 
-// All layers of a render as one picture, with the attributes that an EXR of ours carries.
+// All layers of a source as one picture, with the attributes that an EXR of ours carries.
 // complete: every pixel is done; recorded as pm:complete. Errors: those of the plugin.
-Picture assemblePicture(const RenderRun& run, const Options& options, const ColourPipeline& colour,
-                        bool complete);
+Picture assemblePicture(const PictureSource& source, const Options& options,
+                        const ColourPipeline& colour, bool complete);
+
+// What of the host decides on a picture, as the library's setting hostIdentity.
+std::string colourIdentity(const ColourPipeline& colour);
+
+// The pipeline that parts with this identity were rendered with; options may leave the rendering
+// space to them. Errors: those of ColourPipeline; kBadInput where options give another one.
+ColourPipeline colourOfParts(const std::string& identity, ColourOptions options);
 
 // The window that a render with these options fills.
 PixelRect dataWindowOf(const Options& options);

@@ -100,6 +100,8 @@ int exitCodeOf(PmrStatus status) {
         case PMR_ERROR_ARGUMENT:
         case PMR_ERROR_SCENE:
         case PMR_ERROR_UNSUPPORTED:
+        case PMR_ERROR_FILE:
+        case PMR_ERROR_MISMATCH:
             return 3;
         case PMR_ERROR_NAME:
             return 2;

@@ -34,7 +34,8 @@ void RenderRun::onFinished(void* user, PmrRender, PmrStatus status) {
     run->m_status = status;
 }
 
-RenderRun::RenderRun(const PluginScene& scene, const Options& options, Log& log, Progress& progress)
+RenderRun::RenderRun(const PluginScene& scene, const Options& options, const std::string& identity,
+                     Log& log, Progress& progress)
     : m_context(scene.context()), m_log(log), m_progress(progress) {
     auto desc = PMR_INIT(PmrRenderDesc);
     desc.callbackMode = PMR_CALLBACKS_POLL;
@@ -51,6 +52,7 @@ RenderRun::RenderRun(const PluginScene& scene, const Options& options, Log& log,
             apply({"--crop", "crop", fmt::format("{},{},{},{}", c.x0, c.y0, c.x1, c.y1)});
         }
         if (!options.layers.empty()) apply({"--aov", "layers", options.layers});
+        apply({"", "hostIdentity", identity});
         for (const GivenSetting& setting : options.settings) apply(setting);
     } catch (...) {
         api().destroyRender(m_handle);
@@ -67,6 +69,24 @@ void RenderRun::apply(const GivenSetting& setting) {
         return;
     }
     throw HostError(ExitCode::kUsage, fmt::format("{}: {}", setting.option, m_context.lastError()));
+}
+
+std::uint32_t RenderRun::layerCount() const {
+    std::uint32_t count = 0;
+    m_context.check(api().renderLayerCount(m_handle, &count), "layers");
+    return count;
+}
+
+PmrLayerInfo RenderRun::layerInfo(std::uint32_t index) const {
+    auto info = PMR_INIT(PmrLayerInfo);
+    m_context.check(api().renderLayerInfo(m_handle, index, &info), "layers");
+    return info;
+}
+
+void RenderRun::readPixels(const PmrRectangle& rectangle, const char* layer,
+                           float* destination) const {
+    m_context.check(api().readPixels(m_handle, &rectangle, layer, destination, 0, 0),
+                    fmt::format("layer {}", layer));
 }
 
 std::string RenderRun::settingText(const std::string& name) const {
@@ -89,7 +109,10 @@ std::string RenderRun::statistics() const {
 
 PmrStatus RenderRun::run() {
     constexpr double kPollSeconds = 0.05;
-    m_context.check(api().startRender(m_handle), "render");
+    // What is wrong with the settings together is wrong with the command line.
+    const PmrStatus started = api().startRender(m_handle);
+    if (started == PMR_ERROR_ARGUMENT) throw HostError(ExitCode::kUsage, m_context.lastError());
+    m_context.check(started, "render");
     while (!m_finished) {
         if (interruptSignal() != 0) api().cancelRender(m_handle);
         const PmrStatus status = api().pollRender(m_handle, kPollSeconds);

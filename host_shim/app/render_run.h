@@ -3,6 +3,7 @@
 #pragma once
 
 #include "host_shim/app/log.h"
+#include "host_shim/app/picture_source.h"
 #include "host_shim/app/progress.h"
 #include "host_shim/app/scene_builder.h"
 #include "host_shim/cli/options.h"
@@ -12,11 +13,13 @@
 namespace pm::host {
 
 // One render of a scene: settings, the run itself, and what it left.
-class RenderRun {
+class RenderRun : public PictureSource {
   public:
-    // Settings are given here. Errors: kUsage for a setting that the plugin refuses.
-    RenderRun(const PluginScene& scene, const Options& options, Log& log, Progress& progress);
-    ~RenderRun();
+    // Settings are given here. identity: what of the host decides on the picture. Errors: kUsage
+    // for a setting that the plugin refuses.
+    RenderRun(const PluginScene& scene, const Options& options, const std::string& identity,
+              Log& log, Progress& progress);
+    ~RenderRun() override;
     RenderRun(const RenderRun&) = delete;
     RenderRun& operator=(const RenderRun&) = delete;
 
@@ -25,11 +28,13 @@ class RenderRun {
     // plugin.
     PmrStatus run();
 
-    PmrRender handle() const { return m_handle; }
-    const PmrApi& api() const { return m_context.api(); }
-    const PluginContext& context() const { return m_context; }
-    std::string settingText(const std::string& name) const;
-    std::string statistics() const;  // JSON
+    const PluginContext& context() const override { return m_context; }
+    std::uint32_t layerCount() const override;
+    PmrLayerInfo layerInfo(std::uint32_t index) const override;
+    void readPixels(const PmrRectangle& rectangle, const char* layer,
+                    float* destination) const override;
+    std::string settingText(const std::string& name) const override;
+    std::string statistics() const override;
 
   private:
     void apply(const GivenSetting& setting);

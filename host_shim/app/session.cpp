@@ -7,6 +7,7 @@
 #include "host_shim/app/outputs.h"
 #include "host_shim/app/picture_assembly.h"
 #include "host_shim/app/scene_builder.h"
+#include "host_shim/app/session_files.h"
 #include "host_shim/colour/display_picture.h"
 #include "host_shim/ingest/obj_reader.h"
 #include "host_shim/pictures/compare.h"
@@ -24,37 +25,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kErrorLimitPassed = 6;
-
-std::vector<fs::path> inputsOf(const Options& options, const SceneData* scene) {
-    std::vector<fs::path> inputs{options.scene};
-    if (!options.reference.empty()) inputs.push_back(options.reference);
-    if (!options.colour.ocioFile.empty()) inputs.emplace_back(options.colour.ocioFile);
-    if (scene == nullptr) return inputs;
-    for (const std::string& file : scene->materialFiles) inputs.emplace_back(file);
-    for (const MaterialData& material : scene->materials) {
-        for (const auto* use :
-             {&material.diffuseTexture, &material.glossyTexture, &material.glossyExponentTexture,
-              &material.transmissionTexture, &material.emissionTexture, &material.opacityTexture}) {
-            if (*use) inputs.emplace_back((*use)->file);
-        }
-    }
-    return inputs;
-}
-
-std::vector<fs::path> textOutputs(const Options& options) {
-    std::vector<fs::path> files;
-    if (!options.statistics.empty() && options.statistics != "-") {
-        files.emplace_back(options.statistics);
-    }
-    if (!options.log.empty()) files.push_back(options.log);
-    return files;
-}
-
-std::vector<fs::path> allOutputs(const Options& options) {
-    std::vector<fs::path> files = options.outputs;
-    for (fs::path& file : textOutputs(options)) files.push_back(std::move(file));
-    return files;
-}
 
 }  // namespace
 
@@ -98,6 +68,7 @@ int Session::run() {
 }
 
 int Session::render() {
+    if (!m_options.merge.empty()) return merge();
     checkBeforeReading();
     const ColourPipeline colour(m_options.colour);
     m_statistics.colourConfig = colour.configName();
@@ -105,14 +76,7 @@ int Session::render() {
     for (const std::string& text : colour.warnings()) warn(Warning::kOutput, text);
     if (!m_options.reference.empty()) readReference(colour);
     const Plugin plugin(m_options.plugin);
-    m_statistics.pluginFile = plugin.file().string();
-    m_statistics.pluginVersion = plugin.api().versionText();
-    auto desc = PMR_INIT(PmrContextDesc);
-    desc.message = logPluginMessage;
-    desc.user = &m_log;
-    desc.isa = m_options.isa.empty() ? nullptr : m_options.isa.c_str();
-    desc.threads = m_options.threads;
-    const PluginContext context(plugin, desc);
+    const PluginContext context(plugin, contextDesc(plugin));
     m_log.message(Level::kDebug,
                   fmt::format("{}: {}; colour config {}, rendering space {}",
                               m_statistics.pluginFile, m_statistics.pluginVersion,
@@ -120,11 +84,22 @@ int Session::render() {
     return renderScene(colour, context);
 }
 
+PmrContextDesc Session::contextDesc(const Plugin& plugin) {
+    m_statistics.pluginFile = plugin.file().string();
+    m_statistics.pluginVersion = plugin.api().versionText();
+    auto desc = PMR_INIT(PmrContextDesc);
+    desc.message = logPluginMessage;
+    desc.user = &m_log;
+    desc.isa = m_options.isa.empty() ? nullptr : m_options.isa.c_str();
+    desc.threads = m_options.threads;
+    return desc;
+}
+
 void Session::checkBeforeReading() {
     // Of a fault in the scene and one in the outputs, people look for the first.
     const fs::path& scene = m_options.scene;
     checkNotInputs(allOutputs(m_options), inputsOf(m_options, nullptr));
-    checkOutputs({}, textOutputs(m_options), m_options.makeOutputPath);
+    checkOutputs({}, otherOutputs(m_options), m_options.makeOutputPath);
     m_mayWriteStatistics = true;
     checkSceneFile(scene);
     if (scene.extension() != ".obj" && scene.extension() != ".OBJ") {
@@ -135,13 +110,14 @@ void Session::checkBeforeReading() {
     const bool toExr = std::ranges::any_of(m_options.outputs, [](const fs::path& file) {
         return !isDisplayReferred(pictureFormat(file));
     });
-    if (!m_options.layers.empty() && !toExr && !m_options.onlyPixel && !m_options.explain) {
+    const bool canHoldLayers = toExr || !m_options.part.empty();
+    if (!m_options.layers.empty() && !canHoldLayers && !m_options.onlyPixel && !m_options.explain) {
         throw HostError(ExitCode::kUsage,
                         fmt::format("--aov {}: layers go into an .exr, and no output is one",
                                     m_options.layers));
     }
     checkOutputs(m_options.explain ? std::vector<fs::path>{} : m_options.outputs,
-                 textOutputs(m_options), m_options.makeOutputPath);
+                 otherOutputs(m_options), m_options.makeOutputPath);
     if (!m_options.log.empty()) m_log.openFile(m_options.log);
 }
 
@@ -206,7 +182,7 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
         });
     }
     Progress progress(m_options.progress, m_options.quiet, m_log);
-    RenderRun run(scene, m_options, m_log, progress);
+    RenderRun run(scene, m_options, colourIdentity(colour), m_log, progress);
     if (m_options.explain) {
         std::fputs(run.explain().c_str(), stdout);
         m_statistics.stopReason = "finished";
@@ -218,17 +194,25 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
     return finish(run, status, colour, display);
 }
 
-int Session::finish(RenderRun& run, PmrStatus status, const ColourPipeline& colour,
+int Session::finish(const PictureSource& source, PmrStatus status, const ColourPipeline& colour,
                     const std::optional<DisplayTransform>& display) {
     const bool complete = status == PMR_OK;
     const auto start = m_log.elapsedSeconds();
-    const Picture picture = assemblePicture(run, m_options, colour, complete);
+    const Picture picture = assemblePicture(source, m_options, colour, complete);
     writeOutputs(picture, complete, display);
     m_statistics.phaseSeconds["writePicturesSeconds"] = m_log.elapsedSeconds() - start;
     if (!complete) {
         throwIfInterrupted();
         throw HostError(static_cast<ExitCode>(exitCodeOf(status)), "the render was cancelled");
     }
+    if (!m_options.part.empty()) {
+        m_statistics.outputs.push_back(m_options.part.string());
+        m_log.info("wrote " + m_options.part.string());
+    }
+    // Only now that all is written nothing is lost without it.
+    std::error_code ignored;
+    if (!m_options.checkpoint.empty() && !m_options.keepCheckpoint)
+        fs::remove(m_options.checkpoint, ignored);
     m_statistics.stopReason = m_statistics.libraryStopReason();
     if (m_statistics.stopReason == "error target" || m_statistics.stopReason == "time limit")
         m_log.info("stopped by the " + m_statistics.stopReason);

@@ -15,12 +15,12 @@
 
 namespace pm::host {
 
-// One rendering from files to files.
+// One rendering from files to files, or one merging of parts.
 class Session {
   public:
     Session(const Options& options, Log& log);
 
-    // Renders and writes; returns the exit code. Statistics are written on failure too.
+    // Renders or merges, and writes; returns the exit code. Statistics are written on failure too.
     int run();
 
   private:
@@ -28,7 +28,10 @@ class Session {
     void checkBeforeReading();
     void readReference(const ColourPipeline& colour);
     int renderScene(const ColourPipeline& colour, const PluginContext& context);
-    int finish(RenderRun& run, PmrStatus status, const ColourPipeline& colour,
+    int merge();
+    void checkBeforeMerging();
+    PmrContextDesc contextDesc(const Plugin& plugin);
+    int finish(const PictureSource& source, PmrStatus status, const ColourPipeline& colour,
                const std::optional<DisplayTransform>& display);
     void writeOutputs(const Picture& picture, bool complete,
                       const std::optional<DisplayTransform>& display);

@@ -4,6 +4,7 @@
 
 #include "host_shim/cli/not_available.h"
 #include "host_shim/cli/option_values.h"
+#include "host_shim/cli/piece_options.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -21,8 +22,8 @@ namespace {
 // reads numbers through the locale.
 struct Typed {
     std::string scene, frame, size, eye, lookAt, up, fov, crop, aa, seed, subdivide, onlyPixel,
-        errorLimit, progress;
-    std::vector<std::string> outputs, context, layers;
+        errorLimit, progress, checkpoint;
+    std::vector<std::string> outputs, context, layers, parts;
     std::map<std::string, std::string> settings;  // option -> text
 };
 
@@ -32,11 +33,13 @@ struct SettingOption {
     const char* setting;
     const char* placeholder;
 };
-constexpr std::array<SettingOption, 14> kSettingOptions{{
+constexpr std::array<SettingOption, 16> kSettingOptions{{
     {"--threads", "threads", "N"},
-    {"--bucket-size", "bucketSize", "N"},
+    {"--bucket-size", "bucketSize", "N|auto"},
     {"--bucket-order", "bucketOrder", "NAME"},
-    {"--aa", "aaLevel", "N|N:N"},
+    {"--buckets", "buckets", "A:B|I/N"},
+    {"--aa", "aaLevel", "N|MIN:MAX"},
+    {"--aa-threshold", "aaThreshold", "T"},
     {"--integrator", "integrator", "photon|path"},
     {"--plan", "plan", "auto|everything"},
     {"--photons", "photons", "N|auto"},
@@ -54,15 +57,22 @@ void addText(CLI::App& app, const std::string& name, std::string& target,
     app.add_option(name, target, help)->type_name(placeholder)->take_last();
 }
 
-void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
-    addText(app, "SCENE", typed.scene, "FILE", "the scene, an .obj");
+void addOutputOptions(CLI::App& app, Typed& typed, Options& options) {
     app.add_option("-o,--output", typed.outputs,
                    "picture to write, may be repeated: .exr is scene-linear, .png .jpg .tif go "
-                   "through display and view (SCENE.exr in the working folder)")
+                   "through display and view, .pmpart is a part for pm_host merge (SCENE.exr in "
+                   "the working folder)")
         ->type_name("FILE")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
     addText(app, "--frame", typed.frame, "N", "fills #### and %04d in SCENE and outputs");
+    app.add_flag("--make-output-path", options.makeOutputPath, "make missing output folders");
+    app.add_flag("--exr-half", options.exrHalf, "store colour as half; data stays float");
+}
+
+void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
+    addText(app, "SCENE", typed.scene, "FILE", "the scene, an .obj");
+    addOutputOptions(app, typed, options);
     addText(app, "--size", typed.size, "WxH", "pixels (640x480)");
     addText(app, "--eye", typed.eye, "x,y,z", "where the camera stands (framed from the bounds)");
     addText(app, "--look-at", typed.lookAt, "x,y,z", "what it looks at (centre of the bounds)");
@@ -71,8 +81,6 @@ void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
     addText(app, "--crop", typed.crop, "x0,y0,x1,y1", "half-open pixels; may exceed the frame");
     addText(app, "--subdivide", typed.subdivide, "all|tagged|none",
             "which groups become Catmull-Clark limit surfaces (tagged)");
-    app.add_flag("--make-output-path", options.makeOutputPath, "make missing output folders");
-    app.add_flag("--exr-half", options.exrHalf, "store colour as half; data stays float");
     app.add_option("--aov", typed.layers, "extra channels in the EXR, see --list aovs")
         ->type_name("NAME[,NAME]")
         ->expected(1)
@@ -87,6 +95,15 @@ void addRenderOptions(CLI::App& app, Typed& typed, Options& options, const Setti
     addText(app, "--isa", options.isa, "NAME",
             "instruction set, for the same bits on unlike machines: best, sse2, sse4.2, avx, avx2, "
             "avx512 (best)");
+}
+
+void addPieceOptions(CLI::App& app, Typed& typed, Options& options) {
+    addText(app, "--checkpoint", typed.checkpoint, "FILE",
+            "keep finished buckets on disk; removed when all is written");
+    app.add_flag("--resume", options.resume,
+                 "go on from the checkpoint where it is there, else begin");
+    app.add_flag("--keep-checkpoint", options.keepCheckpoint,
+                 "don't remove it, so that the render can go on with more passes");
 }
 
 void addColourOptions(CLI::App& app, Typed& typed, Options& options) {
@@ -106,25 +123,27 @@ void addColourOptions(CLI::App& app, Typed& typed, Options& options) {
 }
 
 void addReportOptions(CLI::App& app, Typed& typed, Options& options) {
-    std::string help;
     app.add_option("--reference", options.reference, "EXR to report relMSE against")
         ->type_name("FILE");
     addText(app, "--error-limit", typed.errorLimit, "X",
             "exit 6 when the relMSE against --reference is above, or a value is not finite");
     addText(app, "--stats", options.statistics, "FILE", "statistics as JSON; - = standard output");
     app.add_option("--log", options.log, "all messages, also to a file")->type_name("FILE");
-    app.add_flag("--explain", options.explain, "print what the scene needs, and stop");
-    addText(app, "--list", options.list, "views|spaces|aovs|orders|settings", "print and stop");
-    app.add_flag("--version", options.version, "print and stop");
-    app.add_flag("-h,--help", options.help, "print and stop");
-    addText(app, "--progress", typed.progress, "auto|bar|plain|json|alf|none",
-            "how progress is shown (auto)");
     app.add_flag("-q,--quiet", options.quiet, "only warnings and errors");
     app.add_flag("-v,--verbose", options.verbose, "more messages");
-    addText(app, "--only-pixel", typed.onlyPixel, "X,Y", "render and print that one");
     app.add_option("--plugin", options.plugin,
                    "the library (else $PM_PLUGIN_PATH, else beside pm_host)")
         ->type_name("FILE");
+    app.add_flag("-h,--help", options.help, "print and stop");
+}
+
+void addPrintingOptions(CLI::App& app, Typed& typed, Options& options) {
+    app.add_flag("--explain", options.explain, "print what the scene needs, and stop");
+    addText(app, "--list", options.list, "views|spaces|aovs|orders|settings", "print and stop");
+    app.add_flag("--version", options.version, "print and stop");
+    addText(app, "--progress", typed.progress, "auto|bar|plain|json|alf|none",
+            "how progress is shown (auto)");
+    addText(app, "--only-pixel", typed.onlyPixel, "X,Y", "render and print that one");
 }
 
 void addAll(CLI::App& app, Typed& typed, Options& options, const SettingHelp& help) {
@@ -132,6 +151,19 @@ void addAll(CLI::App& app, Typed& typed, Options& options, const SettingHelp& he
     app.option_defaults()->always_capture_default(false);
     addSceneOptions(app, typed, options);
     addRenderOptions(app, typed, options, help);
+    addPieceOptions(app, typed, options);
+    addColourOptions(app, typed, options);
+    addReportOptions(app, typed, options);
+    addPrintingOptions(app, typed, options);
+}
+
+// pm_host merge PART... -o FILE
+void addAllOfMerge(CLI::App& app, Typed& typed, Options& options) {
+    app.set_help_flag();
+    app.option_defaults()->always_capture_default(false);
+    app.add_option("PART", typed.parts, "parts of one picture, that -o NAME.pmpart made")
+        ->type_name("FILE...");
+    addOutputOptions(app, typed, options);
     addColourOptions(app, typed, options);
     addReportOptions(app, typed, options);
 }
@@ -169,31 +201,29 @@ void readCamera(const Typed& typed, Options& options) {
     if (!typed.crop.empty()) options.crop = cropValue("--crop", typed.crop);
 }
 
-// A N:N pair means one fixed level; levels that refine between two are to come, as is level 0.
-std::string antiAliasingLevel(const std::string& text) {
+// N is N:N, a level for all pixels.
+void readAntiAliasing(const std::string& text, Options& options) {
     const auto colon = text.find(':');
-    const auto low = integerValue("--aa", text.substr(0, colon), 0, 6);
-    const auto high =
-        colon == std::string::npos ? low : integerValue("--aa", text.substr(colon + 1), 0, 6);
-    if (low > high) {
+    const auto least = integerValue("--aa", text.substr(0, colon), 0, 6);
+    const auto most =
+        colon == std::string::npos ? least : integerValue("--aa", text.substr(colon + 1), 0, 6);
+    if (least > most) {
         throw HostError(ExitCode::kUsage, fmt::format("--aa '{}': MIN is above MAX", text));
     }
-    if (low != high || low == 0) {
-        throw HostError(ExitCode::kUsage,
-                        fmt::format("--aa {}: not available yet; a level from 1 to 6 is", text));
+    if (least == 0) {
+        throw HostError(
+            ExitCode::kUsage,
+            fmt::format("--aa {}: level 0 is not available yet; levels from 1 to 6 are", text));
     }
-    return std::to_string(low);
+    options.settings.push_back({"--aa", "aaLevel", std::to_string(least)});
+    options.settings.push_back({"--aa", "aaLevelMost", std::to_string(most)});
 }
 
 std::string settingValue(const std::string& option, const std::string& text,
                          std::optional<std::int64_t> frame) {
-    if (option == "--aa") return antiAliasingLevel(text);
-    if ((option == "--photons" || option == "--gather-rays") && text == "auto") return "0";
-    if (option == "--bucket-size") refuseValueNotAvailableYet(option, text, {"auto"});
-    if (option == "--bucket-order") {
-        refuseValueNotAvailableYet(option, text,
-                                   {"column", "diagonal", "spiral", "random", "correlated"});
-    }
+    const bool canBeAuto =
+        option == "--photons" || option == "--gather-rays" || option == "--bucket-size";
+    if (canBeAuto && text == "auto") return "0";
     if (option == "--seed" && text == "frame") {
         if (!frame) throw HostError(ExitCode::kUsage, "--seed frame needs --frame N");
         return std::to_string(*frame);
@@ -205,6 +235,10 @@ void readSettings(const Typed& typed, std::optional<std::int64_t> frame, Options
     for (const SettingOption& setting : kSettingOptions) {
         const std::string& text = typed.settings.at(setting.option);
         if (text.empty()) continue;
+        if (std::string_view(setting.option) == "--aa") {
+            readAntiAliasing(text, options);
+            continue;
+        }
         options.settings.push_back(
             {setting.option, setting.setting, settingValue(setting.option, text, frame)});
         if (std::string_view(setting.setting) == "threads") {
@@ -222,6 +256,12 @@ void readFiles(const Typed& typed, std::optional<std::int64_t> frame, Options& o
     }
     options.statistics = withFrame("--stats", options.statistics, frame);
     options.log = withFrame("--log", options.log.string(), frame);
+    for (const std::string& part : typed.parts) {
+        options.merge.emplace_back(withFrame("PART", part, frame));
+    }
+}
+
+void addDefaultOutput(Options& options) {
     if (options.outputs.empty() && !options.onlyPixel && !options.scene.empty()) {
         options.outputs.push_back(options.scene.stem().string() + ".exr");
     }
@@ -264,13 +304,18 @@ std::string oneLine(std::string text) {
 
 Options parseCommandLine(const std::vector<std::string>& arguments) {
     refuseWhatIsNotAvailableYet(arguments);
+    const bool isMerge = !arguments.empty() && arguments.front() == "merge";
     Options options;
     Typed typed;
     CLI::App app("", "pm_host");
-    addAll(app, typed, options, nullptr);
+    if (isMerge)
+        addAllOfMerge(app, typed, options);
+    else
+        addAll(app, typed, options, nullptr);
     try {
         // CLI11 takes them from the end.
-        app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));
+        app.parse(
+            std::vector<std::string>(arguments.rbegin(), arguments.rend() - (isMerge ? 1 : 0)));
     } catch (const CLI::ParseError& error) {
         throw HostError(ExitCode::kUsage, oneLine(error.what()) + " (see pm_host -h)");
     }
@@ -279,10 +324,17 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
     if (!typed.frame.empty()) {
         frame = integerValue("--frame", typed.frame, 0, std::numeric_limits<std::int32_t>::max());
     }
-    readCamera(typed, options);
-    readSettings(typed, frame, options);
     readFiles(typed, frame, options);
     readChoices(typed, options);
+    if (isMerge) {
+        checkMerge(options);
+        return options;
+    }
+    readCamera(typed, options);
+    readSettings(typed, frame, options);
+    addDefaultOutput(options);
+    readPieces(typed.checkpoint, frame, options);
+    checkBuckets(typed.settings, options);
     if (options.scene.empty() && options.list.empty()) {
         throw HostError(ExitCode::kUsage,
                         "no SCENE given; usage: pm_host SCENE [options], see "
@@ -296,7 +348,10 @@ std::string helpText(const SettingHelp& settingHelp) {
     Typed typed;
     CLI::App app("pm: a photon-mapping bucket renderer", "pm_host");
     addAll(app, typed, options, settingHelp);
-    return app.help();
+    Typed mergeTyped;
+    CLI::App merge("pm_host merge: puts parts of one picture together", "pm_host merge");
+    addAllOfMerge(merge, mergeTyped, options);
+    return app.help() + "\n" + merge.help();
 }
 
 }  // namespace pm::host

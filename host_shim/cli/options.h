@@ -55,6 +55,11 @@ struct Options {
     std::filesystem::path plugin;
     bool makeOutputPath{};
     bool exrHalf{};
+    std::filesystem::path part;        // of the outputs the one that ends in .pmpart
+    std::filesystem::path checkpoint;  // empty: none
+    bool resume{};
+    bool keepCheckpoint{};
+    std::vector<std::filesystem::path> merge;  // parts to put together, instead of a scene
 };
 
 }  // namespace pm::host

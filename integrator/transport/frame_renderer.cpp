@@ -24,17 +24,12 @@ namespace {
 
 // A render at level l has 4^(l-1) samples a pixel in this many passes.
 constexpr std::uint32_t kPassesOfALevel = 4;
+// Far above that of any picture, and a float.
+constexpr double kLargestSquare = 1e36;
 
 std::uint64_t pixelKey(std::int32_t x, std::int32_t y) {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32 |
            static_cast<std::uint32_t>(x);
-}
-
-// Samples of a pixel in a pass. At level 1 a pixel has one sample, in the pass that its hash names.
-std::uint32_t samplesInPass(const RenderSettings& settings, std::uint64_t key, std::uint32_t pass) {
-    if (settings.aaLevel >= 2) return 1u << (2 * (settings.aaLevel - 2));
-    const std::uint32_t period = std::min(kPassesOfALevel, settings.passes);
-    return combineBits(settings.seed, key) % period == pass % period ? 1 : 0;
 }
 
 // Sums over a pixel's samples, in double and in sample order.
@@ -42,11 +37,21 @@ struct PixelSums {
     std::array<double, 3> emission{}, direct{}, caustic{}, indirect{}, biasProbe{}, albedo{},
         normal{};
     double coverage = 0, depth = 0;
+    std::array<double, 5> seen{};  // as ChannelLayout::seen
 };
 
 template <typename Triple>
 void add(std::array<double, 3>& sum, const Triple& value) {
     for (int c = 0; c < 3; ++c) sum[static_cast<std::size_t>(c)] += static_cast<double>(value[c]);
+}
+
+void addSeen(const Rgb& beauty, PixelSums& sums) {
+    ++sums.seen[0];
+    for (int c = 0; c < 3; ++c) {
+        const auto value = static_cast<double>(beauty[c]);
+        sums.seen[static_cast<std::size_t>(c) + 1] += value;
+        sums.seen[4] += value * value;
+    }
 }
 
 }  // namespace
@@ -62,15 +67,30 @@ ChannelLayout channelLayout(const RenderSettings& settings) {
     layout.normal = place(settings.wantNormal, 3);
     layout.depth = place(settings.wantDepth, 1);
     layout.biasProbe = place(settings.integrator == IntegratorKind::kPhoton, 3);
+    layout.seen = place(settings.isAdaptive(), 5);
     return layout;
 }
 
+SampleRun fixedSamples(const RenderSettings& settings, std::int32_t x, std::int32_t y,
+                       std::uint32_t pass) {
+    if (settings.aaLevel >= 2) {
+        const std::uint32_t count = 1u << (2 * (settings.aaLevel - 2));
+        return {pass / 2 * count, count, count};
+    }
+    // The turn moves on by one from four passes to the next: so it falls on even and odd passes
+    // alternately.
+    const std::uint32_t period = std::min(kPassesOfALevel, settings.passes);
+    const std::uint64_t turn = combineBits(settings.seed, pixelKey(x, y)) % period + pass / period;
+    const std::uint32_t count = turn % period == pass % period ? 1 : 0;
+    return {pass / (2 * period), count, count};
+}
+
 struct FrameRenderer::Impl {
-    Impl(std::shared_ptr<const Scene> scene_, const RenderSettings& settings_)
+    Impl(std::shared_ptr<const Scene> scene_, const RenderSettings& settings_, Plan plan_)
         : scene(std::move(scene_)),
           settings(settings_),
           layout(channelLayout(settings_)),
-          plan(makePlan(*scene, settings_)),
+          plan(std::move(plan_)),
           camera(*scene, settings_.width, settings_.height),
           lights(*scene),
           photons(*scene, camera, lights, plan, settings) {
@@ -79,7 +99,7 @@ struct FrameRenderer::Impl {
 
     SampleRadiance sample(std::int32_t x, std::int32_t y, std::uint32_t index,
                           NearestPhotons& scratch) const;
-    void renderPixel(std::int32_t x, std::int32_t y, std::uint32_t samples, float* pixel,
+    void renderPixel(std::int32_t x, std::int32_t y, SampleRun run, float* pixel,
                      NearestPhotons& scratch, RenderCounters& local) const;
     void writePixel(const PixelSums& sums, std::uint32_t samples, float* pixel) const;
 
@@ -112,13 +132,11 @@ SampleRadiance FrameRenderer::Impl::sample(std::int32_t x, std::int32_t y, std::
         .sample({static_cast<float>(onX), static_cast<float>(onY)}, ray, sampler, scratch);
 }
 
-void FrameRenderer::Impl::renderPixel(std::int32_t x, std::int32_t y, std::uint32_t samples,
-                                      float* pixel, NearestPhotons& scratch,
-                                      RenderCounters& local) const {
+void FrameRenderer::Impl::renderPixel(std::int32_t x, std::int32_t y, SampleRun run, float* pixel,
+                                      NearestPhotons& scratch, RenderCounters& local) const {
     PixelSums sums;
-    const std::uint32_t first = pass / 2 * samples;
-    for (std::uint32_t i = 0; i < samples; ++i) {
-        const SampleRadiance s = sample(x, y, first + i, scratch);
+    for (std::uint32_t i = 0; i < run.count; ++i) {
+        const SampleRadiance s = sample(x, y, run.first + i, scratch);
         local.rays += s.rays;
         if (!isFinite(s.emission) || !isFinite(s.direct) || !isFinite(s.caustic) ||
             !isFinite(s.indirect) || !isFinite(s.biasProbe)) {
@@ -130,14 +148,15 @@ void FrameRenderer::Impl::renderPixel(std::int32_t x, std::int32_t y, std::uint3
         add(sums.caustic, s.caustic);
         add(sums.indirect, s.indirect);
         add(sums.biasProbe, s.biasProbe);
+        if (i < run.seen) addSeen(s.emission + s.direct + s.caustic + s.indirect, sums);
         sums.coverage += static_cast<double>(s.coverage);
         if (s.coverage == 0.0f) continue;
         add(sums.albedo, s.albedo);
         add(sums.normal, s.normal);
         sums.depth += static_cast<double>(camera.depth(s.firstPosition));
     }
-    local.cameraSamples += samples;
-    writePixel(sums, samples, pixel);
+    local.cameraSamples += run.count;
+    writePixel(sums, run.count, pixel);
 }
 
 void FrameRenderer::Impl::writePixel(const PixelSums& sums, std::uint32_t samples,
@@ -153,6 +172,9 @@ void FrameRenderer::Impl::writePixel(const PixelSums& sums, std::uint32_t sample
     put(layout.caustic, sums.caustic);
     put(layout.emission, sums.emission);
     put(layout.biasProbe, sums.biasProbe);
+    for (std::size_t i = 0; i < sums.seen.size() && layout.seen >= 0; ++i)
+        pixel[static_cast<std::size_t>(layout.seen) + i] =
+            static_cast<float>(std::min(sums.seen[i], kLargestSquare));
     put(layout.albedo, sums.albedo);
     put(layout.normal, sums.normal);
     pixel[layout.alpha] = static_cast<float>(sums.coverage * scale);
@@ -162,8 +184,12 @@ void FrameRenderer::Impl::writePixel(const PixelSums& sums, std::uint32_t sample
                                    pixel[layout.caustic + c] + pixel[layout.emission + c];
 }
 
+FrameRenderer::FrameRenderer(std::shared_ptr<const Scene> scene, const RenderSettings& settings,
+                             Plan plan)
+    : m_impl(std::make_unique<Impl>(std::move(scene), settings, std::move(plan))) {}
+
 FrameRenderer::FrameRenderer(std::shared_ptr<const Scene> scene, const RenderSettings& settings)
-    : m_impl(std::make_unique<Impl>(std::move(scene), settings)) {}
+    : FrameRenderer(scene, settings, makePlan(*scene, settings)) {}
 
 FrameRenderer::~FrameRenderer() = default;
 
@@ -181,11 +207,10 @@ void FrameRenderer::beginPass(std::uint32_t pass, const std::atomic<bool>& cance
     m_impl->photons.begin(pass, cancelled, progress);
 }
 
-void FrameRenderer::renderRegion(const Rect& region, std::span<float> pixels,
-                                 std::span<float> weights,
+void FrameRenderer::renderRegion(const Rect& region, std::span<const SampleRun> runs,
+                                 std::span<float> pixels,
                                  const std::atomic<bool>& cancelled) const {
     std::fill(pixels.begin(), pixels.end(), 0.0f);
-    std::fill(weights.begin(), weights.end(), 0.0f);
     NearestPhotons scratch;
     RenderCounters local;
     std::size_t i = 0;
@@ -193,17 +218,27 @@ void FrameRenderer::renderRegion(const Rect& region, std::span<float> pixels,
     for (std::int32_t y = region.y0; y < region.y1; ++y) {
         if (cancelled.load(std::memory_order_relaxed)) break;
         for (std::int32_t x = region.x0; x < region.x1; ++x, ++i) {
-            const std::uint32_t samples =
-                samplesInPass(m_impl->settings, pixelKey(x, y), m_impl->pass);
-            if (samples == 0) continue;
-            m_impl->renderPixel(x, y, samples, pixels.data() + i * channels, scratch, local);
-            weights[i] = static_cast<float>(samples);
+            if (runs[i].count == 0) continue;
+            m_impl->renderPixel(x, y, runs[i], pixels.data() + i * channels, scratch, local);
         }
     }
     const std::lock_guard lock(m_impl->mutex);
     m_impl->counters.cameraSamples += local.cameraSamples;
     m_impl->counters.rays += local.rays;
     m_impl->counters.badSamples += local.badSamples;
+}
+
+void FrameRenderer::renderRegion(const Rect& region, std::span<float> pixels,
+                                 std::span<float> weights,
+                                 const std::atomic<bool>& cancelled) const {
+    std::vector<SampleRun> runs;
+    runs.reserve(weights.size());
+    for (std::int32_t y = region.y0; y < region.y1; ++y)
+        for (std::int32_t x = region.x0; x < region.x1; ++x)
+            runs.push_back(fixedSamples(m_impl->settings, x, y, m_impl->pass));
+    renderRegion(region, runs, pixels, cancelled);
+    std::ranges::transform(runs, weights.begin(),
+                           [](SampleRun run) { return static_cast<float>(run.count); });
 }
 
 RenderCounters FrameRenderer::counters() const {

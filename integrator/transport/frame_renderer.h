@@ -32,10 +32,25 @@ struct ChannelLayout {
     std::int32_t depth = -1;     // 1: along the view axis, scene units, premultiplied by coverage
     // 3: beauty with the radii of all estimates narrowed by sqrt(2), minus beauty; what shows bias
     std::int32_t biasProbe = -1;
+    // 5, the last: of the samples that adaptive renders decide by (SampleRun::seen) the number, the
+    // sums of the beauty's channels, and the sum over samples and channels of their squares.
+    std::int32_t seen = -1;
     std::int32_t count = 16;  // floats a pixel
 };
 
 ChannelLayout channelLayout(const RenderSettings& settings);
+
+// The samples that a pixel gets in one pass: a run of its low-discrepancy sequence. Even passes
+// have one sequence, odd passes another.
+struct SampleRun {
+    std::uint32_t first = 0, count = 0;
+    std::uint32_t seen = 0;  // the first so many are told of in ChannelLayout::seen
+};
+
+// What a render of a fixed level gives a pixel in a pass. At level 1, one sample in every four
+// passes, in turns an even and an odd one.
+SampleRun fixedSamples(const RenderSettings& settings, std::int32_t x, std::int32_t y,
+                       std::uint32_t pass);
 
 // What happened while rendering; summed over all passes, independent of thread timing.
 struct RenderCounters {
@@ -53,10 +68,13 @@ struct RenderCounters {
 };
 
 // One frame of one scene: traces each pass's photons, then renders any rectangle of that pass.
-// A picture is a function of scene and settings only.
+// A picture is a function of scene, settings and plan only.
 class FrameRenderer {
   public:
-    // Throws Error when the settings and the scene don't fit (no camera, ...).
+    // plan: makePlan()'s of this scene and these settings, or that with other numbers in it. Throws
+    // Error when the settings and the scene don't fit (no camera, ...).
+    FrameRenderer(std::shared_ptr<const Scene> scene, const RenderSettings& settings, Plan plan);
+    // By makePlan().
     FrameRenderer(std::shared_ptr<const Scene> scene, const RenderSettings& settings);
     ~FrameRenderer();
 
@@ -69,10 +87,13 @@ class FrameRenderer {
     void beginPass(std::uint32_t pass, const std::atomic<bool>& cancelled,
                    const std::function<void(double)>& progress);
 
-    // Renders the pixels of `region` for the pass that was begun. pixels: layout().count floats a
-    // pixel, row by row: the mean over the pixel's samples of this pass; weights: one a pixel, its
-    // number of samples in this pass (may be 0). Threads: any, at once. Returns early, with the
-    // rest 0, soon after `cancelled` is set.
+    // Renders the pixels of `region` for the pass that was begun. runs: the samples of each pixel,
+    // row by row, may be none; those of a pixel's later passes have to follow on. pixels:
+    // layout().count floats a pixel: the mean over its samples of this pass, 0 where it has none.
+    // Threads: any, at once. Returns early, with the rest 0, soon after `cancelled` is set.
+    void renderRegion(const Rect& region, std::span<const SampleRun> runs, std::span<float> pixels,
+                      const std::atomic<bool>& cancelled) const;
+    // The same with fixedSamples(); weights: the number of each pixel's samples.
     void renderRegion(const Rect& region, std::span<float> pixels, std::span<float> weights,
                       const std::atomic<bool>& cancelled) const;
 

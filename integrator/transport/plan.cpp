@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "integrator/photons/caustic_map.h"
+#include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/gather_points.h"
 
@@ -106,6 +107,11 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     plan.reasons.push_back(
         "direct light: next-event estimation, weighted against rays along the diffuse lobe where "
         "lamps fill much of the view");
+    if (scene.lights().size() > LightSampler::kFewLights)
+        plan.reasons.push_back(fmt::format(
+            "lamps: {}, so each place has its own choice of them, by a tree and by which of them "
+            "a few thousand places see",
+            scene.lights().size()));
     plan.globalMap = !traits.flat || everything;
     plan.causticMap = (traits.specular && !traits.flat) || everything;
     plan.tracePhotons = plan.globalMap || plan.causticMap;

@@ -24,11 +24,16 @@ struct RenderSettings {
     std::uint32_t estimatePhotons = 50;  // k of the k-nearest estimates, >= 2
     std::uint32_t gatherRays = 0;        // of each gather point; 0 = chosen by the plan
     std::uint32_t passes = 4;            // >= 1
-    std::uint32_t aaLevel = 3;           // 1..6: 4^(level-1) samples a pixel in four passes
+    std::uint32_t aaLevel = 3;      // 1..6: 4^(level-1) samples a pixel in four passes, at least
+    std::uint32_t aaLevelMost = 0;  // as well, at most, where they differ; 0 = aaLevel, everywhere
+    double aaThreshold = 0.01;      // SampleRule::threshold, > 0
     std::uint64_t seed = 1;
     bool wantAlbedo = false;
     bool wantNormal = false;
     bool wantDepth = false;
+
+    // Whether pixels get unlike numbers of samples, by what they show.
+    bool isAdaptive() const { return aaLevelMost > aaLevel; }
 };
 
 }  // namespace pm

@@ -89,12 +89,14 @@ typedef int32_t PmrStatus;
 #define PMR_ERROR_SCENE (-5)        /* the scene can't be rendered as it is */
 #define PMR_ERROR_UNSUPPORTED (-6)  /* a kind that this version does not render yet */
 #define PMR_ERROR_MEMORY (-7)       /* out of memory, or over the memory limit */
-#define PMR_ERROR_IO (-8)           /* a file can't be read */
+#define PMR_ERROR_IO (-8)           /* a file can't be read or written */
 #define PMR_ERROR_CANCELLED (-9)    /* the render was cancelled: a result, not a fault */
 #define PMR_ERROR_IN_CALLBACK (-10) /* not allowed inside a callback */
 #define PMR_ERROR_TIMEOUT (-11)     /* waitRender or pollRender: nothing yet */
 #define PMR_ERROR_ABI (-12)         /* this ABI version is not offered */
 #define PMR_ERROR_NAME (-13)        /* no setting or layer of that name */
+#define PMR_ERROR_FILE (-14)        /* a checkpoint or part is damaged, or is none */
+#define PMR_ERROR_MISMATCH (-15)    /* a checkpoint or part is of another picture */
 
 /* ---- Handles: opaque; never dereferenced by the host -------------------------------------- */
 
@@ -104,6 +106,7 @@ typedef struct PmrTextureHandle* PmrTexture;
 typedef struct PmrMaterialHandle* PmrMaterial;
 typedef struct PmrSceneHandle* PmrScene;
 typedef struct PmrRenderHandle* PmrRender;
+typedef struct PmrMergeHandle* PmrMerge; /* parts of one picture, put together */
 
 /* ---- Messages ----------------------------------------------------------------------------- */
 
@@ -122,7 +125,8 @@ typedef struct PmrRenderHandle* PmrRender;
 #define PMR_MESSAGE_DEGENERATE_GEOMETRY 105 /* zero-area triangles or unusable normals dropped */
 #define PMR_MESSAGE_TEXTURE 106             /* a texture look-up failed */
 #define PMR_MESSAGE_NOT_COVERED 107         /* a class of light paths that no estimator covers */
-#define PMR_MESSAGE_PHASE 200               /* info: a phase began or ended */
+#define PMR_MESSAGE_CHECKPOINT 108 /* a checkpoint was torn, or can't be written any more */
+#define PMR_MESSAGE_PHASE 200      /* info: a phase began or ended */
 
 /* render is null for messages of the context (creation of objects, commit). */
 typedef void(PMR_CALL* PmrMessageFunction)(void* user, PmrRender render, int32_t level,
@@ -354,7 +358,7 @@ typedef struct PmrRectangle {
 typedef struct PmrBucketInfo {
     uint64_t size;
     PmrRectangle rectangle;
-    uint32_t bucketIndex; /* in the order of rendering */
+    uint32_t bucketIndex; /* its place in the bucket order (of correlated: in that of hilbert) */
     uint32_t bucketCount; /* of one pass */
     uint32_t passIndex;   /* the pass that just came, from 0 */
     uint32_t passCount;   /* at most: an error target or a time limit may end a render earlier */
@@ -489,6 +493,32 @@ typedef struct PmrApi {
     /* PMR_STOP_*; at any time, also inside `finished`. The table's size tells whether it is
      * there: it came after the first version. */
     PmrStatus(PMR_CALL* renderStopReason)(PmrRender render, int32_t* reason);
+
+    /* Pieces of a picture: docs/farm.md. A render makes a part, keeps a checkpoint and goes on from
+     * one by its settings buckets, part, checkpoint, resume and hostIdentity. What follows puts
+     * parts together without the scene; one call on a merge at a time. These functions came after
+     * renderStopReason. */
+    PmrStatus(PMR_CALL* createMerge)(PmrContext context, PmrMerge* merge);
+    /* Reads and checks a part; the first one says which picture it is. PMR_ERROR_IO: it can't be
+     * read. PMR_ERROR_FILE: it is damaged. PMR_ERROR_MISMATCH: it is of another picture; lastError
+     * says what differs. A part that is refused adds nothing, and others may still be added. */
+    PmrStatus(PMR_CALL* addPart)(PmrMerge merge, const char* file);
+    /* The buckets that no part has, as the setting buckets takes them: "A:B", one range a line;
+     * empty when the picture is whole. As all that follows PMR_ERROR_STATE before the first part.
+     */
+    PmrStatus(PMR_CALL* mergeMissing)(PmrMerge merge, char* buffer, uint64_t capacity,
+                                      uint64_t* needed);
+    /* As for a render. Statistics are those that are known of a picture: no times, no counters. */
+    PmrStatus(PMR_CALL* mergeSettingText)(PmrMerge merge, const char* name, char* buffer,
+                                          uint64_t capacity, uint64_t* needed);
+    PmrStatus(PMR_CALL* mergeLayerCount)(PmrMerge merge, uint32_t* count);
+    PmrStatus(PMR_CALL* mergeLayerInfo)(PmrMerge merge, uint32_t index, PmrLayerInfo* info);
+    PmrStatus(PMR_CALL* readMergedPixels)(PmrMerge merge, const PmrRectangle* rectangle,
+                                          const char* layer, float* destination,
+                                          int64_t pixelStrideBytes, int64_t rowStrideBytes);
+    PmrStatus(PMR_CALL* mergeStatistics)(PmrMerge merge, char* buffer, uint64_t capacity,
+                                         uint64_t* needed);
+    PmrStatus(PMR_CALL* releaseMerge)(PmrMerge merge);
 } PmrApi;
 
 /* The one symbol. Returns PMR_ERROR_ABI when that version is not offered. Any thread. */

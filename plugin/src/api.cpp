@@ -56,6 +56,15 @@ constexpr PmrApi kApi = {
     .readPixels = api::readPixels,
     .renderStatistics = api::renderStatistics,
     .renderStopReason = api::renderStopReason,
+    .createMerge = api::createMerge,
+    .addPart = api::addPart,
+    .mergeMissing = api::mergeMissing,
+    .mergeSettingText = api::mergeSettingText,
+    .mergeLayerCount = api::mergeLayerCount,
+    .mergeLayerInfo = api::mergeLayerInfo,
+    .readMergedPixels = api::readMergedPixels,
+    .mergeStatistics = api::mergeStatistics,
+    .releaseMerge = api::releaseMerge,
 };
 
 }  // namespace

@@ -66,5 +66,19 @@ PmrStatus PMR_CALL readPixels(PmrRender render, const PmrRectangle* rectangle, c
 PmrStatus PMR_CALL renderStatistics(PmrRender render, char* buffer, uint64_t capacity,
                                     uint64_t* needed) noexcept;
 PmrStatus PMR_CALL renderStopReason(PmrRender render, int32_t* reason) noexcept;
+PmrStatus PMR_CALL createMerge(PmrContext context, PmrMerge* merge) noexcept;
+PmrStatus PMR_CALL addPart(PmrMerge merge, const char* file) noexcept;
+PmrStatus PMR_CALL mergeMissing(PmrMerge merge, char* buffer, uint64_t capacity,
+                                uint64_t* needed) noexcept;
+PmrStatus PMR_CALL mergeSettingText(PmrMerge merge, const char* name, char* buffer,
+                                    uint64_t capacity, uint64_t* needed) noexcept;
+PmrStatus PMR_CALL mergeLayerCount(PmrMerge merge, uint32_t* count) noexcept;
+PmrStatus PMR_CALL mergeLayerInfo(PmrMerge merge, uint32_t index, PmrLayerInfo* info) noexcept;
+PmrStatus PMR_CALL readMergedPixels(PmrMerge merge, const PmrRectangle* rectangle,
+                                    const char* layer, float* destination, int64_t pixelStrideBytes,
+                                    int64_t rowStrideBytes) noexcept;
+PmrStatus PMR_CALL mergeStatistics(PmrMerge merge, char* buffer, uint64_t capacity,
+                                   uint64_t* needed) noexcept;
+PmrStatus PMR_CALL releaseMerge(PmrMerge merge) noexcept;
 
 }  // namespace pm::plugin::api

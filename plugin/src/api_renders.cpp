@@ -58,7 +58,7 @@ const char* PMR_CALL statusText(PmrStatus status) noexcept {
         case PMR_ERROR_MEMORY:
             return "out of memory, or over the memory limit";
         case PMR_ERROR_IO:
-            return "a file can't be read";
+            return "a file can't be read or written";
         case PMR_ERROR_CANCELLED:
             return "cancelled";
         case PMR_ERROR_IN_CALLBACK:
@@ -69,6 +69,10 @@ const char* PMR_CALL statusText(PmrStatus status) noexcept {
             return "this ABI version is not offered";
         case PMR_ERROR_NAME:
             return "no setting or layer of that name";
+        case PMR_ERROR_FILE:
+            return "a checkpoint or part is damaged, or is none";
+        case PMR_ERROR_MISMATCH:
+            return "a checkpoint or part is of another picture";
         default:
             return "unknown status";
     }

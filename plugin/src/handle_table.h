@@ -9,7 +9,15 @@
 
 namespace pm::plugin {
 
-enum class ObjectKind : std::int32_t { kContext, kMesh, kTexture, kMaterial, kScene, kRender };
+enum class ObjectKind : std::int32_t {
+    kContext,
+    kMesh,
+    kTexture,
+    kMaterial,
+    kScene,
+    kRender,
+    kMerge
+};
 
 // Which object a handle stands for. A handle is a number that is given out once and never again,
 // dressed as a pointer that nobody follows: one that was released, made up, or of another kind is

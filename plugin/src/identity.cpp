@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <xxhash.h>
 
+#include <algorithm>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -18,6 +19,8 @@
 namespace pm::plugin {
 
 namespace {
+
+constexpr std::uint32_t kPassesOfLevel1 = 4;
 
 // Feeds values to one checksum. Only types without padding are taken as bytes, and every array goes
 // in with its length, so that no two different inputs feed the same bytes.
@@ -98,49 +101,139 @@ void addInstance(Hasher& hasher, const InstanceDescription& instance) {
     hasher.addArray<std::uint32_t>(instance.materials);
 }
 
-}  // namespace
-
-std::string sceneHash(const Scene& scene, const SceneTextures& textures) {
-    const SceneDescription& d = scene.description();
+template <typename Feed>
+std::string checksumOf(Feed feed) {
     Hasher hasher;
-    hasher.add(std::string_view(scene.isa()));
-    hasher.add(std::string_view(d.renderingSpace));
-    hasher.addArray<double>(d.rgbToXyz);
-    hasher.add(d.instances.size());
-    for (const InstanceDescription& instance : d.instances) addInstance(hasher, instance);
-    hasher.add(d.materials.size());
-    for (const MaterialDescription& material : d.materials) addMaterial(hasher, material);
-    hasher.add(d.pointLights.size());
-    for (const PointLightDescription& light : d.pointLights) {
-        hasher.add(light.position);
-        hasher.add(light.intensity);
-    }
-    hasher.add(d.camera.has_value());
-    if (d.camera) {
-        hasher.addArray<double>(d.camera->cameraToWorld);
-        hasher.add(d.camera->verticalFieldOfView);
-        hasher.add(d.camera->pixelAspect);
-    }
-    for (const TexturePicture* picture : textures.pictures()) {
-        hasher.addArray<std::uint64_t>(texelHash(picture->fileName));
-        hasher.add(static_cast<int>(picture->wrapS));
-        hasher.add(static_cast<int>(picture->wrapT));
-        for (const float v : {picture->uvScale.x, picture->uvScale.y, picture->uvOffset.x,
-                              picture->uvOffset.y, picture->gain, picture->base})
-            hasher.add(v);
-    }
+    feed(hasher);
     return hasher.text();
 }
 
-std::string settingsHash(const SettingValues& settings) {
-    Hasher hasher;
-    hasher.add(std::string_view(versionText()));
+void addTexture(Hasher& hasher, const TexturePicture& picture) {
+    hasher.addArray<std::uint64_t>(texelHash(picture.fileName));
+    hasher.add(static_cast<int>(picture.wrapS));
+    hasher.add(static_cast<int>(picture.wrapT));
+    for (const float v : {picture.uvScale.x, picture.uvScale.y, picture.uvOffset.x,
+                          picture.uvOffset.y, picture.gain, picture.base})
+        hasher.add(v);
+}
+
+const std::string* findPart(const Identity& identity, const std::string& name) {
+    for (const IdentityPart& part : identity)
+        if (part.name == name) return &part.value;
+    return nullptr;
+}
+
+// Checksums would tell nobody anything.
+bool isChecksum(const std::string& value) {
+    return value.size() == 32 && value.find_first_not_of("0123456789abcdef") == std::string::npos;
+}
+
+std::string difference(const std::string& name, const std::string* there, const std::string* here) {
+    if ((there != nullptr && isChecksum(*there)) || (here != nullptr && isChecksum(*here)))
+        return name;
+    const auto shown = [](const std::string* value) {
+        return value == nullptr ? std::string("none") : value->empty() ? "''" : *value;
+    };
+    return fmt::format("{} ({} there, {} here)", name, shown(there), shown(here));
+}
+
+}  // namespace
+
+Identity sceneIdentity(const Scene& scene, const SceneTextures& textures) {
+    const SceneDescription& d = scene.description();
+    Identity identity = {{"instruction set", scene.isa()}, {"rendering space", d.renderingSpace}};
+    const auto part = [&](const char* name, auto feed) {
+        identity.push_back({name, checksumOf(feed)});
+    };
+    part("colour matrix", [&](Hasher& hasher) { hasher.addArray<double>(d.rgbToXyz); });
+    part("geometry", [&](Hasher& hasher) {
+        hasher.add(d.instances.size());
+        for (const InstanceDescription& instance : d.instances) addInstance(hasher, instance);
+    });
+    part("materials", [&](Hasher& hasher) {
+        hasher.add(d.materials.size());
+        for (const MaterialDescription& material : d.materials) addMaterial(hasher, material);
+    });
+    part("lights", [&](Hasher& hasher) {
+        hasher.add(d.pointLights.size());
+        for (const PointLightDescription& light : d.pointLights) {
+            hasher.add(light.position);
+            hasher.add(light.intensity);
+        }
+    });
+    part("camera", [&](Hasher& hasher) {
+        hasher.add(d.camera.has_value());
+        if (!d.camera) return;
+        hasher.addArray<double>(d.camera->cameraToWorld);
+        hasher.add(d.camera->verticalFieldOfView);
+        hasher.add(d.camera->pixelAspect);
+    });
+    part("textures", [&](Hasher& hasher) {
+        for (const TexturePicture* picture : textures.pictures()) addTexture(hasher, *picture);
+    });
+    return identity;
+}
+
+Identity settingsIdentity(const SettingValues& settings) {
+    Identity identity = {{"version", versionText()}};
     for (const SettingSpec& spec : settingSpecs()) {
         if (!spec.changesPixels || spec.id == Setting::kPasses) continue;
-        hasher.add(std::string_view(spec.name));
-        hasher.add(std::string_view(settings.text(spec.id)));
+        identity.push_back({fmt::format("setting {}", spec.name), settings.text(spec.id)});
     }
-    return hasher.text();
+    // Of level 1's one sample a pixel, the number of passes says in which of them it comes.
+    const RenderSettings render = settings.toRenderSettings();
+    if (render.aaLevel == 1 && render.passes < kPassesOfLevel1)
+        identity.push_back({"passes at level 1", fmt::format("{}", render.passes)});
+    return identity;
+}
+
+Identity buildIdentity() {
+    return {{"build", buildId()}};
+}
+
+Identity frameIdentity(const SettingValues& settings) {
+    const Rect window = settings.window();
+    Identity identity = {
+        {"window", fmt::format("{},{},{},{}", window.x0, window.y0, window.x1, window.y1)}};
+    std::string layers;
+    for (const char* layer : {"albedo", "N", "Z"})
+        if (settings.wantsLayer(layer)) layers += fmt::format("{} ", layer);
+    identity.push_back({"layers", layers});
+    std::string_view lines = settings.word(Setting::kHostIdentity);
+    while (!lines.empty()) {
+        const std::string_view line = lines.substr(0, lines.find('\n'));
+        lines.remove_prefix(std::min(lines.size(), line.size() + 1));
+        const std::size_t colon = std::min(line.find(": "), line.size());
+        if (line.empty()) continue;
+        identity.push_back({std::string(line.substr(0, colon)),
+                            std::string(line.substr(std::min(colon + 2, line.size())))});
+    }
+    return identity;
+}
+
+std::string identityHash(const Identity& identity) {
+    return checksumOf([&](Hasher& hasher) {
+        for (const IdentityPart& part : identity) {
+            hasher.add(std::string_view(part.name));
+            hasher.add(std::string_view(part.value));
+        }
+    });
+}
+
+std::string differences(const Identity& there, const Identity& here) {
+    std::string text;
+    const auto add = [&text](const std::string& what) {
+        if (!text.empty()) text += "; ";
+        text += what;
+    };
+    for (const IdentityPart& part : here) {
+        const std::string* other = findPart(there, part.name);
+        if (other == nullptr || *other != part.value)
+            add(difference(part.name, other, &part.value));
+    }
+    for (const IdentityPart& part : there)
+        if (findPart(here, part.name) == nullptr) add(difference(part.name, &part.value, nullptr));
+    return text;
 }
 
 }  // namespace pm::plugin

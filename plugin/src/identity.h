@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "integrator/scene/scene.h"
 #include "plugin/src/scene_textures.h"
@@ -14,12 +15,33 @@ namespace pm::plugin {
 // What makes two renders the same render: 128-bit checksums (XXH3) as 32 hexadecimal digits. They
 // hold for one build on one byte order.
 
-// Geometry, materials, texels, lights, camera, colour space and instruction set. Errors:
+// One of the things that a render's pixels depend on: a name for people, and what it is, as a short
+// text or as a checksum.
+struct IdentityPart {
+    std::string name, value;
+    friend bool operator==(const IdentityPart&, const IdentityPart&) = default;
+};
+using Identity = std::vector<IdentityPart>;
+
+// Instruction set, colour space, geometry, materials, texels, lights and camera. Errors:
 // CallError(IO) when a texture can't be read again.
-std::string sceneHash(const Scene& scene, const SceneTextures& textures);
+Identity sceneIdentity(const Scene& scene, const SceneTextures& textures);
 
 // Version and build, and every setting that changes pixels, but for the number of passes: a
 // finished render may go on with more of them.
-std::string settingsHash(const SettingValues& settings);
+Identity settingsIdentity(const SettingValues& settings);
+
+// The very library: of one version there are as many as there are compilers.
+Identity buildIdentity();
+
+// The settings that pieces of a picture must share though no pixel depends on them: window and
+// channels; and what the host says of itself (setting hostIdentity), a part a line, `name: value`.
+Identity frameIdentity(const SettingValues& settings);
+
+// Of sceneIdentity and settingsIdentity.
+std::string identityHash(const Identity& identity);
+
+// What differs, in words, as "geometry; setting seed (1 there, 2 here)"; empty where nothing does.
+std::string differences(const Identity& there, const Identity& here);
 
 }  // namespace pm::plugin

@@ -30,6 +30,9 @@ constexpr std::array<LayerSpec, kLayerCount> kLayers = {{
      "Standard error of the beauty's mean, from the spread between passes; 0 with one pass."},
     {Layer::kSamples, "samples", "samples.X", 1, PMR_LAYER_DATA, false,
      "Camera samples of the pixel."},
+    {Layer::kAaLevel, "aalevel", "aalevel.X", 1, PMR_LAYER_DATA, false,
+     "Level of anti-aliasing that the pixel's samples amount to: 1 + log4(samples in four "
+     "passes)."},
 }};
 
 constexpr bool inOrder() {

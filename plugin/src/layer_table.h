@@ -23,6 +23,7 @@ enum class Layer : std::size_t {
     kDepth,
     kStandardError,
     kSamples,
+    kAaLevel,
     kCount
 };
 inline constexpr std::size_t kLayerCount = static_cast<std::size_t>(Layer::kCount);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-// Render::readPixels and the layers: what the host sees of the frame store.
+#include "plugin/src/pixel_reader.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <vector>
@@ -86,6 +88,7 @@ void layerValue(Layer layer, const ChannelLayout& layout, const float* pixel, fl
             break;
         case Layer::kStandardError:
         case Layer::kSamples:
+        case Layer::kAaLevel:
         case Layer::kCount:
             break;
     }
@@ -101,11 +104,27 @@ void readMeans(const FrameStore& frame, const ChannelLayout& layout, const Rect&
         const Rect line{rect.x0, y, rect.x1, y + 1};
         // The counts first: a pixel that was counted has a value by the time that is read.
         frame.readSampleCount(line, samples.data(), sizeof(float), 0);
-        frame.read(line, 0, layout.count, row.data(), pixelBytes, 0);
+        frame.read(line, 0, frame.channels(), row.data(), pixelBytes, 0);
         for (std::size_t x = 0; x < width; ++x) {
             float value[4] = {};
             if (samples[x] > 0.0f) layerValue(layer.id, layout, row.data() + x * channels, value);
             destination.put(static_cast<std::int64_t>(x), y - rect.y0, value, layer.channelCount);
+        }
+    }
+}
+
+void readLevels(const FrameStore& frame, std::uint32_t passes, const Rect& rect,
+                const LayerSpec& layer, const Destination& destination) {
+    const auto width = static_cast<std::size_t>(rect.width());
+    std::vector<float> samples(width);
+    for (std::int32_t y = rect.y0; y < rect.y1; ++y) {
+        frame.readSampleCount({rect.x0, y, rect.x1, y + 1}, samples.data(), sizeof(float), 0);
+        for (std::size_t x = 0; x < width; ++x) {
+            const double inFourPasses =
+                4.0 * static_cast<double>(samples[x]) / std::max(1u, passes);
+            const float level =
+                inFourPasses > 0 ? static_cast<float>(1 + 0.5 * std::log2(inFourPasses)) : 0.0f;
+            destination.put(static_cast<std::int64_t>(x), y - rect.y0, &level, layer.channelCount);
         }
     }
 }
@@ -119,36 +138,50 @@ void clear(const Rect& rect, const LayerSpec& layer, const Destination& destinat
 
 }  // namespace
 
-std::vector<Layer> Render::layers() const {
-    const SettingValues values = settings();
+std::vector<Layer> layersOf(const SettingValues& settings) {
     std::vector<Layer> layers;
     for (const LayerSpec& spec : layerSpecs())
-        if (spec.isDefault || values.wantsLayer(spec.name)) layers.push_back(spec.id);
+        if (spec.isDefault || settings.wantsLayer(spec.name)) layers.push_back(spec.id);
     return layers;
+}
+
+void readLayerPixels(const PixelRequest& request, const SettingValues& settings,
+                     const FrameStore* frame, const ChannelLayout& layout, std::uint32_t passes) {
+    if (request.layer == nullptr) throw argumentError("layer is null");
+    const LayerSpec* spec = findLayer(request.layer);
+    const std::vector<Layer> available = layersOf(settings);
+    if (spec == nullptr ||
+        std::find(available.begin(), available.end(), spec->id) == available.end())
+        throw CallError(PMR_ERROR_NAME,
+                        fmt::format("this render has no layer '{}'", request.layer));
+    const Rect rect = checkedRectangle(request.rectangle);
+    if (request.destination == nullptr) throw argumentError("destination is null");
+    if (rect.empty()) return;
+    const Destination target = checkedDestination(rect, *spec, request.destination,
+                                                  request.pixelStrideBytes, request.rowStrideBytes);
+    if (frame == nullptr)
+        clear(rect, *spec, target);
+    else if (spec->id == Layer::kStandardError)
+        frame->readStandardError(rect, request.destination, target.pixelStride, target.rowStride);
+    else if (spec->id == Layer::kSamples)
+        frame->readSampleCount(rect, request.destination, target.pixelStride, target.rowStride);
+    else if (spec->id == Layer::kAaLevel)
+        readLevels(*frame, passes, rect, *spec, target);
+    else
+        readMeans(*frame, layout, rect, *spec, target);
+}
+
+std::vector<Layer> Render::layers() const {
+    return layersOf(settings());
 }
 
 void Render::readPixels(const PmrRectangle& rectangle, const char* layer, float* destination,
                         std::int64_t pixelStrideBytes, std::int64_t rowStrideBytes) const {
-    if (layer == nullptr) throw argumentError("layer is null");
-    const LayerSpec* spec = findLayer(layer);
-    const std::vector<Layer> available = layers();
-    if (spec == nullptr ||
-        std::find(available.begin(), available.end(), spec->id) == available.end())
-        throw CallError(PMR_ERROR_NAME, fmt::format("this render has no layer '{}'", layer));
-    const Rect rect = checkedRectangle(rectangle);
-    if (destination == nullptr) throw argumentError("destination is null");
-    if (rect.empty()) return;
-    const Destination target =
-        checkedDestination(rect, *spec, destination, pixelStrideBytes, rowStrideBytes);
     const std::shared_ptr<RenderWork> running = work();
-    if (!running)
-        clear(rect, *spec, target);
-    else if (spec->id == Layer::kStandardError)
-        running->frame().readStandardError(rect, destination, target.pixelStride, target.rowStride);
-    else if (spec->id == Layer::kSamples)
-        running->frame().readSampleCount(rect, destination, target.pixelStride, target.rowStride);
-    else
-        readMeans(running->frame(), running->layout(), rect, *spec, target);
+    readLayerPixels({rectangle, layer, destination, pixelStrideBytes, rowStrideBytes}, settings(),
+                    running ? &running->frame() : nullptr,
+                    running ? running->layout() : ChannelLayout{},
+                    running ? running->progress().passesDone : 0);
 }
 
 }  // namespace pm::plugin

@@ -19,6 +19,11 @@ constexpr double kMostOnTheWay = 0.99;  // of a target that may lie further than
 ProgressClock::ProgressClock(const Ends& ends, bool hasPhotons, std::function<double()> seconds)
     : m_seconds(std::move(seconds)), m_ends(ends), m_photonShare(hasPhotons ? kFirstGuess : 0.0) {}
 
+void ProgressClock::startAt(std::uint32_t passes) {
+    const std::lock_guard lock(m_mutex);
+    m_first = passes;
+}
+
 ProgressClock::Reading ProgressClock::photons(std::uint32_t pass, double fraction) {
     const std::lock_guard lock(m_mutex);
     return advance(pass + m_photonShare * std::clamp(fraction, 0.0, 1.0));
@@ -41,12 +46,13 @@ void ProgressClock::endPass(double photonSeconds, double bucketSeconds,
 
 ProgressClock::Reading ProgressClock::advance(double passes) {
     const double elapsed = m_seconds();
-    const bool knowsSpeed = elapsed >= kQuietSeconds && passes >= kLeastPasses;
+    const double made = passes - m_first;
+    const bool knowsSpeed = elapsed >= kQuietSeconds && made >= kLeastPasses;
     double fraction = 0, remaining = std::numeric_limits<double>::infinity();
     const auto endsAfter = [&](double wanted, double most) {
         fraction = std::max(fraction, std::min(passes / wanted, most));
         if (knowsSpeed)
-            remaining = std::min(remaining, elapsed * std::max(0.0, wanted / passes - 1));
+            remaining = std::min(remaining, elapsed * std::max(0.0, (wanted - passes) / made));
     };
     if (m_ends.passes) endsAfter(*m_ends.passes, 1);
     if (m_ends.errorPasses) endsAfter(*m_ends.errorPasses, kMostOnTheWay);

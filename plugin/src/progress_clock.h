@@ -31,6 +31,8 @@ class ProgressClock {
     // `hasPhotons`: a pass begins with photons. `seconds`: the time, for tests.
     ProgressClock(const Ends& ends, bool hasPhotons, std::function<double()> seconds = Now());
 
+    // So many passes were made before, in time that doesn't count.
+    void startAt(std::uint32_t passes);
     Reading photons(std::uint32_t pass, double fraction);
     Reading buckets(std::uint32_t pass, double fraction);
     // The seconds that the phases of a finished pass took, and how many passes are foreseen now.
@@ -48,6 +50,7 @@ class ProgressClock {
     Ends m_ends;
     double m_photonShare;
     double m_photonSeconds = 0, m_bucketSeconds = 0;
+    double m_first = 0;  // passes made before
     double m_fraction = 0;
 };
 

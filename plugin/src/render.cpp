@@ -73,7 +73,7 @@ void Render::start(PmrRender handle) {
     if (m_state != PMR_RENDER_CREATED || m_shuttingDown)
         throw CallError(PMR_ERROR_STATE, "the render was started before");
     m_startTime = std::chrono::steady_clock::now();
-    auto made = std::make_shared<RenderWork>(m_built, m_settings);
+    auto made = std::make_shared<RenderWork>(m_built, m_scene->identity(), m_settings);
     m_events.open(handle, made->bucketCount());
     // The threads wait for m_mutex, so they see the state that is set last.
     if (m_callbackMode == PMR_CALLBACKS_THREAD && !m_delivery.joinable())

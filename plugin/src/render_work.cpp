@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <ctime>
+#include <optional>
 #include <utility>
 
 #include "integrator/values/error.h"
@@ -13,16 +15,22 @@
 #include "plugin/src/call_error.h"
 #include "plugin/src/memory_limit.h"
 #include "scheduler/bucket_order.h"
+#include "scheduler/correlated_choice.h"
 
 namespace pm::plugin {
 
 namespace {
 
-std::vector<std::uint32_t> cellsInOrder(const BucketGrid& grid, const std::string& name) {
+const BucketOrder& orderNamed(const std::string& name) {
     const BucketOrder* order = findBucketOrder(name);
     if (order == nullptr)
         throw CallError(PMR_ERROR_INTERNAL, fmt::format("bucket order '{}' is not there", name));
-    return order->cells(grid.columns(), grid.rows());
+    return *order;
+}
+
+std::int32_t bucketSizeOf(const SettingValues& values, const Rect& window) {
+    const auto size = static_cast<std::int32_t>(values.integer(Setting::kBucketSize));
+    return size == 0 ? autoBucketSize(window) : size;
 }
 
 void throwIfCancelled(const Cancel& cancel) {
@@ -44,31 +52,47 @@ ProgressClock::Ends endsOf(const StopRule& rule) {
 
 }  // namespace
 
-RenderWork::RenderWork(std::shared_ptr<const Scene> scene, const SettingValues& values)
+std::unique_ptr<FrameStore> makeFrame(const RenderSettings& settings, const ChannelLayout& layout) {
+    std::optional<SampleRule> rule;
+    if (settings.isAdaptive())
+        rule = sampleRule(settings.aaLevel, settings.aaLevelMost, settings.aaThreshold);
+    return std::make_unique<FrameStore>(settings.window, layout.count, layout.beauty,
+                                        layout.biasProbe, layout.emission, rule);
+}
+
+RenderWork::RenderWork(std::shared_ptr<const Scene> scene, const Identity& sceneIdentity,
+                       const SettingValues& values)
     : m_processorStart(processorSeconds()),
       m_scene(std::move(scene)),
       m_settings(values.toRenderSettings()),
       m_stopRule(values),
       m_plan(makePlan(*m_scene, m_settings)),
       m_arena(static_cast<int>(values.integer(Setting::kThreads))),
-      m_grid(m_settings.window, static_cast<std::int32_t>(values.integer(Setting::kBucketSize))),
+      m_grid(wholeAtoms(m_settings.window), bucketSizeOf(values, m_settings.window)),
       m_layout(channelLayout(m_settings)),
       m_clock(endsOf(m_stopRule), m_plan.tracePhotons) {
     checkMemory(values);
-    m_order = cellsInOrder(m_grid, values.word(Setting::kBucketOrder));
-    m_orderIndex.resize(m_order.size());
+    const BucketOrder& order = orderNamed(values.word(Setting::kBucketOrder));
+    m_order = order.cells(m_grid.columns(), m_grid.rows(), m_settings.seed);
+    m_isCorrelated = order.isCorrelated;
+    m_pieces =
+        std::make_unique<RenderPieces>(values, sceneIdentity, m_grid, m_isCorrelated, m_order);
+    m_orderIndex.resize(m_grid.cellCount());
     for (std::uint32_t i = 0; i < m_order.size(); ++i) m_orderIndex[m_order[i]] = i;
-    m_renderer =
-        m_arena.execute([this] { return std::make_unique<FrameRenderer>(m_scene, m_settings); });
-    m_frame = std::make_unique<FrameStore>(m_settings.window, m_layout.count, m_layout.beauty,
-                                           m_layout.biasProbe, m_layout.emission);
-    m_scratch.resize(static_cast<std::size_t>(m_arena.threads()));
+    m_renderer = m_arena.execute(
+        [this] { return std::make_unique<FrameRenderer>(m_scene, m_settings, m_plan); });
+    m_frame = makeFrame(m_settings, m_layout);
+    const Scratch scratch{std::vector<float>(static_cast<std::size_t>(kAtomPixels) *
+                                             static_cast<std::size_t>(m_layout.count)),
+                          std::vector<SampleRun>(kAtomPixels)};
+    m_scratch.assign(static_cast<std::size_t>(m_arena.threads()), scratch);
 }
 
 void RenderWork::checkMemory(const SettingValues& values) {
     const auto bucketSize = static_cast<std::uint64_t>(m_grid.bucketSize());
     m_need.scene = m_scene->memoryBytes();
-    m_need.frame = FrameStore::memoryBytes(m_settings.window, m_layout.count, m_layout.biasProbe);
+    m_need.frame = FrameStore::memoryBytes(m_settings.window, m_layout.count, m_layout.biasProbe,
+                                           m_settings.isAdaptive());
     m_need.maps = m_plan.mapBytes;
     m_need.buckets = static_cast<std::uint64_t>(m_arena.threads()) * bucketSize * bucketSize *
                          static_cast<std::uint64_t>(m_layout.count + 1) * sizeof(float) +
@@ -93,13 +117,65 @@ void RenderWork::announce(EventQueue& events) {
     for (const Notice& notice : m_plan.notices) warn(notice, events);
 }
 
+void RenderWork::warnOfCheckpoint(const std::string& text, EventQueue& events) {
+    m_warnings.add(PMR_MESSAGE_CHECKPOINT, text);
+    events.message(PMR_LEVEL_WARNING, PMR_MESSAGE_CHECKPOINT, text);
+}
+
+std::uint32_t RenderWork::resume(const Cancel& cancel, EventQueue& events) {
+    const RenderPieces::Resumed resumed =
+        m_pieces->resume(*m_frame, static_cast<std::size_t>(m_layout.count), cancel.flag);
+    if (resumed.droppedBytes > 0)
+        warnOfCheckpoint(fmt::format("the checkpoint's last {} bytes were torn or damaged; what "
+                                     "they held is rendered again",
+                                     resumed.droppedBytes),
+                         events);
+    const bool hasPart = resumed.shareOfNext > 0;
+    if (resumed.passes == 0 && !hasPart) return 0;
+    events.message(PMR_LEVEL_INFO, PMR_MESSAGE_PHASE,
+                   fmt::format("resumed with {} passes and {:.0f} % of the next", resumed.passes,
+                               100 * resumed.shareOfNext));
+    if (const auto limit = m_stopRule.passes();
+        limit && resumed.passes + (hasPart ? 1 : 0) > *limit)
+        throw CallError(
+            PMR_ERROR_MISMATCH,
+            fmt::format("the checkpoint has {} passes{}; {} were asked for, and none "
+                        "can be taken back",
+                        resumed.passes, hasPart ? " and a part of the next" : "", *limit));
+    m_clock.startAt(resumed.passes);
+    for (const std::uint32_t cell : m_order)
+        events.bucketFinished(
+            bucketInfo(cell, m_grid.cellRect(cell), resumed.passes == 0 ? 0 : resumed.passes - 1));
+    const std::lock_guard lock(m_mutex);
+    m_progress.passesDone = m_progress.passesResumed = resumed.passes;
+    return resumed.passes;
+}
+
 void RenderWork::run(const Cancel& cancel, EventQueue& events) {
-    for (std::uint32_t pass = 0;; ++pass) {
+    // However it ends, the checkpoint is free for another render. Who cancels doesn't wait for
+    // disks.
+    const struct Close {
+        RenderPieces& pieces;
+        const Cancel& cancel;
+        ~Close() { pieces.close(!cancel.isSet()); }
+    } close{*m_pieces, cancel};
+    const std::uint32_t pass = resume(cancel, events);
+    // Between two passes a resumed render ends as it would have; within one it can't.
+    const bool isBetween = pass > 0 && !m_pieces->isWithinPass();
+    if (!isBetween || !endPass(pass - 1, 0, 0)) makePasses(pass, cancel, events);
+    m_pieces->finish(*m_frame, progress().passesDone);
+}
+
+void RenderWork::makePasses(std::uint32_t first, const Cancel& cancel, EventQueue& events) {
+    for (std::uint32_t pass = first;; ++pass) {
         throwIfCancelled(cancel);
         const double photonSeconds = beginPass(pass, cancel, events);
         const double bucketSeconds = renderBuckets(pass, cancel, events);
         for (const Notice& notice : m_renderer->takeNotices()) warn(notice, events);
         throwIfCancelled(cancel);
+        m_pieces->endPass(*m_frame, pass + 1, cancel.flag);
+        if (const std::string text = m_pieces->takeTrouble(); !text.empty())
+            warnOfCheckpoint("the render goes on without checkpoint: " + text, events);
         if (endPass(pass, photonSeconds, bucketSeconds)) return;
     }
 }
@@ -110,7 +186,9 @@ bool RenderWork::endPass(std::uint32_t pass, double photonSeconds, double bucket
     const bool inCurve = progress().curve.wants(end.passesDone);
     if (inCurve || m_stopRule.hasErrorTarget()) end.error = m_frame->estimateError();
     end.seconds = m_watch.seconds();
-    end.longestPassSeconds = std::max(end.seconds / end.passesDone, photonSeconds + bucketSeconds);
+    const std::uint32_t made = end.passesDone - progress().passesResumed;
+    end.longestPassSeconds =
+        made == 0 ? 0 : std::max(end.seconds / made, photonSeconds + bucketSeconds);
     const std::int32_t stop = m_stopRule.after(end);
     const bool isLast = stop != PMR_STOP_NONE;
     if (isLast && !end.error) end.error = m_frame->estimateError();
@@ -148,8 +226,10 @@ double RenderWork::beginPass(std::uint32_t pass, const Cancel& cancel, EventQueu
     return seconds;
 }
 
-PmrBucketInfo RenderWork::bucketInfo(std::uint32_t cell, const Rect& rect,
+// bucket: whole atoms, of which the host gets what lies in the window.
+PmrBucketInfo RenderWork::bucketInfo(std::uint32_t cell, const Rect& bucket,
                                      std::uint32_t pass) const {
+    const Rect rect = intersect(bucket, m_settings.window);
     PmrBucketInfo info{};
     info.size = sizeof info;
     info.rectangle = {rect.x0, rect.y0, rect.x1, rect.y1};
@@ -160,32 +240,35 @@ PmrBucketInfo RenderWork::bucketInfo(std::uint32_t cell, const Rect& rect,
     return info;
 }
 
-// A bucket's buffer: its pixels' floats, then its pixels' weights. Always whole atoms are rendered,
-// so that rays travel in the same company whatever the crop.
-void RenderWork::renderBucket(const Rect& rect, int worker, std::span<float> buffer,
-                              const Cancel& cancel) {
-    const auto channels = static_cast<std::size_t>(m_layout.count);
-    const auto area = static_cast<std::size_t>(rect.area());
-    const std::span<float> pixels = buffer.first(area * channels);
-    const std::span<float> weights = buffer.subspan(area * channels, area);
-    const Rect atoms = wholeAtoms(rect);
-    if (atoms == rect) {
-        m_renderer->renderRegion(rect, pixels, weights, cancel.flag);
-        return;
-    }
+// The samples of an atom's pixels in this pass.
+void RenderWork::planSamples(const Rect& atom, std::uint32_t pass, Scratch& scratch) const {
+    std::array<FrameStore::NextSamples, kAtomPixels> next;
+    if (m_settings.isAdaptive()) m_frame->nextSamples(pass, atom, next);
+    std::size_t i = 0;
+    for (std::int32_t y = atom.y0; y < atom.y1; ++y)
+        for (std::int32_t x = atom.x0; x < atom.x1; ++x, ++i) {
+            SampleRun& run = scratch.runs[i];
+            run = fixedSamples(m_settings, x, y, pass);
+            if (m_settings.isAdaptive())
+                run = {next[i].had, std::max(next[i].count, run.count), run.seen};
+        }
+}
+
+// A bucket's buffer: its pixels' floats, then its pixels' weights.
+void RenderWork::renderAtom(const Rect& rect, const Rect& atom, std::uint32_t pass, int worker,
+                            std::span<float> buffer, const Cancel& cancel) {
     Scratch& scratch = m_scratch[static_cast<std::size_t>(worker)];
-    scratch.pixels.assign(static_cast<std::size_t>(atoms.area()) * channels, 0.0f);
-    scratch.weights.assign(static_cast<std::size_t>(atoms.area()), 0.0f);
-    m_renderer->renderRegion(atoms, scratch.pixels, scratch.weights, cancel.flag);
-    const auto width = static_cast<std::size_t>(rect.width());
-    for (std::int32_t y = rect.y0; y < rect.y1; ++y) {
-        const auto from =
-            static_cast<std::ptrdiff_t>((y - atoms.y0) * atoms.width() + (rect.x0 - atoms.x0));
-        const auto to = static_cast<std::ptrdiff_t>((y - rect.y0) * rect.width());
-        const auto step = static_cast<std::ptrdiff_t>(channels);
-        std::copy_n(scratch.pixels.begin() + from * step, width * channels,
-                    pixels.begin() + to * step);
-        std::copy_n(scratch.weights.begin() + from, width, weights.begin() + to);
+    planSamples(atom, pass, scratch);
+    m_renderer->renderRegion(atom, scratch.runs, scratch.pixels, cancel.flag);
+    const auto floats = static_cast<std::ptrdiff_t>(kAtomSizePixels) * m_layout.count;
+    const auto weightsAt = static_cast<std::ptrdiff_t>(rect.area()) * m_layout.count;
+    for (std::ptrdiff_t row = 0; row < kAtomSizePixels; ++row) {
+        const std::ptrdiff_t to = (atom.y0 + row - rect.y0) * rect.width() + (atom.x0 - rect.x0);
+        std::copy_n(scratch.pixels.begin() + row * floats, floats,
+                    buffer.begin() + to * m_layout.count);
+        const auto runs = scratch.runs.begin() + row * kAtomSizePixels;
+        std::transform(runs, runs + kAtomSizePixels, buffer.begin() + weightsAt + to,
+                       [](SampleRun run) { return static_cast<float>(run.count); });
     }
 }
 
@@ -193,18 +276,30 @@ double RenderWork::renderBuckets(std::uint32_t pass, const Cancel& cancel, Event
     const Stopwatch watch;
     const auto channels = static_cast<std::size_t>(m_layout.count);
     std::atomic<std::uint32_t> done{0};
+    const std::vector<std::uint32_t> order = m_pieces->remaining(m_order);
+    done += static_cast<std::uint32_t>(m_order.size() - order.size());
+    std::optional<CorrelatedChoice> correlated;
+    if (m_isCorrelated) correlated.emplace(m_grid, order, m_arena.threads());
     BucketWork work;
     work.floatsPerPixel = m_layout.count + 1;
+    if (correlated) work.choose = [&](int worker) { return correlated->next(worker); };
     work.started = [&](std::uint32_t cell, const Rect& rect) {
         events.bucketStarted(bucketInfo(cell, rect, pass));
     };
-    work.render = [&](std::uint32_t, const Rect& rect, int worker, std::span<float> buffer) {
-        renderBucket(rect, worker, buffer, cancel);
+    work.render = [&](std::uint32_t, const Rect& rect, const Rect& atom, int worker,
+                      std::span<float> buffer) {
+        renderAtom(rect, atom, pass, worker, buffer, cancel);
     };
     work.deliver = [&](std::uint32_t cell, const Rect& rect, std::span<const float> buffer) {
         const auto area = static_cast<std::size_t>(rect.area());
         const auto weights = buffer.subspan(area * channels, area);
-        m_frame->addPass(rect, buffer.first(area * channels), weights);
+        m_pieces->takeBucket(
+            pass, rect, buffer, channels, [&](const Rect& part, std::span<const float> floats) {
+                const auto values = static_cast<std::size_t>(part.area()) * channels;
+                m_frame->addPass(pass, part, floats.first(values), floats.subspan(values));
+            });
+        if (correlated)
+            correlated->finished(cell, buffer, channels, static_cast<std::size_t>(m_layout.beauty));
         PmrBucketInfo info = bucketInfo(cell, rect, pass);
         double samples = 0;
         for (const float weight : weights) samples += weight;
@@ -214,15 +309,18 @@ double RenderWork::renderBuckets(std::uint32_t pass, const Cancel& cancel, Event
             m_clock.buckets(pass, static_cast<double>(++done) / bucketCount());
         events.progress(reading.fraction, reading.remainingSeconds);
     };
-    const BucketRun result = runBuckets(m_arena, m_grid, m_order, cancel.token, work);
+    const BucketRun result = runBuckets(m_arena, m_grid, order, cancel.token, work);
     const double seconds = watch.seconds();
 
     const std::lock_guard lock(m_mutex);
     m_progress.bucketSeconds += seconds;
+    m_progress.idleSeconds += result.idleSeconds;
+    if (order.size() != m_order.size()) return seconds;
     std::vector<double>& means = m_progress.secondsPerBucket;
     means.resize(result.seconds.size());
+    ++m_timedPasses;
     for (std::size_t i = 0; i < means.size(); ++i)
-        means[i] += (result.seconds[i] - means[i]) / (pass + 1.0);
+        means[i] += (result.seconds[i] - means[i]) / m_timedPasses;
     return seconds;
 }
 

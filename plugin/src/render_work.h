@@ -16,6 +16,7 @@
 #include "plugin/src/error_curve.h"
 #include "plugin/src/event_queue.h"
 #include "plugin/src/progress_clock.h"
+#include "plugin/src/render_pieces.h"
 #include "plugin/src/setting_values.h"
 #include "plugin/src/stop_rule.h"
 #include "plugin/src/warning_log.h"
@@ -52,22 +53,25 @@ struct MemoryNeed {
 class RenderWork {
   public:
     // Plans, checks the memory limit before anything is allocated, then makes frame and renderer.
-    // Errors: MEMORY with all figures; those of FrameRenderer.
-    RenderWork(std::shared_ptr<const Scene> scene, const SettingValues& values);
+    // Errors: MEMORY with all figures; those of FrameRenderer and RenderPieces.
+    RenderWork(std::shared_ptr<const Scene> scene, const Identity& sceneIdentity,
+               const SettingValues& values);
 
     // Before run: tells the host what the plan found.
     void announce(EventQueue& events);
-    // All passes that the stop rule wants. Errors: Error(kCancelled) soon after `cancel` is set,
-    // those of the renderer.
+    // All passes that the stop rule wants, from those on that the checkpoint has. Errors:
+    // Error(kCancelled) soon after `cancel` is set, those of the renderer.
     void run(const Cancel& cancel, EventQueue& events);
 
     // What has been done, and what it took.
     struct Progress {
         std::uint32_t passesDone = 0;
+        std::uint32_t passesResumed = 0;  // of these from the checkpoint
         std::int32_t stopReason = PMR_STOP_NONE;
         ErrorCurve curve;
         double photonSeconds = 0;              // beginPass: photons and their maps
         double bucketSeconds = 0;              // the buckets of all passes
+        double idleSeconds = 0;                // of workers at the ends of passes, summed
         std::vector<double> secondsPerBucket;  // mean of a pass, by bucket; empty before the first
     };
     // All of these: any thread, any time.
@@ -80,23 +84,31 @@ class RenderWork {
     const ChannelLayout& layout() const { return m_layout; }
     WarningLog& warnings() { return m_warnings; }
     int threads() const { return m_arena.threads(); }
-    std::uint32_t passCount() const { return m_settings.passes; }  // at most
+    std::uint32_t passCount() const { return m_settings.passes; }    // at most
+    std::int32_t bucketSize() const { return m_grid.bucketSize(); }  // pixels
     std::uint32_t bucketCount() const { return static_cast<std::uint32_t>(m_order.size()); }
 
   private:
     struct Scratch {
-        std::vector<float> pixels, weights;
+        std::vector<float> pixels;  // of one atom
+        std::vector<SampleRun> runs;
     };
 
     void checkMemory(const SettingValues& values);
+    // Returns the first pass to make.
+    std::uint32_t resume(const Cancel& cancel, EventQueue& events);
+    void warnOfCheckpoint(const std::string& text, EventQueue& events);
+    void makePasses(std::uint32_t first, const Cancel& cancel, EventQueue& events);
     std::string passName(std::uint32_t pass) const;
     // Whether the pass that just ended was the last.
     bool endPass(std::uint32_t pass, double photonSeconds, double bucketSeconds);
     void warn(const Notice& notice, EventQueue& events);
     double beginPass(std::uint32_t pass, const Cancel& cancel, EventQueue& events);
     double renderBuckets(std::uint32_t pass, const Cancel& cancel, EventQueue& events);
-    void renderBucket(const Rect& rect, int worker, std::span<float> buffer, const Cancel& cancel);
-    PmrBucketInfo bucketInfo(std::uint32_t cell, const Rect& rect, std::uint32_t pass) const;
+    void planSamples(const Rect& atom, std::uint32_t pass, Scratch& scratch) const;
+    void renderAtom(const Rect& rect, const Rect& atom, std::uint32_t pass, int worker,
+                    std::span<float> buffer, const Cancel& cancel);
+    PmrBucketInfo bucketInfo(std::uint32_t cell, const Rect& bucket, std::uint32_t pass) const;
 
     const Stopwatch m_watch;
     const double m_processorStart;
@@ -108,6 +120,9 @@ class RenderWork {
     const BucketGrid m_grid;
     std::vector<std::uint32_t> m_order;       // cells in the order of rendering
     std::vector<std::uint32_t> m_orderIndex;  // and where each cell is in it
+    std::unique_ptr<RenderPieces> m_pieces;
+    std::uint32_t m_timedPasses = 0;  // that secondsPerBucket is the mean of
+    bool m_isCorrelated = false;      // the next bucket is chosen while rendering
     ChannelLayout m_layout;
     MemoryNeed m_need;
     std::unique_ptr<FrameRenderer> m_renderer;
@@ -119,5 +134,8 @@ class RenderWork {
     mutable std::mutex m_mutex;
     Progress m_progress;
 };
+
+// The empty frame of a render with these settings.
+std::unique_ptr<FrameStore> makeFrame(const RenderSettings& settings, const ChannelLayout& layout);
 
 }  // namespace pm::plugin

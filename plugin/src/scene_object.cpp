@@ -195,7 +195,7 @@ void SceneObject::commit() {
     WorkerArena arena(m_context->threads());
     auto built =
         arena.execute([&] { return Scene::build(std::move(description), m_context->isa()); });
-    m_hash = sceneHash(*built, *m_textures);
+    m_identity = sceneIdentity(*built, *m_textures);
     m_scene = std::move(built);
     m_buildSeconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
@@ -205,10 +205,10 @@ void SceneObject::commit() {
     for (const Notice& notice : scene->notices()) m_context->sendNotice(notice);
 }
 
-std::string SceneObject::hash() const {
+Identity SceneObject::identity() const {
     const std::lock_guard lock(m_mutex);
     if (!m_scene) throw CallError(PMR_ERROR_STATE, "the scene is not committed yet");
-    return m_hash;
+    return m_identity;
 }
 
 std::shared_ptr<const Scene> SceneObject::built() const {

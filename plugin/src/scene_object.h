@@ -15,6 +15,7 @@
 #include "plugin/include/pm_plugin.h"
 #include "plugin/src/context.h"
 #include "plugin/src/handle_table.h"
+#include "plugin/src/identity.h"
 #include "plugin/src/objects.h"
 #include "plugin/src/scene_textures.h"
 
@@ -43,8 +44,8 @@ class SceneObject {
     std::shared_ptr<const Scene> built() const;
     // World space: min x, y, z, max x, y, z.
     std::array<double, 6> bounds() const;
-    // See sceneHash; CallError(STATE) before commit.
-    std::string hash() const;
+    // See sceneIdentity; CallError(STATE) before commit.
+    Identity identity() const;
     double buildSeconds() const;
     std::uint64_t textureFailures() const;
 
@@ -60,7 +61,7 @@ class SceneObject {
     std::unordered_map<const MaterialObject*, std::uint32_t> m_materialIndices;
     std::vector<std::shared_ptr<MaterialObject>> m_materials;  // keeps the keys above alive
     std::shared_ptr<const Scene> m_scene;
-    std::string m_hash;
+    Identity m_identity;
     double m_buildSeconds = 0;
 };
 

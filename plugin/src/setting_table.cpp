@@ -24,15 +24,26 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
     {Setting::kThreads, "threads", PMR_SETTING_INTEGER, "threads", "0", 0, kMaxThreads, 1, "",
      false, "Threads of this render; 0 = all that affinity and cgroup allow.",
      "Each thread needs a buffer of one bucket."},
-    {Setting::kBucketSize, "bucketSize", PMR_SETTING_INTEGER, "pixels", "32", 8, 1024, 8, "", false,
-     "Side of a bucket, a multiple of 8.",
-     "Small ones cost more administration, large ones leave threads idle at the end of a pass."},
+    {Setting::kBucketSize, "bucketSize", PMR_SETTING_INTEGER, "pixels", "32", 0, 1024, 8, "", false,
+     "Side of a bucket, a multiple of 8; 0 = chosen from the frame's size.",
+     "Small ones cost more administration, large ones more memory and reach the host later."},
     {Setting::kBucketOrder, "bucketOrder", PMR_SETTING_CHOICE, "", "hilbert", 0, 0, 1,
-     "hilbert,row", false, "The order in which buckets are rendered.",
-     "hilbert keeps neighbours together, so caches hit more often."},
+     "hilbert,row,column,diagonal,spiral,random,correlated", false,
+     "The order in which buckets are rendered; random is shuffled by the seed, correlated chooses "
+     "the next bucket while rendering.",
+     "Within a few per cent of each other; see docs/orders.md."},
     {Setting::kAaLevel, "aaLevel", PMR_SETTING_INTEGER, "", "3", 1, 6, 1, "", true,
-     "Anti-aliasing: level l takes 4^(l-1) samples a pixel in every four passes.",
+     "Anti-aliasing: level l takes 4^(l-1) samples a pixel in every four passes; this is the "
+     "least.",
      "Each level takes four times the time of the one before."},
+    {Setting::kAaLevelMost, "aaLevelMost", PMR_SETTING_INTEGER, "", "5", 1, 6, 1, "", true,
+     "The most that a pixel gets whose samples differ, from the third pass on; aaLevel or less: "
+     "every pixel gets the same.",
+     "Time goes to the pixels that need it; up to 400 bytes a pixel in place of 250."},
+    {Setting::kAaThreshold, "aaThreshold", PMR_SETTING_NUMBER, "", "0.01", 0, 1, 1, "", true,
+     "A pixel gets samples, from aaLevel to aaLevelMost, until one more in four passes would lower "
+     "its squared relative error by less than this squared.",
+     "Halved, noisy pixels get twice the samples."},
     {Setting::kIntegrator, "integrator", PMR_SETTING_CHOICE, "", "photon", 0, 0, 1, "photon,path",
      true, "photon: photon maps with final gathering; path: the unbiased path tracer, a reference.",
      "path needs no memory for maps, but many more samples where light is indirect or focused."},
@@ -54,7 +65,7 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
     {Setting::kSeed, "seed", PMR_SETTING_INTEGER, "", "1", 0, kMaxInteger, 1, "", true,
      "Start of all random numbers; the same seed gives the same picture.", "None."},
     {Setting::kLayers, "layers", PMR_SETTING_TEXT, "", "", 0, 0, 1, "", false,
-     "Optional layers, separated by commas: albedo, N, Z, stderr, samples.",
+     "Optional layers, separated by commas: albedo, N, Z, stderr, samples, aalevel.",
      "albedo and N take 24 bytes a pixel each, Z 8; stderr and samples none."},
     {Setting::kMemoryLimit, "memoryLimitGib", PMR_SETTING_NUMBER, "GiB", "0", 0, 1048576, 1, "",
      false,
@@ -75,6 +86,24 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
      "auto: the maps and estimators that the scene needs (see --explain); everything: all there "
      "are, for the same picture in more time.",
      "everything takes up to several times as long."},
+    {Setting::kBuckets, "buckets", PMR_SETTING_TEXT, "", "", 0, 0, 1, "", false,
+     "Renders only these buckets of the order: A:B, half-open, or I/N, the I-th of N runs; empty = "
+     "all. Not with buckets of a size chosen by itself, the correlated order, or a target that "
+     "ends the render.",
+     "Of the pixels' time the buckets' share; photons cost the same."},
+    {Setting::kPart, "part", PMR_SETTING_TEXT, "", "", 0, 0, 1, "", false,
+     "File that takes the sums of the buckets when the render has ended, for createMerge.",
+     "Some 250 bytes a pixel on disk."},
+    {Setting::kCheckpoint, "checkpoint", PMR_SETTING_TEXT, "", "", 0, 0, 1, "", false,
+     "File that keeps finished buckets while the render runs; it stays when the render ends.",
+     "On disk up to some 700 bytes a pixel; a few per cent of the time."},
+    {Setting::kResume, "resume", PMR_SETTING_INTEGER, "", "0", 0, 1, 1, "", false,
+     "1: go on from the checkpoint where its file is there, with more passes too; 0: begin anew.",
+     "None."},
+    {Setting::kHostIdentity, "hostIdentity", PMR_SETTING_TEXT, "", "", 0, 0, 1, "", false,
+     "What of the host decides on the picture, as its colour config: lines `name: value`. "
+     "Checkpoints and parts of another are refused.",
+     "None."},
 }};
 
 constexpr bool inOrder() {

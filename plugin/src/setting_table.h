@@ -24,6 +24,8 @@ enum class Setting : std::size_t {
     kBucketSize,
     kBucketOrder,
     kAaLevel,
+    kAaLevelMost,
+    kAaThreshold,
     kIntegrator,
     kPhotons,
     kEstimatePhotons,
@@ -35,6 +37,11 @@ enum class Setting : std::size_t {
     kErrorTarget,
     kTimeLimit,
     kPlan,
+    kBuckets,
+    kPart,
+    kCheckpoint,
+    kResume,
+    kHostIdentity,
     kCount
 };
 inline constexpr std::size_t kSettingCount = static_cast<std::size_t>(Setting::kCount);

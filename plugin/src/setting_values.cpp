@@ -4,11 +4,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <system_error>
 #include <vector>
 
+#include "plugin/src/bucket_range.h"
 #include "plugin/src/call_error.h"
 #include "plugin/src/layer_table.h"
 
@@ -29,9 +31,11 @@ const SettingSpec& specOf(std::string_view name) {
 std::string allowed(const SettingSpec& spec) {
     switch (spec.type) {
         case PMR_SETTING_INTEGER:
+            // 0 is no size but the library's own choice.
             if (spec.step > 1)
-                return fmt::format("a multiple of {} from {} to {}", spec.step, spec.minimum,
-                                   spec.maximum);
+                return fmt::format("{}a multiple of {} from {} to {}",
+                                   spec.minimum == 0 ? "0 or " : "", spec.step,
+                                   std::max(spec.minimum, spec.step), spec.maximum);
             return fmt::format("{} to {}", spec.minimum, spec.maximum);
         case PMR_SETTING_NUMBER:
             return fmt::format("{} to {}", spec.minimum, spec.maximum);
@@ -91,6 +95,7 @@ std::string checkedLayers(std::string_view value) {
 std::string checkedFreeText(const SettingSpec& spec, std::string_view value) {
     if (spec.id == Setting::kLayers) return checkedLayers(value);
     if (spec.id == Setting::kCrop) parseCrop(value);
+    if (spec.id == Setting::kBuckets) checkBucketRange(value);
     return std::string(value);
 }
 
@@ -227,6 +232,9 @@ RenderSettings SettingValues::toRenderSettings() const {
     settings.gatherRays = static_cast<std::uint32_t>(integer(Setting::kGatherRays));
     settings.passes = passLimit();
     settings.aaLevel = static_cast<std::uint32_t>(integer(Setting::kAaLevel));
+    const auto most = static_cast<std::uint32_t>(integer(Setting::kAaLevelMost));
+    settings.aaLevelMost = most > settings.aaLevel ? most : 0;
+    settings.aaThreshold = number(Setting::kAaThreshold);
     settings.seed = static_cast<std::uint64_t>(integer(Setting::kSeed));
     settings.wantAlbedo = wantsLayer("albedo");
     settings.wantNormal = wantsLayer("N");

@@ -11,13 +11,12 @@
 #include "plugin/src/identity.h"
 #include "plugin/src/memory_limit.h"
 #include "plugin/src/render.h"
+#include "plugin/src/statistics_json.h"
 #include "plugin/src/version.h"
 
 namespace pm::plugin {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 const char* stopText(std::int32_t reason) {
     switch (reason) {
@@ -50,8 +49,11 @@ Json countersJson(const RenderCounters& c) {
             {"fluxLostW", c.fluxLost}};
 }
 
-Json bucketJson(const RenderWork& work, std::vector<double> seconds) {
-    Json json = {{"count", work.bucketCount()}};
+Json bucketJson(const RenderWork& work, const RenderWork::Progress& progress) {
+    Json json = {{"count", work.bucketCount()},
+                 {"sizePixels", work.bucketSize()},
+                 {"idleTailThreadSeconds", progress.idleSeconds}};
+    std::vector<double> seconds = progress.secondsPerBucket;
     if (seconds.empty()) return json;
     std::sort(seconds.begin(), seconds.end());
     json["minimumSecondsPerPass"] = seconds.front();
@@ -88,39 +90,6 @@ Json planJson(const Plan& plan) {
             {"gatherRaysPerPoint", plan.gatherRays},
             {"causticPhotonsPerPass", plan.causticPhotons},
             {"lines", plan.reasons}};
-}
-
-Json settingsJson(const SettingValues& values) {
-    Json json = Json::object();
-    for (const SettingSpec& spec : settingSpecs()) {
-        if (spec.type == PMR_SETTING_INTEGER)
-            json[spec.name] = values.integer(spec.id);
-        else if (spec.type == PMR_SETTING_NUMBER)
-            json[spec.name] = values.number(spec.id);
-        else
-            json[spec.name] = values.word(spec.id);
-    }
-    return json;
-}
-
-constexpr const char* kEstimateCovers =
-    "noise, from what even and odd passes differ by, and bias of the density estimates, from what "
-    "they change by at radii narrowed by sqrt(2); not light that no pass has found, nor all of the "
-    "bias at sharp edges of light";
-
-// With one pass nothing is known of the error.
-void addError(const std::optional<FrameError>& error, Json& json) {
-    const auto put = [&](const char* key, auto figure) {
-        json[key] = error ? Json(figure(*error)) : Json(nullptr);
-    };
-    put("relMseEstimate", [](const FrameError& e) { return Json(e.total()); });
-    put("relMseEstimateTrimmed", [](const FrameError& e) { return Json(e.totalTrimmed()); });
-    put("relMseEstimateNoise", [](const FrameError& e) { return Json(e.noise); });
-    put("relMseEstimateBias", [](const FrameError& e) { return Json(e.bias); });
-    put("relMseEstimateBiasStandardError", [](const FrameError& e) {
-        return e.biasStandardError ? Json(*e.biasStandardError) : Json(nullptr);
-    });
-    json["relMseEstimateCovers"] = kEstimateCovers;
 }
 
 Json curveJson(const ErrorCurve& curve) {
@@ -161,12 +130,14 @@ std::string Render::statisticsJson() const {
     Json json;
     json["schema"] = "pm-stats/1";
     json["versions"] = versionsJson();
-    json["hashes"] = {{"scene", m_scene->hash()}, {"settings", settingsHash(settings())}};
+    json["hashes"] = {{"scene", identityHash(m_scene->identity())},
+                      {"settings", identityHash(settingsIdentity(settings()))}};
     json["isa"] = running->scene().isa();
     json["stopReason"] = stopText(stopReason());
     json["status"] = status;
     json["error"] = errorText;
     json["passesDone"] = progress.passesDone;
+    json["passesResumed"] = progress.passesResumed;
     json["passesPlanned"] = running->passCount();
     json["threads"] = running->threads();
     addError(running->frame().estimateError(), json);
@@ -178,7 +149,7 @@ std::string Render::statisticsJson() const {
     json["counters"] = countersJson(counters);
     json["counters"]["textureFailures"] = m_scene->textureFailures();
     json["counters"]["triangles"] = running->scene().triangleCount();
-    json["buckets"] = bucketJson(*running, progress.secondsPerBucket);
+    json["buckets"] = bucketJson(*running, progress);
     json["memory"] = memoryJson(*running, counters);
     json["plan"] = planJson(running->plan());
     json["warnings"] = warningsJson(running->scene(), *running);

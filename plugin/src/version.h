@@ -13,4 +13,8 @@ const std::string& versionText();
 // The same by name.
 nlohmann::ordered_json versionsJson();
 
+// What the linker marked this library with, hexadecimal digits: two builds have two of them. Empty
+// where the linker makes none.
+const std::string& buildId();
+
 }  // namespace pm::plugin

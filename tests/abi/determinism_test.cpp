@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <sstream>
 
 #include "tests/abi/host.h"
 
@@ -27,6 +28,19 @@ using Settings = std::map<std::string, std::string>;
         if (std::memcmp(&a[i], &b[i], sizeof(float)) != 0) ++unlike;
     if (unlike == 0) return ::testing::AssertionSuccess();
     return ::testing::AssertionFailure() << unlike << " of " << a.size() << " floats differ";
+}
+
+// The choices of a setting, as the library lists them.
+std::vector<std::string> choicesOf(const std::string& setting) {
+    std::vector<std::string> choices;
+    for (std::uint32_t i = 0; i < api().settingCount(); ++i) {
+        PmrSettingInfo info = PMR_INIT(PmrSettingInfo);
+        EXPECT_EQ(PMR_OK, api().settingInfo(i, &info));
+        if (setting != info.name) continue;
+        std::stringstream text(info.choices);
+        for (std::string choice; std::getline(text, choice, ',');) choices.push_back(choice);
+    }
+    return choices;
 }
 
 class Determinism : public ::testing::TestWithParam<const char*> {
@@ -54,10 +68,16 @@ TEST_P(Determinism, Threads) {
 }
 
 TEST_P(Determinism, BucketsAndOrders) {
-    const std::vector<float> first = render({{"bucketSize", "16"}});
-    EXPECT_TRUE(sameBits(first, render({{"bucketSize", "32"}})));
-    EXPECT_TRUE(sameBits(first, render({{"bucketSize", "48"}})));
-    EXPECT_TRUE(sameBits(first, render({{"bucketOrder", "row"}})));
+    const std::vector<float> first = render({{"bucketSize", "16"}, {"threads", "1"}});
+    for (const char* size : {"0", "8", "24", "32", "48", "256"})
+        EXPECT_TRUE(sameBits(first, render({{"bucketSize", size}}))) << size;
+    int orders = 0;
+    for (const std::string& order : choicesOf("bucketOrder")) {
+        EXPECT_TRUE(sameBits(first, render({{"bucketOrder", order}}))) << order;
+        EXPECT_TRUE(sameBits(first, render({{"bucketOrder", order}, {"threads", "5"}}))) << order;
+        ++orders;
+    }
+    EXPECT_EQ(7, orders);
 }
 
 TEST_P(Determinism, Crop) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Layers and readPixels.
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <set>
@@ -15,7 +16,7 @@ constexpr PmrRectangle kWhole = {0, 0, kWidth, kHeight};
 
 class Pixels : public ::testing::Test {
   protected:
-    Pixels() : m_render(m_host.makeRender({{"layers", "albedo,N,Z,stderr,samples"}})) {}
+    Pixels() : m_render(m_host.makeRender({{"layers", "albedo,N,Z,stderr,samples,aalevel"}})) {}
     ~Pixels() override { EXPECT_EQ(PMR_OK, api().destroyRender(m_render)); }
     void finish() {
         ASSERT_EQ(PMR_OK, api().startRender(m_render));
@@ -50,6 +51,22 @@ TEST_F(Pixels, LayersOfARender) {
     EXPECT_EQ(6u, count);
     ASSERT_EQ(PMR_OK, api().renderLayerInfo(m_render, 5, &info));
     EXPECT_STREQ("Z", info.name);
+}
+
+TEST_F(Pixels, LevelsAreWhatTheSamplesAmountTo) {
+    for (const float level : readLayer(m_render, "aalevel", 1, kWhole)) EXPECT_EQ(0.0f, level);
+    ASSERT_EQ(PMR_OK, api().setSettingInteger(m_render, "passes", 3));
+    finish();
+    const auto samples = readLayer(m_render, "samples", 1, kWhole);
+    const auto levels = readLayer(m_render, "aalevel", 1, kWhole);
+    float most = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        EXPECT_FLOAT_EQ(levels[i], 1 + 0.5f * std::log2(samples[i] * 4 / 3));
+        EXPECT_GE(levels[i], 1.0f);
+        most = std::max(most, levels[i]);
+    }
+    // Some pixels differ from sample to sample, and get more than the least.
+    EXPECT_GT(most, *std::min_element(levels.begin(), levels.end()));
 }
 
 TEST_F(Pixels, BeautyIsTheSumOfItsParts) {

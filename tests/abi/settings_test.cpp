@@ -42,9 +42,11 @@ TEST(Settings, EnumerationIsWhole) {
         }
     }
     for (const char* name :
-         {"width", "height", "crop", "threads", "bucketSize", "bucketOrder", "aaLevel",
-          "integrator", "photons", "estimatePhotons", "gatherRays", "passes", "seed", "layers",
-          "memoryLimitGib", "errorTarget", "timeLimitSeconds", "plan"})
+         {"width",       "height",           "crop",         "threads",     "bucketSize",
+          "bucketOrder", "aaLevel",          "integrator",   "photons",     "estimatePhotons",
+          "gatherRays",  "passes",           "seed",         "layers",      "memoryLimitGib",
+          "errorTarget", "timeLimitSeconds", "plan",         "buckets",     "part",
+          "checkpoint",  "resume",           "hostIdentity", "aaLevelMost", "aaThreshold"})
         EXPECT_EQ(1u, names.count(name)) << name;
     EXPECT_EQ(PMR_OK, api().destroyRender(render));
 }
@@ -56,10 +58,13 @@ TEST(Settings, RefusalsSayWhatIsAllowed) {
     EXPECT_EQ("setting passes is 0; it must be 1 to 1000000", host.lastError());
     EXPECT_EQ("7", get(render, "passes"));  // the value before stays
     EXPECT_EQ(PMR_ERROR_ARGUMENT, api().setSettingText(render, "bucketSize", "30"));
-    EXPECT_EQ("setting bucketSize is 30; it must be a multiple of 8 from 8 to 1024",
+    EXPECT_EQ("setting bucketSize is 30; it must be 0 or a multiple of 8 from 8 to 1024",
               host.lastError());
     EXPECT_EQ(PMR_ERROR_ARGUMENT, api().setSettingText(render, "bucketOrder", "peano"));
-    EXPECT_EQ("setting bucketOrder is 'peano'; it must be one of hilbert,row", host.lastError());
+    EXPECT_EQ(
+        "setting bucketOrder is 'peano'; it must be one of "
+        "hilbert,row,column,diagonal,spiral,random,correlated",
+        host.lastError());
     EXPECT_EQ(PMR_ERROR_ARGUMENT, api().setSettingText(render, "layers", "N,bokeh"));
     EXPECT_NE(std::string::npos, host.lastError().find("'bokeh'"));
     for (const char* text : {"", " 4", "4 ", "4.0", "4,0", "0x4", "four", "99999999999999999999"})

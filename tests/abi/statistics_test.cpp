@@ -38,6 +38,10 @@ TEST(Statistics, OfAFinishedRender) {
     EXPECT_GT(json["memory"]["sceneBytes"].get<std::uint64_t>(), 0u);
     EXPECT_LE(json["buckets"]["minimumSecondsPerPass"].get<double>(),
               json["buckets"]["maximumSecondsPerPass"].get<double>());
+    EXPECT_EQ(16, json["buckets"]["sizePixels"]);
+    EXPECT_GE(json["buckets"]["idleTailThreadSeconds"].get<double>(), 0.0);
+    EXPECT_LT(json["buckets"]["idleTailThreadSeconds"].get<double>(),
+              2 * json["phases"]["renderSeconds"].get<double>());
     EXPECT_FALSE(json["plan"]["lines"].empty());
     EXPECT_FALSE(json["isa"].get<std::string>().empty());
     EXPECT_EQ(PMR_OK, api().destroyRender(render));

@@ -138,7 +138,7 @@ TEST_F(Stops, ATinyTimeLimitStillMakesOneWholePass) {
     EXPECT_EQ(1, ended.json["passesDone"]);
     for (const float samples : ended.samples) ASSERT_EQ(samples, 1.0f);
     expectSameBits(ended, settings);
-    const Settings level1 = {{"timeLimitSeconds", "1e-9"}, {"aaLevel", "1"}};
+    const Settings level1 = {{"timeLimitSeconds", "1e-9"}, {"aaLevel", "1"}, {"aaLevelMost", "1"}};
     const Ended sparse = run(level1, PMR_STOP_TIME_LIMIT);
     EXPECT_EQ(4, sparse.json["passesDone"]);
     for (const float samples : sparse.samples) ASSERT_EQ(samples, 1.0f);
@@ -148,7 +148,7 @@ TEST_F(Stops, ATinyTimeLimitStillMakesOneWholePass) {
 TEST_F(Stops, ATimeLimitIsKept) {
     const Settings settings = {{"timeLimitSeconds", "1"}};
     const Ended ended = run(settings, PMR_STOP_TIME_LIMIT);
-    EXPECT_GT(ended.json["passesDone"].get<int>(), 4);
+    EXPECT_GT(ended.json["passesDone"].get<int>(), 1);
     const double seconds = ended.json["errorCurve"].back()["seconds"].get<double>();
     EXPECT_GT(seconds, 0.5);
     EXPECT_LT(seconds, 3.0);  // a machine that does other things at the same time

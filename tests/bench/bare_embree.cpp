@@ -34,6 +34,30 @@ RTCRayHit rayHitOf(const Ray& ray) {
     return r;
 }
 
+constexpr std::size_t kEight = 8;
+alignas(32) constexpr std::array<int, kEight> kAll = {-1, -1, -1, -1, -1, -1, -1, -1};
+
+void fill(RTCRay8& out, std::size_t i, const Ray& ray) {
+    out.org_x[i] = ray.origin.x;
+    out.org_y[i] = ray.origin.y;
+    out.org_z[i] = ray.origin.z;
+    out.tnear[i] = 0.0f;
+    out.dir_x[i] = ray.direction.x;
+    out.dir_y[i] = ray.direction.y;
+    out.dir_z[i] = ray.direction.z;
+    out.time[i] = 0.0f;
+    out.tfar[i] = ray.tMax;
+    out.mask[i] = ~0u;
+    out.id[i] = out.flags[i] = 0;
+}
+
+RTCIntersectContext coherentContext() {
+    RTCIntersectContext context;
+    rtcInitIntersectContext(&context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    return context;
+}
+
 }  // namespace
 
 struct BareEmbree::Impl {
@@ -109,6 +133,33 @@ std::uint64_t BareEmbree::countOccluded(std::span<const Ray> rays) const {
         alignas(16) RTCRayHit r = rayHitOf(ray);
         rtcOccluded1(m_impl->scene, &context, &r.ray);
         hits += r.ray.tfar < 0.0f;
+    }
+    return hits;
+}
+
+std::uint64_t BareEmbree::countHitsByEight(std::span<const Ray> rays) const {
+    std::uint64_t hits = 0;
+    RTCIntersectContext context = coherentContext();
+    for (std::size_t first = 0; first + kEight <= rays.size(); first += kEight) {
+        RTCRayHit8 r;
+        for (std::size_t i = 0; i < kEight; ++i) {
+            fill(r.ray, i, rays[first + i]);
+            r.hit.geomID[i] = r.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        rtcIntersect8(kAll.data(), m_impl->scene, &context, &r);
+        for (std::size_t i = 0; i < kEight; ++i) hits += r.hit.geomID[i] != RTC_INVALID_GEOMETRY_ID;
+    }
+    return hits;
+}
+
+std::uint64_t BareEmbree::countOccludedByEight(std::span<const Ray> rays) const {
+    std::uint64_t hits = 0;
+    RTCIntersectContext context = coherentContext();
+    for (std::size_t first = 0; first + kEight <= rays.size(); first += kEight) {
+        RTCRay8 r;
+        for (std::size_t i = 0; i < kEight; ++i) fill(r, i, rays[first + i]);
+        rtcOccluded8(kAll.data(), m_impl->scene, &context, &r);
+        for (std::size_t i = 0; i < kEight; ++i) hits += r.tfar[i] < 0.0f;
     }
     return hits;
 }

@@ -11,6 +11,7 @@
 #include "integrator/values/error.h"
 #include "tests/bench/child_process.h"
 #include "tests/bench/error_curve.h"
+#include "tests/bench/idle_share.h"
 #include "tests/bench/log_plot.h"
 #include "tests/bench/picture_error.h"
 
@@ -131,6 +132,19 @@ TEST(Plot, PointsLieWhereTheirLogarithmsAre) {
     EXPECT_NEAR(y[1], (y[0] + y[2]) / 2, 0.11);
     EXPECT_LT(x[0], x[2]);
     EXPECT_LT(y[0], y[2]);  // down in the picture is less
+}
+
+// Three buckets of four seconds each: the third keeps one of two workers waiting for four of
+// sixteen.
+TEST(IdleShare, IsWhatAScheduleOnPaperHas) {
+    const std::vector<std::vector<double>> buckets(3, std::vector<double>(4, 1.0));
+    EXPECT_DOUBLE_EQ(0.25, idleShare(buckets, 2, false));
+    EXPECT_DOUBLE_EQ(0.0, idleShare(buckets, 2, true));
+    EXPECT_DOUBLE_EQ(0.0, idleShare(buckets, 1, false));
+    // Twelve atoms on eight workers take two seconds, in which they could do sixteen.
+    EXPECT_DOUBLE_EQ(0.25, idleShare(buckets, 8, true));
+    EXPECT_DOUBLE_EQ(1 - 12.0 / (8 * 4), idleShare(buckets, 8, false));
+    EXPECT_DOUBLE_EQ(0.0, idleShare({}, 3, true));
 }
 
 TEST(Child, TellsExitCodeTimeAndOutput) {

@@ -23,8 +23,7 @@ int runProgram(int argc, char** argv) {
     app.add_option("--scenes", options.scenes, "of A, B, C (ABC)");
     app.add_option("--integrators", options.integrators, "photon, path or both (both)")
         ->check(CLI::IsMember({"photon", "path"}));
-    app.add_option("--aa", options.aaLevels, "levels of anti-aliasing, 1 to 6 (3 4)")
-        ->check(CLI::Range(1, 6));
+    app.add_option("--aa", options.aaLevels, "levels of anti-aliasing, each N or MIN:MAX (3:5 3)");
     app.add_option("--passes", options.passes, "passes of the longest render (256)");
     app.add_option("--seconds", options.seconds,
                    "no render is begun that takes longer on an idle machine (12)");

@@ -34,18 +34,25 @@ bool readNumber(const std::string& text, double& value) {
 
 }  // namespace
 
-std::string secondsTo(double error, const ErrorCurve& curve) {
+std::optional<Reached> reach(double error, const ErrorCurve& curve) {
     for (std::size_t i = 0; i < curve.points.size(); ++i) {
         const ErrorPoint& b = curve.points[i];
         if (!(b.error <= error)) continue;
-        if (i == 0) return fmt::format("< {} ({})", show(b.seconds), show(b.processorSeconds));
+        if (i == 0) return Reached{b.seconds, b.processorSeconds, true};
         const ErrorPoint& a = curve.points[i - 1];
         const double t = std::log(a.error / error) / std::log(a.error / b.error);
         const auto between = [t](double from, double to) { return from * std::pow(to / from, t); };
-        return fmt::format("{} ({})", show(between(a.seconds, b.seconds)),
-                           show(between(a.processorSeconds, b.processorSeconds)));
+        return Reached{between(a.seconds, b.seconds),
+                       between(a.processorSeconds, b.processorSeconds)};
     }
-    return "-";
+    return {};
+}
+
+std::string secondsTo(double error, const ErrorCurve& curve) {
+    const std::optional<Reached> at = reach(error, curve);
+    if (!at) return "-";
+    return fmt::format("{}{} ({})", at->byFirst ? "< " : "", show(at->seconds),
+                       show(at->processorSeconds));
 }
 
 std::vector<ErrorCurve> readCurves(const std::filesystem::path& file) {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,8 +21,16 @@ struct ErrorCurve {
     std::vector<ErrorPoint> points;  // by rising budget
 };
 
-// "1.2 (2.3)": seconds to an error, and processor seconds in brackets, along a straight line
-// between the logarithms of the points; "< ..." when the first point is below, "-" when none is.
+// Where a curve comes to an error, along a straight line between the logarithms of the points. At
+// the first point when that is below already, and nothing when none is.
+struct Reached {
+    double seconds = 0, processorSeconds = 0;
+    bool byFirst = false;  // so these are upper bounds
+};
+std::optional<Reached> reach(double error, const ErrorCurve& curve);
+
+// "1.2 (2.3)": seconds to an error, and processor seconds in brackets; "< ..." when the first point
+// is below, "-" when none is.
 std::string secondsTo(double error, const ErrorCurve& curve);
 
 // A file with one point a line: scene,renderer,budget,seconds,processor seconds,error. Reading a

@@ -22,7 +22,7 @@ constexpr const char* kPhoton = "photon";
 constexpr const char* kOwnBest = "POV-Ray against its own best";
 
 std::string nameOf(const LadderRequest& request) {
-    return fmt::format("{}, aa {}", request.integrator, request.aaLevel);
+    return fmt::format("{}, aa {}", request.integrator, request.levels);
 }
 
 std::string shown(const std::optional<double>& value) {
@@ -37,6 +37,8 @@ ErrorBench::ErrorBench(const ErrorBenchOptions& options)
 }
 
 void ErrorBench::run() {
+    if (!m_options.picturesFolder.empty())
+        std::filesystem::create_directories(m_options.picturesFolder);
     readJobs();
     for (const Job& job : m_jobs) measureOurs(job);
     measurePlan();
@@ -75,7 +77,7 @@ void ErrorBench::measureOurs(const Job& job) {
                     "estimated / true", "V = relMSE x samples", "relMSE common to two renders",
                     "estimated bias", "mean over reference", "seconds", "processor seconds"});
     for (const std::string& integrator : m_options.integrators)
-        for (const int level : m_options.aaLevels) {
+        for (const std::string& level : m_options.aaLevels) {
             const bool photon = integrator == kPhoton;
             // Path tracing needs no second level (its passes are alike) and has no bias to tell.
             if (!photon && level != m_options.aaLevels.back()) continue;
@@ -89,8 +91,10 @@ void ErrorBench::measureOurs(const Job& job) {
                                         step.processorSeconds, step.error});
             }
             m_ours.push_back(std::move(curve));
-            writeStepPictures(job, fmt::format("{}_aa{}", integrator, level), steps.back());
-            if (photon && level == m_options.aaLevels.back())
+            std::string file = fmt::format("{}_aa{}", integrator, level);
+            std::ranges::replace(file, ':', '-');
+            writeStepPictures(job, file, steps.back());
+            if (photon && level == m_options.aaLevels.front())
                 m_best.push_back({&job, request, std::move(steps.back())});
         }
 }

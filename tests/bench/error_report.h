@@ -18,7 +18,7 @@ struct ErrorBenchOptions {
     std::string csvFile, docsFile, picturesFolder;
     std::string scenes = "ABC";
     std::vector<std::string> integrators = {"photon", "path"};
-    std::vector<int> aaLevels = {3, 4};
+    std::vector<std::string> aaLevels = {"3:5", "3"};  // the first as the library has it untold
     int passes = 256;
     int threads = 2;
     double seconds = 12, peerSeconds = 30;

@@ -26,7 +26,7 @@ struct Options {
     std::int32_t size = 96;
     int seeds = 50, firstSeed = 1, threads = 2, referencePasses = 200, pathPasses = 16,
         peerSeeds = 3;
-    std::uint32_t passes = 16, aaLevel = 3;
+    std::uint32_t passes = 16, aaLevel = 3, aaLevelMost = 5;
     bool quick = false;
 };
 
@@ -106,6 +106,7 @@ RenderSettings EstimateBench::settingsFor(std::int32_t size, std::uint32_t passe
     settings.window = {0, 0, size, size};
     settings.passes = passes;
     settings.aaLevel = m_options.aaLevel;
+    settings.aaLevelMost = m_options.aaLevelMost;
     settings.seed = seed;
     return settings;
 }
@@ -128,6 +129,7 @@ std::vector<Reference> EstimateBench::references(const PassSource& source,
                            kReferenceSeed);
     settings.integrator = IntegratorKind::kPath;
     settings.aaLevel = kPathLevel;
+    settings.aaLevelMost = 0;
     result.push_back({"path", source.halves(settings), 0});
     return result;
 }
@@ -266,7 +268,10 @@ int runProgram(int argc, char** argv) {
     app.add_option("--seeds", options.seeds, "renders of a scene (50)")->check(CLI::Range(2, 9999));
     app.add_option("--first-seed", options.firstSeed, "the others follow it (1)");
     app.add_option("--passes", options.passes, "of each (16)")->check(CLI::Range(2, 9999));
-    app.add_option("--aa", options.aaLevel, "level of anti-aliasing (3)")->check(CLI::Range(1, 6));
+    app.add_option("--aa", options.aaLevel, "least level of anti-aliasing (3)")
+        ->check(CLI::Range(1, 6));
+    app.add_option("--aa-most", options.aaLevelMost, "the most; no more than the least: fixed (5)")
+        ->check(CLI::Range(0, 6));
     app.add_option("--reference-passes", options.referencePasses,
                    "of the reference with narrow estimates (200), 0: none");
     app.add_option("--path-passes", options.pathPasses,

@@ -44,8 +44,11 @@ LadderStep stepOf(const NeutralScene& scene, const Yardstick& yardstick, int pas
 }  // namespace
 
 Settings settingsFor(const LadderRequest& request, int passes, int seed) {
+    const std::size_t colon = request.levels.find(':');
     return {{"integrator", request.integrator},
-            {"aaLevel", std::to_string(request.aaLevel)},
+            {"aaLevel", request.levels.substr(0, colon)},
+            {"aaLevelMost",
+             colon == std::string::npos ? request.levels : request.levels.substr(colon + 1)},
             {"threads", std::to_string(request.threads)},
             {"passes", std::to_string(passes)},
             {"seed", std::to_string(seed)}};

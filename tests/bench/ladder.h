@@ -15,7 +15,7 @@ namespace pm::bench {
 
 struct LadderRequest {
     std::string integrator = "photon";
-    int aaLevel = 4;
+    std::string levels = "4";  // of anti-aliasing: N, or MIN:MAX
     int threads = 2;
     bool twice = true;  // two seeds for each step, so that the bias can be told from the noise
     int largestPasses = 256;

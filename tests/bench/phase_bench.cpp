@@ -4,6 +4,8 @@
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
 
+#include <utility>
+
 #include "integrator/sampling/sampler.h"
 #include "tests/bench/bench_scenes.h"
 #include "tests/bench/render_run.h"
@@ -66,29 +68,31 @@ void benchPhases(Report& report, int turns) {
 }
 
 void benchSampler(Report& report, int turns) {
-    report.table("Random numbers, nanoseconds, one thread", {"what", "ns"});
-    constexpr int kSamples = 200'000, kPairs = 8;
+    report.table("Random numbers, nanoseconds, one thread; 8 drawn from each sampler",
+                 {"what", "ns"});
+    constexpr int kSamples = 200'000, kDraws = 8;
+    const auto drawing = [](int draws, const auto& draw) {
+        return [draws, draw] {
+            for (int i = 0; i < kSamples; ++i) {
+                Sampler sampler(1, 0, static_cast<std::uint64_t>(i / 16),
+                                static_cast<std::uint32_t>(i % 16));
+                benchmark::DoNotOptimize(sampler);
+                for (int d = 0; d < draws; ++d) draw(sampler);
+            }
+        };
+    };
+    const auto pair = [](Sampler& s) { benchmark::DoNotOptimize(s.next2D()); };
+    const auto single = [](Sampler& s) { benchmark::DoNotOptimize(s.next1D()); };
     const auto times =
-        takeTurns(turns, {[] {
-                              for (int i = 0; i < kSamples; ++i) {
-                                  Sampler sampler(1, 0, static_cast<std::uint64_t>(i / 16),
-                                                  static_cast<std::uint32_t>(i % 16));
-                                  benchmark::DoNotOptimize(sampler);
-                              }
-                          },
-                          [] {
-                              for (int i = 0; i < kSamples; ++i) {
-                                  Sampler sampler(1, 0, static_cast<std::uint64_t>(i / 16),
-                                                  static_cast<std::uint32_t>(i % 16));
-                                  for (int d = 0; d < kPairs; ++d)
-                                      benchmark::DoNotOptimize(sampler.next2D());
-                              }
-                          }});
+        takeTurns(turns, {drawing(0, pair), drawing(kDraws, pair), drawing(kDraws, single)});
     report.row({"a sampler made", show(spreadOf(times[0]), 1e9 / kSamples)});
-    std::vector<double> draws;
-    for (std::size_t i = 0; i < times[0].size(); ++i) draws.push_back(times[1][i] - times[0][i]);
-    report.row({"a 2D sample drawn (8 from each sampler)",
-                show(spreadOf(draws), 1e9 / (kSamples * kPairs))});
+    for (const auto& [name, i] :
+         {std::pair{"a pair drawn", 1u}, std::pair{"a single number drawn", 2u}}) {
+        std::vector<double> draws;
+        for (std::size_t turn = 0; turn < times[0].size(); ++turn)
+            draws.push_back(times[i][turn] - times[0][turn]);
+        report.row({name, show(spreadOf(draws), 1e9 / (kSamples * kDraws))});
+    }
 }
 
 }  // namespace pm::bench

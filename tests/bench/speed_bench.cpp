@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // How fast the parts are: rays, photons, maps, look-ups, phases, random numbers; where there is a
-// rival, side by side with it in one run.
+// rival, side by side with it in one run. And what share of a camera sample's time each part has.
 #include "tests/bench/speed_bench.h"
 
 #include <fmt/format.h>
@@ -18,7 +18,7 @@ namespace {
 int runProgram(int argc, char** argv) {
     static const std::map<std::string, std::function<void(Report&, int)>> kParts = {
         {"1-rays", benchRays},     {"2-photons", benchPhotons}, {"3-queries", benchQueries},
-        {"4-phases", benchPhases}, {"5-sampler", benchSampler},
+        {"4-phases", benchPhases}, {"5-sampler", benchSampler}, {"6-split", benchSplit},
     };
     std::string csvFile, docsFile, only;
     int turns = 9;
@@ -28,8 +28,8 @@ int runProgram(int argc, char** argv) {
     app.add_option("--docs", docsFile, "also put the tables into this Markdown file");
     app.add_option("--turns", turns, "timed turns of each rival (9)")->check(CLI::Range(1, 1000));
     app.add_flag("--quick", quick, "a third of the turns");
-    app.add_option("--only", only, "one part: rays, photons, queries, phases or sampler")
-        ->check(CLI::IsMember({"rays", "photons", "queries", "phases", "sampler"}));
+    app.add_option("--only", only, "one part: rays, photons, queries, phases, sampler or split")
+        ->check(CLI::IsMember({"rays", "photons", "queries", "phases", "sampler", "split"}));
     CLI11_PARSE(app, argc, argv);
     if (quick) turns = std::max(1, turns / 3);
     try {

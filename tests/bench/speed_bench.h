@@ -12,5 +12,6 @@ void benchPhotons(Report& report, int turns);
 void benchQueries(Report& report, int turns);
 void benchPhases(Report& report, int turns);
 void benchSampler(Report& report, int turns);
+void benchSplit(Report& report, int turns);
 
 }  // namespace pm::bench

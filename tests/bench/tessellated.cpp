@@ -37,7 +37,7 @@ std::vector<double> renderObj(const NeutralScene& scene, const std::filesystem::
                 "--up",         triple(camera.up),
                 "--fov",        fmt::format("{}", camera.verticalDegrees),
                 "--integrator", settings.at("integrator"),
-                "--aa",         settings.at("aaLevel"),
+                "--aa",         settings.at("aaLevel") + ":" + settings.at("aaLevelMost"),
                 "--threads",    settings.at("threads"),
                 "--passes",     settings.at("passes"),
                 "--seed",       settings.at("seed"),

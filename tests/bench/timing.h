@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <ctime>
 #include <functional>
 #include <vector>
 
@@ -37,6 +38,13 @@ inline double processorSeconds() {
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     return processorSeconds(usage);
+}
+
+// What the calling thread has used.
+inline double threadSeconds() {
+    timespec t{};
+    clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+    return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
 }
 
 struct Spread {

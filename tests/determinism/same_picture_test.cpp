@@ -69,11 +69,19 @@ TEST_F(SamePicture, ForAnyThreads) {
 }
 
 TEST_F(SamePicture, ForAnyBucketOrder) {
-    expectSame({{"--bucket-order", "hilbert"}, {"--bucket-order", "row"}});
+    std::vector<Arguments> ways;
+    for (const char* order :
+         {"hilbert", "row", "column", "diagonal", "spiral", "random", "correlated"})
+        ways.push_back({"--bucket-order", order});
+    expectSame(ways);
 }
 
 TEST_F(SamePicture, ForAnyBucketSize) {
-    expectSame({{"--bucket-size", "16"}, {"--bucket-size", "32"}, {"--bucket-size", "48"}});
+    expectSame({{"--bucket-size", "16"},
+                {"--bucket-size", "8"},
+                {"--bucket-size", "48"},
+                {"--bucket-size", "256"},
+                {"--bucket-size", "auto"}});
 }
 
 TEST_F(SamePicture, ForThePathIntegrator) {

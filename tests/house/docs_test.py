@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: The pm authors
-"""The documents hold: links lead somewhere, the C example compiles, options exist in pm_host.
+"""The documents hold: links lead somewhere, the C example compiles, options exist in pm_host, tests
+exist that docs/testing.md names.
 
 usage: docs_test.py C_COMPILER PM_HOST
 """
@@ -44,15 +45,27 @@ def unknown_options(host):
         if document.name == "CHANGELOG.md":
             continue
         for line in document.read_text(encoding="utf-8").splitlines():
-            is_ours = not re.search(r"cmake|ctest|dev (?:format|install|lint)|find_package", line)
+            others = r"cmake|ctest|gtest|dev (?:format|install|lint)|find_package"
+            is_ours = not re.search(others, line)
             for option in re.findall(r"(?<![\w-])--[a-z][a-z-]+", line) if is_ours else ():
                 if option != "--prefix" and not re.search(rf"{option}\b", known):
                     yield f"{document.relative_to(ROOT)}: pm_host has no option {option}"
 
 
+def unknown_tests():
+    named = set()
+    for source in ROOT.glob("tests/*/*.cpp"):
+        text = source.read_text(encoding="utf-8")
+        named |= set(map(".".join, re.findall(r"\bTEST(?:_[PF])?\(\s*(\w+),\s*(\w+)", text)))
+    text = (ROOT / "docs" / "testing.md").read_text(encoding="utf-8")
+    for test in re.findall(r"`([A-Z]\w+\.[A-Z]\w+)`", text):
+        if test not in named:
+            yield f"docs/testing.md: there is no test {test}"
+
+
 def main():
     compiler, host = sys.argv[1:3]
-    found = [*broken_links(), *broken_example(compiler)]
+    found = [*broken_links(), *broken_example(compiler), *unknown_tests()]
     if pathlib.Path(host).exists():
         found += unknown_options(host)
     else:

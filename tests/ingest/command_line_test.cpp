@@ -59,20 +59,29 @@ TEST(CommandLine, refusesWhatIsUnknownOrToCome) {
     EXPECT_TRUE(refusal({"--bogus"}).starts_with("2 "));
     EXPECT_TRUE(refusal({"another.obj"}).starts_with("2 "));
     EXPECT_TRUE(refusal({"-o"}).starts_with("2 "));
-    for (const char* later :
-         {"--checkpoint", "--resume", "--buckets", "--filter", "--photon-map", "--report"}) {
+    for (const char* later : {"--filter", "--photon-map", "--photons-only", "--report"}) {
         EXPECT_EQ(refusal({later, "x"}), std::string("2 ") + later + ": not available yet");
         EXPECT_EQ(refusal({std::string(later) + "=x"}),
                   std::string("2 ") + later + ": not available yet");
     }
-    EXPECT_EQ(errorOf([] {
-                  parseCommandLine({"merge", "a", "-o", "b"});
-              }),
-              "2 merge: not available yet");
-    EXPECT_EQ(refusal({"--bucket-order", "spiral"}), "2 --bucket-order spiral: not available yet");
-    EXPECT_EQ(refusal({"--bucket-size", "auto"}), "2 --bucket-size auto: not available yet");
-    EXPECT_TRUE(refusal({"--aa", "1:6"}).starts_with("2 --aa 1:6: not available yet"));
-    EXPECT_TRUE(refusal({"--aa", "0"}).starts_with("2 --aa 0: not available yet"));
+    EXPECT_TRUE(refusal({"--aa", "0"}).starts_with("2 --aa 0: level 0 is not available yet"));
+    EXPECT_TRUE(refusal({"--aa", "0:3"}).starts_with("2 --aa 0:3: level 0 is not available yet"));
+}
+
+TEST(CommandLine, levelsOfAntiAliasing) {
+    const Options range = parseCommandLine({"s.obj", "--aa", "1:5", "--aa-threshold", "0.02"});
+    EXPECT_EQ(setting(range, "aaLevel"), "1");
+    EXPECT_EQ(setting(range, "aaLevelMost"), "5");
+    EXPECT_EQ(setting(range, "aaThreshold"), "0.02");
+    EXPECT_EQ(setting(parseCommandLine({"s.obj", "--aa=4"}), "aaLevelMost"), "4");
+}
+
+TEST(CommandLine, bucketSizeAndOrder) {
+    const Options options =
+        parseCommandLine({"s.obj", "--bucket-size", "auto", "--bucket-order", "spiral"});
+    EXPECT_EQ(setting(options, "bucketSize"), "0");
+    EXPECT_EQ(setting(options, "bucketOrder"), "spiral");
+    EXPECT_EQ(setting(parseCommandLine({"s.obj", "--bucket-size=64"}), "bucketSize"), "64");
 }
 
 TEST(CommandLine, refusesBadValues) {
@@ -97,6 +106,34 @@ TEST(CommandLine, refusesBadValues) {
                                                        {"-o", "a.####.exr"}}) {
         EXPECT_TRUE(refusal(bad).starts_with("2 ")) << bad[0] << " " << bad[1] << refusal(bad);
     }
+}
+
+TEST(CommandLine, pieces) {
+    const Options options =
+        parseCommandLine({"s.obj", "-o", "a.%02d.pmpart", "--frame", "3", "--checkpoint", "c.##",
+                          "--resume", "--buckets", "2/7"});
+    EXPECT_TRUE(options.outputs.empty());
+    EXPECT_EQ(options.part, "a.03.pmpart");
+    EXPECT_EQ(setting(options, "part"), "a.03.pmpart");
+    EXPECT_EQ(setting(options, "checkpoint"), "c.03");
+    EXPECT_EQ(setting(options, "resume"), "1");
+    EXPECT_EQ(setting(options, "buckets"), "2/7");
+    EXPECT_FALSE(options.keepCheckpoint);
+    EXPECT_TRUE(refusal({"--resume"}).starts_with("2 --resume needs --checkpoint"));
+    EXPECT_TRUE(refusal({"--keep-checkpoint"}).starts_with("2 --keep-checkpoint needs"));
+    EXPECT_TRUE(refusal({"--buckets", "1/2"}).starts_with("2 --buckets needs -o NAME.pmpart"));
+    const Options merge = parseCommandLine(
+        {"merge", "a.#.pmpart", "b.pmpart", "--frame", "4", "-o", "m.#.exr", "--view", "raw"});
+    EXPECT_EQ(merge.merge, (std::vector<std::filesystem::path>{"a.4.pmpart", "b.pmpart"}));
+    EXPECT_EQ(merge.outputs, (std::vector<std::filesystem::path>{"m.4.exr"}));
+    EXPECT_EQ(merge.colour.view, "raw");
+    const auto refusedMerge = [](const Arguments& arguments) {
+        return errorOf([&] { parseCommandLine(arguments); });
+    };
+    EXPECT_TRUE(refusedMerge({"merge", "a"}).starts_with("2 usage: pm_host merge"));
+    EXPECT_TRUE(refusedMerge({"merge", "-o", "b.exr"}).starts_with("2 usage: pm_host merge"));
+    EXPECT_TRUE(refusedMerge({"merge", "a", "-o", "b.exr", "--passes", "3"}).starts_with("2 "));
+    EXPECT_TRUE(refusedMerge({"merge", "a", "-o", "b.pmpart"}).starts_with("2 -o: merge makes"));
 }
 
 TEST(CommandLine, framePatterns) {

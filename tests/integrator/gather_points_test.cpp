@@ -9,11 +9,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
+#include <span>
 #include <vector>
 
 #include "integrator/transport/frame_renderer.h"
 #include "tests/integrator/replicates.h"
 #include "tests/integrator/rooms.h"
+#include "tests/integrator/statistics.h"
 
 namespace pm::test {
 namespace {
@@ -148,6 +151,67 @@ TEST(GatherPoints, FurnaceIsConstant) {
     fmt::print("    furnace: {:.4f} of what is expected +- {:.4f}\n", all.mean / 0.25,
                all.standardError / 0.25);
     EXPECT_LT(zScore(all, {0.25, 0, 100}, 0.005 * 0.25), 4);
+}
+
+// Which share of the gather rays from a place meets a sphere that shines: the form factor,
+// (R/d)^2 cos(theta) while it stands above the horizon (analytic A4). So the rays' directions
+// follow the cosine, wherever the floor's normal points.
+TEST(GatherPoints, RaysFollowTheCosine) {
+    struct Direction {
+        double degrees, turns;
+    };
+    double chiSquared = 0, flat = 0;
+    int count = 0;
+    for (const Vec3d& normal : {Vec3d{0, 1, 0}, normalize(Vec3d{0.6, 0.2, -0.4})})
+        for (const Direction& d : {Direction{0, 0}, {30, 0.1}, {30, 0.6}, {50, 0.3}, {65, 0.85}}) {
+            const Frame frame{Vec3f(normal)};
+            const Vec3d t(frame.tangent), b(frame.bitangent);
+            const double theta = d.degrees * std::numbers::pi / 180;
+            const double phi = 2 * std::numbers::pi * d.turns;
+            const Vec3d to = normal * std::cos(theta) +
+                             (t * std::cos(phi) + b * std::sin(phi)) * std::sin(theta);
+            SceneMaker maker;
+            const double half = 0.01;
+            maker.quad((t + b) * -half, t * (2 * half), b * (2 * half), maker.diffuse(Rgb(0.5f)));
+            maker.sphere(to * 2.5, 1, maker.diffuse({}, Rgb(1.0f)));
+            maker.camera(normal * 0.5, {0, 0, 0}, t, 0.5);
+            const auto scene = maker.build();
+            const Camera camera(*scene, 16, 16);
+            const PhotonMap map(std::span<const Photon>{});
+            const IrradianceSites sites(*scene, map, 0.01f);
+            const GatherPoints points(*scene, camera, sites, {16, 16, 2.5f, 64}, kNotCancelled);
+            const auto onFloor = Vec3f(-scene->centre());
+            double share = 0;
+            int places = 0;
+            for (int y = 0; y < 16; ++y)
+                for (int x = 0; x < 16; ++x) {
+                    const Vec2f screen{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
+                    Surface surface;
+                    ASSERT_TRUE(scene->intersect(
+                        camera.ray(static_cast<double>(screen.x), static_cast<double>(screen.y)),
+                        surface));
+                    GatherPoints::Estimate found;
+                    ASSERT_TRUE(points.estimate(
+                        {screen, surface.position, Vec3f(normal), surface.geometricNormal}, found));
+                    ASSERT_LT(length(surface.position - onFloor), 0.02f);
+                    share += static_cast<double>(found.lampShare);
+                    ++places;
+                }
+            share /= places;
+            const double expected = std::cos(theta) / 6.25;
+            const auto rays = static_cast<double>(points.raysTraced());
+            // Of independent rays; these are spread better.
+            const double variance = expected * (1 - expected) / rays;
+            chiSquared += (share - expected) * (share - expected) / variance;
+            // Twin: as often from everywhere, 1 - cos of the sphere's half angle.
+            const double even = 1 - std::sqrt(1 - 1 / 6.25);
+            flat += (share - even) * (share - even) / variance;
+            ++count;
+        }
+    fmt::print("    chi-squared {:.1f} of {} spheres, {:.0f} without the cosine\n", chiSquared,
+               count, flat);
+    EXPECT_GT(chiSquaredPValue(chiSquared, count), 0.01 / 50);
+    EXPECT_LT(chiSquaredPValue(flat, count), 0.01 / 50);
 }
 
 // Pixels of a frame that was begun, by some order of rectangles.

@@ -224,5 +224,28 @@ TEST(Passes, MemoryDoesNotGrow) {
     }
 }
 
+// The pixels of one pass of a renderer's frame of 16 x 16.
+std::vector<float> firstPass(FrameRenderer&& renderer) {
+    std::vector<float> pixels(static_cast<std::size_t>(16 * 16 * renderer.layout().count));
+    std::vector<float> weights(16 * 16);
+    renderer.beginPass(0, kNotCancelled, {});
+    renderer.renderRegion({0, 0, 16, 16}, pixels, weights, kNotCancelled);
+    return pixels;
+}
+
+// Settings that the plan alone reads, so the same plan under others is the same picture.
+TEST(Passes, FollowThePlanThatIsGiven) {
+    SceneMaker maker = openRoom();
+    ceilingLamp(maker, 0.5, Rgb(8.0f));
+    const std::shared_ptr<const Scene> scene = maker.build();
+    const RenderSettings settings = smallFrame(16, 16, IntegratorKind::kPhoton, 1, 3);
+    RenderSettings other = settings;
+    other.photons = 3000;
+    other.gatherRays = 7;
+    const std::vector<float> wanted = firstPass(FrameRenderer(scene, other));
+    EXPECT_NE(wanted, firstPass(FrameRenderer(scene, settings)));
+    EXPECT_EQ(wanted, firstPass(FrameRenderer(scene, settings, makePlan(*scene, other))));
+}
+
 }  // namespace
 }  // namespace pm::test

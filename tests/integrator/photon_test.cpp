@@ -8,8 +8,10 @@
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <set>
 
 #include "tests/integrator/scene_maker.h"
 
@@ -109,6 +111,31 @@ TEST(Photons, TheSameBitsForAnyThreads) {
               trace(scene, 1000, PhotonKind::kGlobal, 1).photons[0].position);
 }
 
+// Pilots find the radii of estimates, so a photon of theirs that were one of a map's would count
+// for its own disc (analytic F2); and passes are told apart to see the noise.
+TEST(Photons, KindsAndPassesShareNone) {
+    SceneMaker maker;
+    maker.box({-1, -1, -1}, {1, 1, 1}, maker.diffuse(Rgb(0.5f)), true);
+    maker.sphere({0.3, 0.2, 0}, 0.3, maker.material(glass()));
+    maker.pointLight({0.2, 0.1, -0.9}, Rgb(1.0f));
+    const auto scene = maker.build();
+    const LightSampler lights(*scene);
+    std::set<std::array<float, 3>> places;
+    std::size_t count = 0;
+    for (const PhotonKind kind : {PhotonKind::kGlobal, PhotonKind::kGlobalPilot,
+                                  PhotonKind::kCaustic, PhotonKind::kCausticPilot})
+        for (const std::uint32_t pass : {0u, 1u, 2u}) {
+            const PhotonTraceRequest request{kind, 2000, 1, pass};
+            for (const Photon& photon :
+                 tracePhotons(*scene, lights, request, std::atomic<bool>{false}, {}).photons) {
+                places.insert({photon.position.x, photon.position.y, photon.position.z});
+                ++count;
+            }
+        }
+    EXPECT_GT(count, 10'000u);
+    EXPECT_GT(places.size(), count - 3);  // by chance two may meet in one point
+}
+
 // Share of a black emitting rectangle's flux that reaches the other surface.
 double formFactor(const SceneMaker& maker, double emitted) {
     const auto scene = maker.build();
@@ -124,7 +151,7 @@ double tolerance(double f) {
 
 TEST(Photons, ParallelRectangles) {  // analytic A1
     for (const auto& [size, expected] :
-         {std::pair{1.0, 0.19982490}, {2.0, 0.41525328}, {0.5, 0.06858959}}) {
+         {std::pair{1.0, 0.19982490}, {2.0, 0.41525328}, {0.5, 0.06858959}, {10.0, 0.82699452}}) {
         SceneMaker maker;
         maker.quad({0, 0, 0}, {size, 0, 0}, {0, size, 0}, maker.diffuse({}, Rgb(1.0f)));
         maker.quad({0, 0, 1}, {0, size, 0}, {size, 0, 0}, maker.diffuse(Rgb(0.5f)));

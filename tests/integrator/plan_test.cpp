@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <string>
 
 #include "tests/integrator/scene_maker.h"
 
@@ -50,6 +51,17 @@ TEST(Plan, AMirrorWantsACausticMap) {
     EXPECT_EQ(planOf(maker, settings).causticPhotons, 1234u);
     settings.integrator = IntegratorKind::kPath;
     EXPECT_FALSE(planOf(maker, settings).tracePhotons);
+}
+
+TEST(Plan, ManyLampsAreToldOf) {
+    SceneMaker maker = litFloor();
+    const auto told = [&maker] {
+        return planOf(maker).explain().find("its own choice of them") != std::string::npos;
+    };
+    EXPECT_FALSE(told());
+    for (int i = 0; i < 20; ++i)
+        maker.quad({0.1 * i, 1, 0}, {0.01, 0, 0}, {0, 0, 0.01}, maker.diffuse({}, Rgb(1.0f)));
+    EXPECT_TRUE(told());
 }
 
 TEST(Plan, NothingThatEmitsOrNothingDiffuseWantsNoPhotons) {

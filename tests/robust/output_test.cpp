@@ -93,7 +93,8 @@ TEST_F(Outputs, foreignVariablesChangeNothing) {
 
 TEST_F(Outputs, resultsGoToStandardOutputOnly) {
     EXPECT_NE(run({"--list", "settings"}).out.find("bucketOrder"), std::string::npos);
-    EXPECT_EQ(run({"--list", "orders"}).out, "hilbert\nrow\n");
+    EXPECT_EQ(run({"--list", "orders"}).out,
+              "hilbert\nrow\ncolumn\ndiagonal\nspiral\nrandom\ncorrelated\n");
     EXPECT_NE(run({"-h"}).out.find("--bucket-order"), std::string::npos);
     EXPECT_NE(run({"box.obj", "--explain"}).out.find("photons"), std::string::npos);
     const Outcome pixel = render({"--only-pixel", "8,8", "--stats", "-"});

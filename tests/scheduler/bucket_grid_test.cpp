@@ -64,6 +64,34 @@ TEST(BucketGrid, wholeAtomsRoundsOutwardsAlsoBelowZero) {
     EXPECT_TRUE(wholeAtoms({3, 3, 3, 9}).empty());
 }
 
+TEST(BucketGrid, atomsOfABucketCoverItOnceAndLieOnTheGrid) {
+    for (const Rect& bucket : {Rect{0, 0, 32, 32}, Rect{-13, 5, 3, 16}, Rect{7, -9, 8, 40}}) {
+        const std::int32_t count = atomCount(bucket);
+        EXPECT_EQ(count * kAtomPixels, wholeAtoms(bucket).area());
+        std::int64_t area = 0;
+        for (std::int32_t i = 0; i < count; ++i) {
+            const Rect atom = atomOf(bucket, i), whole = wholeAtoms(atom);
+            EXPECT_EQ(whole.area(), kAtomPixels) << "one atom";
+            EXPECT_EQ(intersect(whole, bucket), atom);
+            for (std::int32_t j = 0; j < i; ++j)
+                EXPECT_TRUE(intersect(atomOf(bucket, j), atom).empty());
+            area += atom.area();
+        }
+        EXPECT_EQ(area, bucket.area());
+    }
+}
+
+TEST(BucketGrid, automaticSizeKeepsBucketsToSomeTensOfThousands) {
+    EXPECT_EQ(autoBucketSize({0, 0, 1, 1}), 32);
+    EXPECT_EQ(autoBucketSize({3, 4, 3, 9}), 32);
+    EXPECT_EQ(autoBucketSize({0, 0, 8192, 8192}), 32);  // 65,536 of them
+    EXPECT_EQ(autoBucketSize({0, 0, 8193, 8192}), 64);
+    EXPECT_EQ(autoBucketSize({-1, 0, 8184, 8192}), 32);  // from -8: 256 columns
+    EXPECT_EQ(autoBucketSize({-1, 0, 8185, 8192}), 64);
+    EXPECT_EQ(autoBucketSize({0, 0, 65536, 65536}), 256);
+    EXPECT_EQ(autoBucketSize({-(1 << 29), 0, 1 << 29, 1 << 29}), kMaxBucketSizePixels);
+}
+
 TEST(BucketGrid, columnsAndRows) {
     const BucketGrid grid({-13, 5, 50, 33}, 16);  // origin (-16, 0)
     EXPECT_EQ(grid.columns(), 5);                 // -16, 0, 16, 32, 48

@@ -72,12 +72,12 @@ Rendered render(const std::vector<float>& truth, int passes, const Noise& noise,
     Random random(seed);
     FrameStore frame(kFrame, kChannels, 0);
     const std::vector<float> weights(kPixels, 4.0f);
-    for (int pass = 0; pass < passes; ++pass) {
+    for (std::uint32_t pass = 0; pass < static_cast<std::uint32_t>(passes); ++pass) {
         std::vector<float> pixels(kPixels * kChannels);
         for (std::size_t i = 0; i < kPixels; ++i) {
             for (std::size_t c = 0; c < 3; ++c) pixels[i * kChannels + c] = noise(truth[i], random);
         }
-        frame.addPass(kFrame, pixels, weights);
+        frame.addPass(pass, kFrame, pixels, weights);
     }
     return {frame.estimateError().value(), relMseOf(frame, truth)};
 }
@@ -105,10 +105,10 @@ TEST(FrameError, isUnknownWithLessThanTwoPasses) {
     FrameStore frame(kFrame, kChannels, 0, 3);
     EXPECT_FALSE(frame.estimateError());
     const std::vector<float> pixels(kPixels * kChannels), weights(kPixels, 1.0f);
-    frame.addPass(kFrame, pixels, weights);
+    frame.addPass(0, kFrame, pixels, weights);
     EXPECT_FALSE(frame.estimateError());
     // One pixel with two passes is enough, and is all that is told of.
-    frame.addPass({3, 3, 4, 4}, std::span(pixels).first(kChannels), std::span(weights).first(1));
+    frame.addPass(1, {3, 3, 4, 4}, std::span(pixels).first(kChannels), std::span(weights).first(1));
     ASSERT_TRUE(frame.estimateError());
     EXPECT_EQ(frame.estimateError()->total(), 0.0);
     EXPECT_FALSE(frame.estimateError()->biasStandardError);
@@ -145,11 +145,11 @@ TEST(FrameError, isRightForVariedPicturesAndNoises) {
 TEST(FrameError, seesLoneOutliers) {
     FrameStore frame(kFrame, 3, 0);
     const std::vector<float> weights(kPixels, 1.0f);
-    for (int pass = 0; pass < 4; ++pass) {
+    for (std::uint32_t pass = 0; pass < 4; ++pass) {
         std::vector<float> pixels(3 * kPixels, 1.0f);
         for (const std::size_t outlier : {700u, 701u, 0u, 4095u})
             for (std::size_t c = 0; pass == 2 && c < 3; ++c) pixels[3 * outlier + c] = 1001.0f;
-        frame.addPass(kFrame, pixels, weights);
+        frame.addPass(pass, kFrame, pixels, weights);
     }
     const double expected = 4 * 250.0 * 250.0 / 1.01 / kPixels;
     // Two of them are neighbours: the mean beside an outlier is raised by 250/8.
@@ -167,10 +167,10 @@ TEST(FrameError, aTinyLampThatIsSeenIsNoOutlier) {
     double noise[2] = {};
     for (const std::int32_t emission : {-1, 3}) {
         FrameStore frame(kFrame, 6, 0, -1, emission);
-        for (int pass = 0; pass < 4; ++pass) {
+        for (std::uint32_t pass = 0; pass < 4; ++pass) {
             std::vector<float> pixels(6 * kPixels);
             for (std::size_t c = 0; c < 6; ++c) pixels[6 * 900 + c] = pass == 1 ? 4000.0f : 0.0f;
-            frame.addPass(kFrame, pixels, weights);
+            frame.addPass(pass, kFrame, pixels, weights);
         }
         noise[emission < 0 ? 0 : 1] = frame.estimateError()->noise;
     }
@@ -220,7 +220,7 @@ TEST(FrameError, spreadOfSamplesMissesWhatTheyShare) {
     FrameStore frame(kFrame, 3, 0);
     const std::vector<float> truth(kPixels, 1.0f), weights(kPixels, kSamples);
     std::vector<double> sums(3 * kPixels), squares(3 * kPixels);
-    for (int pass = 0; pass < kPasses; ++pass) {
+    for (std::uint32_t pass = 0; pass < kPasses; ++pass) {
         std::vector<float> pixels(3 * kPixels);
         for (std::size_t i = 0; i < pixels.size(); ++i) {
             const float shared = 0.3f * normal(random);
@@ -231,7 +231,7 @@ TEST(FrameError, spreadOfSamplesMissesWhatTheyShare) {
                 squares[i] += static_cast<double>(sample) * static_cast<double>(sample);
             }
         }
-        frame.addPass(kFrame, pixels, weights);
+        frame.addPass(pass, kFrame, pixels, weights);
     }
     double naive = 0;
     constexpr double kAll = kPasses * kSamples;
@@ -252,7 +252,7 @@ TEST(FrameError, halvesAreRightWherePassesOfAHalfAreNotIndependent) {
     FrameStore frame(kFrame, 3, 0);
     const std::vector<float> truth(kPixels, 1.0f), weights(kPixels, 4.0f);
     std::vector<float> swing(3 * kPixels);
-    for (int pass = 0; pass < 8; ++pass) {
+    for (std::uint32_t pass = 0; pass < 8; ++pass) {
         std::vector<float> pixels(3 * kPixels);
         for (std::size_t i = 0; i < pixels.size(); ++i) {
             // Passes 0 and 2 swing to opposite sides, so do 4 and 6.
@@ -260,7 +260,7 @@ TEST(FrameError, halvesAreRightWherePassesOfAHalfAreNotIndependent) {
             const float side = pass % 2 == 1 ? 0.0f : pass % 4 == 0 ? 1.0f : -1.0f;
             pixels[i] = 1.0f + side * swing[i] + 0.1f * normal(random);
         }
-        frame.addPass(kFrame, pixels, weights);
+        frame.addPass(pass, kFrame, pixels, weights);
     }
     double between = 0;
     for (std::int32_t x = 0; x < kSize; ++x) {
@@ -282,13 +282,13 @@ Biased renderBiased(float bias, float noise, int passes, unsigned seed) {
     std::normal_distribution<float> normal;
     FrameStore frame(kFrame, kChannels, 0, 3);
     const std::vector<float> truth(kPixels, 1.0f), weights(kPixels, 4.0f);
-    for (int pass = 0; pass < passes; ++pass) {
+    for (std::uint32_t pass = 0; pass < static_cast<std::uint32_t>(passes); ++pass) {
         std::vector<float> pixels(kPixels * kChannels);
         for (std::size_t i = 0; i < pixels.size(); ++i) {
             const float mean = i % kChannels < 3 ? 1.0f + bias : -0.5f * bias;
             pixels[i] = mean + noise * normal(random);
         }
-        frame.addPass(kFrame, pixels, weights);
+        frame.addPass(pass, kFrame, pixels, weights);
     }
     return {frame.estimateError().value(), relMseOf(frame, truth)};
 }
@@ -330,16 +330,17 @@ TEST(FrameError, notANumberStaysOne) {
     FrameStore frame(kFrame, 3, 0);
     std::vector<float> pixels(3 * kPixels, 1.0f);
     pixels[999] = std::numeric_limits<float>::quiet_NaN();
-    for (int pass = 0; pass < 2; ++pass)
-        frame.addPass(kFrame, pixels, std::vector<float>(kPixels, 1.0f));
+    for (std::uint32_t pass = 0; pass < 2; ++pass)
+        frame.addPass(pass, kFrame, pixels, std::vector<float>(kPixels, 1.0f));
     EXPECT_TRUE(std::isnan(frame.estimateError()->total()));
     EXPECT_TRUE(std::isnan(frame.estimateError()->totalTrimmed()));
 }
 
 TEST(FrameError, aFrameOfOnePixelHasOne) {
     FrameStore frame({5, 5, 6, 6}, 3, 0);
-    for (const float value : {1.0f, 3.0f})
-        frame.addPass(frame.window(), std::vector<float>(3, value), std::vector<float>(1, 1.0f));
+    const std::vector<float> weights(1, 1.0f);
+    frame.addPass(0, frame.window(), std::vector<float>(3, 1.0f), weights);
+    frame.addPass(1, frame.window(), std::vector<float>(3, 3.0f), weights);
     EXPECT_DOUBLE_EQ(frame.estimateError()->noise, 1.0 / 4.01);
 }
 

@@ -25,7 +25,7 @@ void addPasses(FrameStore& frame, const Rect& rect, const std::atomic<int>& read
         const int due = k % 8 == 0 ? reads + 2 : 0;
         while (reads < due) std::this_thread::yield();
         const std::vector<float> pixels(area * kChannels, static_cast<float>(k));
-        frame.addPass(rect, pixels, weights);
+        frame.addPass(static_cast<std::uint32_t>(k - 1), rect, pixels, weights);
     }
 }
 

@@ -3,17 +3,21 @@
 
 // The promise of the same bits, held by grid, orders, runner and frame store together over a
 // synthetic source of pixels: whatever the threads, the bucket size, the order, the crop and the
-// host's floating-point modes, the bytes are those of one thread.
+// host's floating-point modes, the bytes are those of one thread. P14 and P16 of the paper of Yavuz
+// et al. 2010.
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
 #include <bit>
+#include <chrono>
 #include <cmath>
 #include <cstring>
 #include <functional>
+#include <thread>
 
 #include "scheduler/bucket_order.h"
 #include "scheduler/bucket_runner.h"
+#include "scheduler/correlated_choice.h"
 #include "scheduler/frame_store.h"
 
 namespace pm {
@@ -36,42 +40,47 @@ std::uint32_t hashOf(std::int32_t x, std::int32_t y, int pass, std::int32_t chan
     return hash(h ^ static_cast<std::uint32_t>(channel));
 }
 
-// Renders a bucket: C floats a pixel, then one weight a pixel behind them all.
-using Source = std::function<void(int pass, std::uint32_t cell, const Rect&, int worker,
-                                  std::span<float> pixels, std::span<float> weights)>;
+// Renders an atom of a bucket: C floats a pixel, then one weight a pixel behind them all.
+struct Piece {
+    int pass = 0;
+    std::uint32_t cell = 0;
+    Rect rect, atom;  // the bucket's pixels, and of them the atom's
+    int worker = 0;
+};
+using Source =
+    std::function<void(const Piece& piece, std::span<float> pixels, std::span<float> weights)>;
 
-void putPixel(const Rect& rect, std::int32_t x, std::int32_t y, int pass, float shared,
+void putPixel(const Piece& piece, std::int32_t x, std::int32_t y, float shared,
               std::span<float> pixels, std::span<float> weights) {
-    if (!rect.contains(x, y)) return;
+    if (!piece.atom.contains(x, y)) return;
+    const Rect& rect = piece.rect;
     const auto at = static_cast<std::size_t>((y - rect.y0) * rect.width() + x - rect.x0);
-    weights[at] = static_cast<float>(hashOf(x, y, pass, 99) % 4);  // 0: no sample in this pass
+    // 0: no sample in this pass
+    weights[at] = static_cast<float>(hashOf(x, y, piece.pass, 99) % 4);
     for (std::int32_t c = 0; c < kChannels; ++c) {
-        const float value = std::ldexp(static_cast<float>(hashOf(x, y, pass, c)), -32);
+        const float value = std::ldexp(static_cast<float>(hashOf(x, y, piece.pass, c)), -32);
         // Denormals too, so that flush-to-zero would show.
         const float scale = c == 0 ? 1e-42f : 1.0f;
         pixels[at * kChannels + static_cast<std::size_t>(c)] = scale * (value + shared / 3.0f);
     }
 }
 
-// Whole atoms from the given corner on; the pixels of one share a sum in atom order, as rays in one
+// A whole atom from the given corner on; its pixels share a sum in their order, as rays in one
 // batch share rounding.
-void renderAtoms(const Rect& atoms, const Rect& rect, int pass, std::span<float> pixels,
-                 std::span<float> weights) {
-    for (std::int32_t ay = atoms.y0; ay < atoms.y1; ay += kAtomSizePixels) {
-        for (std::int32_t ax = atoms.x0; ax < atoms.x1; ax += kAtomSizePixels) {
-            float shared = 0.0f;
-            for (std::int32_t i = 0; i < kAtomSizePixels * kAtomSizePixels; ++i) {
-                const std::int32_t x = ax + i % kAtomSizePixels, y = ay + i / kAtomSizePixels;
-                shared += std::ldexp(static_cast<float>(hashOf(x, y, pass, 7)), -33);
-                putPixel(rect, x, y, pass, shared, pixels, weights);
-            }
-        }
+void renderFrom(std::int32_t x0, std::int32_t y0, const Piece& piece, std::span<float> pixels,
+                std::span<float> weights) {
+    float shared = 0.0f;
+    for (std::int32_t i = 0; i < kAtomPixels; ++i) {
+        const std::int32_t x = x0 + i % kAtomSizePixels, y = y0 + i / kAtomSizePixels;
+        shared += std::ldexp(static_cast<float>(hashOf(x, y, piece.pass, 7)), -33);
+        putPixel(piece, x, y, shared, pixels, weights);
     }
 }
 
-const Source kGoodSource = [](int pass, std::uint32_t, const Rect& rect, int,
-                              std::span<float> pixels, std::span<float> weights) {
-    renderAtoms(wholeAtoms(rect), rect, pass, pixels, weights);
+const Source kGoodSource = [](const Piece& piece, std::span<float> pixels,
+                              std::span<float> weights) {
+    const Rect whole = wholeAtoms(piece.atom);
+    renderFrom(whole.x0, whole.y0, piece, pixels, weights);
 };
 
 struct Setting {
@@ -104,23 +113,27 @@ Picture renderPicture(const Setting& setting, const Rect& readRect,
                       const Source& source = kGoodSource) {
     WorkerArena arena(setting.threads);
     const BucketGrid grid(setting.window, setting.bucketSize);
-    const auto order = findBucketOrder(setting.order)->cells(grid.columns(), grid.rows());
+    const BucketOrder& named = *findBucketOrder(setting.order);
+    const auto order = named.cells(grid.columns(), grid.rows(), 1);
     FrameStore frame(setting.window, kChannels, kBeautyFirst);
     for (int pass = 0; pass < kPasses; ++pass) {
+        CorrelatedChoice choice(grid, order, setting.threads);
         BucketWork work;
+        if (named.isCorrelated) work.choose = [&](int worker) { return choice.next(worker); };
         work.floatsPerPixel = kChannels + 1;
         const auto split = [](const Rect& rect, auto floats) {
             const auto area = static_cast<std::size_t>(rect.area());
             return std::pair(floats.first(area * kChannels), floats.last(area));
         };
-        work.render = [&](std::uint32_t cell, const Rect& rect, int worker,
+        work.render = [&](std::uint32_t cell, const Rect& rect, const Rect& atom, int worker,
                           std::span<float> floats) {
             const auto [pixels, weights] = split(rect, floats);
-            source(pass, cell, rect, worker, pixels, weights);
+            source({pass, cell, rect, atom, worker}, pixels, weights);
         };
-        work.deliver = [&](std::uint32_t, const Rect& rect, std::span<const float> floats) {
+        work.deliver = [&](std::uint32_t cell, const Rect& rect, std::span<const float> floats) {
             const auto [pixels, weights] = split(rect, floats);
-            frame.addPass(rect, pixels, weights);
+            frame.addPass(static_cast<std::uint32_t>(pass), rect, pixels, weights);
+            choice.finished(cell, pixels, kChannels, kBeautyFirst);
         };
         runBuckets(arena, grid, order, CancelToken(), work);
     }
@@ -141,7 +154,7 @@ class SameBits : public ::testing::Test {
 TEST_F(SameBits, threadsSizesAndOrders) {
     const Picture expected = renderPicture({}, kWhole);
     for (const int threads : {1, 2, 3, 8}) {
-        for (const std::int32_t size : {8, 16, 24, 32, 48}) {
+        for (const std::int32_t size : {8, 16, 24, 32, 48, 128}) {
             for (const BucketOrder& order : bucketOrders()) {
                 const Picture picture = renderPicture({threads, size, order.name}, kWhole);
                 EXPECT_TRUE(sameBytes(picture, expected))
@@ -178,26 +191,28 @@ TEST_F(SameBits, modesOfTheHost) {
 
 // The comparison sees what it is for: three sources with the classic faults.
 TEST_F(SameBits, brokenSourcesAreSeen) {
-    const Source byBucket = [](int pass, std::uint32_t cell, const Rect& rect, int,
-                               std::span<float> pixels, std::span<float> weights) {
-        renderAtoms(wholeAtoms(rect), rect, pass, pixels, weights);
-        pixels[0] += static_cast<float>(cell) * 1e-3f;
+    const Source byBucket = [](const Piece& piece, std::span<float> pixels,
+                               std::span<float> weights) {
+        kGoodSource(piece, pixels, weights);
+        pixels[0] += static_cast<float>(piece.cell) * 1e-3f;
         weights[0] = 1.0f;
     };
     EXPECT_FALSE(sameBytes(renderPicture({1, 16}, kWhole, byBucket),
                            renderPicture({1, 32}, kWhole, byBucket)));
-    const Source byWorker = [](int pass, std::uint32_t, const Rect& rect, int worker,
-                               std::span<float> pixels, std::span<float> weights) {
-        renderAtoms(wholeAtoms(rect), rect, pass, pixels, weights);
-        for (float& value : pixels) value += static_cast<float>(worker);
-        std::this_thread::sleep_for(std::chrono::microseconds(200));
+    const Source byWorker = [](const Piece& piece, std::span<float> pixels,
+                               std::span<float> weights) {
+        const Rect whole = wholeAtoms(piece.atom);
+        std::this_thread::sleep_for(std::chrono::microseconds(50));
+        Piece shifted = piece;
+        shifted.pass += 100 * piece.worker;
+        renderFrom(whole.x0, whole.y0, shifted, pixels, weights);
     };
     EXPECT_FALSE(sameBytes(renderPicture({1, 16}, kWhole, byWorker),
                            renderPicture({8, 16}, kWhole, byWorker)));
     // Atoms that begin at the bucket's corner: right for the whole frame, wrong for a crop.
-    const Source byCorner = [](int pass, std::uint32_t, const Rect& rect, int,
-                               std::span<float> pixels, std::span<float> weights) {
-        renderAtoms(rect, rect, pass, pixels, weights);
+    const Source byCorner = [](const Piece& piece, std::span<float> pixels,
+                               std::span<float> weights) {
+        renderFrom(piece.atom.x0, piece.atom.y0, piece, pixels, weights);
     };
     const Rect crop{13, 5, 61, 50};
     EXPECT_FALSE(sameBytes(renderPicture({1, 32, "row", crop}, crop, byCorner),

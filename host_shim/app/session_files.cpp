@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/app/session_files.h"
+
+#include <utility>
+
+namespace pm::host {
+
+namespace fs = std::filesystem;
+
+std::vector<fs::path> inputsOf(const Options& options, const SceneData* scene) {
+    std::vector<fs::path> inputs = options.merge;
+    if (!options.scene.empty()) inputs.push_back(options.scene);
+    if (!options.reference.empty()) inputs.push_back(options.reference);
+    if (!options.colour.ocioFile.empty()) inputs.emplace_back(options.colour.ocioFile);
+    if (scene == nullptr) return inputs;
+    for (const std::string& file : scene->materialFiles) inputs.emplace_back(file);
+    for (const MaterialData& material : scene->materials) {
+        for (const auto* use :
+             {&material.diffuseTexture, &material.glossyTexture, &material.glossyExponentTexture,
+              &material.transmissionTexture, &material.emissionTexture, &material.opacityTexture}) {
+            if (*use) inputs.emplace_back((*use)->file);
+        }
+    }
+    return inputs;
+}
+
+std::vector<fs::path> otherOutputs(const Options& options) {
+    std::vector<fs::path> files;
+    if (!options.statistics.empty() && options.statistics != "-") {
+        files.emplace_back(options.statistics);
+    }
+    for (const fs::path& file : {options.log, options.part, options.checkpoint})
+        if (!file.empty()) files.push_back(file);
+    return files;
+}
+
+std::vector<fs::path> allOutputs(const Options& options) {
+    std::vector<fs::path> files = options.outputs;
+    for (fs::path& file : otherOutputs(options)) files.push_back(std::move(file));
+    return files;
+}
+
+}  // namespace pm::host

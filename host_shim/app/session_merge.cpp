@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Session::merge: pm_host merge PART... -o FILE.
+#include "host_shim/app/interrupt.h"
+#include "host_shim/app/merge_run.h"
+#include "host_shim/app/outputs.h"
+#include "host_shim/app/picture_assembly.h"
+#include "host_shim/app/session.h"
+#include "host_shim/app/session_files.h"
+#include "host_shim/cli/option_values.h"
+#include "host_shim/pictures/picture_io.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace pm::host {
+namespace {
+
+// Takes from the parts what a command line says of a render.
+void takeFrame(const MergeRun& run, Options& options) {
+    constexpr std::int32_t kMost = 1 << 24;
+    const auto pixels = [&](const char* setting) {
+        return static_cast<std::int32_t>(integerValue(setting, run.settingText(setting), 1, kMost));
+    };
+    options.width = pixels("width");
+    options.height = pixels("height");
+    const std::string crop = run.settingText("crop");
+    if (!crop.empty()) options.crop = cropValue("crop", crop);
+}
+
+}  // namespace
+
+void Session::checkBeforeMerging() {
+    checkNotInputs(allOutputs(m_options), inputsOf(m_options, nullptr));
+    checkOutputs({}, otherOutputs(m_options), m_options.makeOutputPath);
+    m_mayWriteStatistics = true;
+    checkOutputs(m_options.outputs, otherOutputs(m_options), m_options.makeOutputPath);
+    if (!m_options.log.empty()) m_log.openFile(m_options.log);
+}
+
+int Session::merge() {
+    checkBeforeMerging();
+    const Plugin plugin(m_options.plugin);
+    const PluginContext context(plugin, contextDesc(plugin));
+    MergeRun run(context);
+    phase("mergeSeconds", [&] { run.add(m_options.merge, m_log); });
+    if (const std::string missing = run.missing(); !missing.empty()) {
+        std::fputs(missing.c_str(), stdout);
+        throw HostError(ExitCode::kBadInput,
+                        "merge: buckets are missing, see standard output; make them with "
+                        "--buckets A:B -o NAME.pmpart");
+    }
+    takeFrame(run, m_options);
+    const ColourPipeline colour = colourOfParts(run.settingText("hostIdentity"), m_options.colour);
+    m_statistics.colourConfig = colour.configName();
+    m_statistics.renderingSpace = colour.renderingSpace();
+    if (!m_options.reference.empty()) readReference(colour);
+    std::optional<DisplayTransform> display;
+    if (std::ranges::any_of(m_options.outputs, [](const std::filesystem::path& file) {
+            return isDisplayReferred(pictureFormat(file));
+        }))
+        display = colour.displayTransform();
+    m_statistics.library = run.statistics();
+    return finish(run, PMR_OK, colour, display);
+}
+
+}  // namespace pm::host

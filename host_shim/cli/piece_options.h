@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/cli/options.h"
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace pm::host {
+
+// What the command line says of checkpoints, parts and merging. Errors of all: kUsage.
+
+// Takes the part out of the outputs, and gives the library its settings.
+void readPieces(const std::string& checkpoint, std::optional<std::int64_t> frame, Options& options);
+
+// A run of buckets is one of many, of which a merge makes a picture: what that forbids. typed: the
+// texts of options that are settings of the library.
+void checkBuckets(const std::map<std::string, std::string>& typed, const Options& options);
+
+// pm_host merge has parts and an output, and that is a picture.
+void checkMerge(const Options& options);
+
+}  // namespace pm::host

@@ -1,0 +1,306 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/src/checkpoint.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <filesystem>
+#include <utility>
+#include <vector>
+
+#include "integrator/values/error.h"
+#include "plugin/src/call_error.h"
+#include "plugin/src/piece_file.h"
+#include "scheduler/frame_store_bytes.h"
+
+namespace pm::plugin {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::seconds kBetweenSyncs{1};
+constexpr std::uint64_t kSumsRecordBytes = std::uint64_t{1} << 24;  // about so many each
+constexpr const char* kTemporary = ".tmp";  // the lock of FILE is also that of FILE.tmp
+
+// A name that leads nowhere else: a rename would replace a link, not what it leads to.
+std::string withoutLinks(const std::string& file) {
+    std::error_code error;
+    const fs::path real = fs::canonical(file, error);
+    return error ? file : real.string();
+}
+
+CallError unusable(const std::string& file, const std::string& why) {
+    return {PMR_ERROR_FILE, fmt::format("{}: {}", file, why)};
+}
+
+// What a frame holds in rectangles of whole rows, of which each fits into a record.
+std::vector<Rect> bandsOf(const FrameStore& frame) {
+    const Rect area = FrameStoreBytes::area(frame);
+    const std::uint64_t rowBytes =
+        static_cast<std::uint64_t>(area.width()) * FrameStoreBytes::bytesPerPixel(frame);
+    const auto rows =
+        static_cast<std::int32_t>(std::max<std::uint64_t>(1, kSumsRecordBytes / rowBytes));
+    std::vector<Rect> bands;
+    for (std::int32_t y = area.y0; y < area.y1; y += rows)
+        bands.push_back({area.x0, y, area.x1, std::min(area.y1, y + rows)});
+    return bands;
+}
+
+}  // namespace
+
+Checkpoint::Checkpoint(const std::string& file, bool resume, PieceHead head, const Rect& window)
+    : m_head(std::move(head)), m_done(window) {
+    open(withoutLinks(file));
+    const PieceReader reader(m_file);
+    m_isNew = m_file.size() == 0;
+    if (!m_isNew && !reader.isPiece())
+        throw unusable(m_file.name(), "is there and no checkpoint; it would be overwritten");
+    if (resume && !m_isNew)
+        readHead();
+    else
+        beginAnew();
+}
+
+Checkpoint::~Checkpoint() {
+    const bool isEmpty = m_isNew && m_file && m_end == m_sumsEnd;
+    const std::string name = m_file.name();
+    close(false);
+    std::error_code ignored;
+    if (isEmpty) fs::remove(name, ignored);
+}
+
+void Checkpoint::open(const std::string& file) {
+    constexpr int kTries = 10;  // of taking it over from a render that replaces it meanwhile
+    for (int i = 0; i < kTries; ++i) {
+        m_file = OwnedFile(file, O_RDWR | O_CREAT);
+        if (!m_file.lock()) break;
+        if (m_file.isAtItsName()) return;
+    }
+    m_file = {};
+    throw CallError(PMR_ERROR_IO, fmt::format("{}: another render uses this checkpoint", file));
+}
+
+void Checkpoint::readHead() {
+    PieceReader reader(m_file);
+    if (!reader.next() || reader.kind() != PieceRecord::kHead)
+        throw unusable(m_file.name(), "the checkpoint is damaged: its head is broken");
+    PieceHead found;
+    try {
+        found = PieceHead::fromJson(reader.payload());
+    } catch (const CallError& error) {
+        throw unusable(m_file.name(), error.what());
+    }
+    if (found.kind != PieceKind::kCheckpoint)
+        throw unusable(m_file.name(), "is a part of a picture, no checkpoint");
+    if (const std::string text = differences(found.identity, m_head.identity); !text.empty())
+        throw CallError(PMR_ERROR_MISMATCH,
+                        fmt::format("{}: the checkpoint is of another render; it differs in: {}",
+                                    m_file.name(), text));
+    m_head.passes = found.passes;
+}
+
+void Checkpoint::beginAnew() {
+    m_isNew = true;
+    OwnedFile next(m_file.name() + kTemporary, O_RDWR | O_CREAT | O_TRUNC);
+    next.lock();
+    const std::vector<std::byte> bytes = beginningOfPiece(m_head.toJson());
+    next.writeAt(0, bytes);
+    next.sync();
+    next.rename(m_file.name());
+    m_file = std::move(next);
+    m_end = m_sumsEnd = bytes.size();
+}
+
+std::uint32_t Checkpoint::load(FrameStore& frame, std::size_t channels, std::uint64_t pixels,
+                               const std::atomic<bool>& cancelled) {
+    m_channels = channels;
+    PieceReader reader(m_file);
+    reader.next();
+    m_sumsEnd = reader.wholeBytes();
+    m_passes = m_head.passes;
+    bool passesBegan = false;
+    try {
+        while (reader.next()) {
+            if (cancelled) throw Error(Status::kCancelled, "cancelled while resuming");
+            if (reader.kind() == PieceRecord::kSums && !passesBegan) {
+                loadSums(reader.payload(), frame);
+                m_sumsEnd = reader.wholeBytes();
+            } else if (reader.kind() == PieceRecord::kPass) {
+                passesBegan = true;
+                loadPass(reader.payload(), frame, pixels);
+            } else {
+                throw CallError(PMR_ERROR_FILE, "a record where it does not belong");
+            }
+        }
+    } catch (const CallError& error) {
+        throw unusable(m_file.name(), fmt::format("the checkpoint is damaged: {}", error.what()));
+    }
+    // The sums came in one step, so what is missing of them was not lost by a torn write.
+    const auto all = static_cast<std::uint64_t>(FrameStoreBytes::area(frame).area());
+    if (m_sumPixels != (m_head.passes > 0 ? all : 0))
+        throw unusable(m_file.name(), "the checkpoint is damaged: its sums are broken");
+    m_droppedBytes = reader.brokenBytes();
+    m_end = reader.wholeBytes();
+    m_file.truncate(m_end);
+    return m_passes;
+}
+
+void Checkpoint::loadSums(std::span<const std::byte> payload, FrameStore& frame) {
+    const PieceArea area = takeArea(payload);
+    try {
+        FrameStoreBytes::restore(frame, area.rect, payload);
+    } catch (const Error& error) {
+        throw CallError(PMR_ERROR_FILE, error.what());
+    }
+    m_sumPixels += static_cast<std::uint64_t>(area.rect.area());
+}
+
+void Checkpoint::loadPass(std::span<const std::byte> payload, FrameStore& frame,
+                          std::uint64_t pixels) {
+    const PieceArea area = takeArea(payload);
+    if (area.pass != m_passes || area.rect.empty() ||
+        intersect(area.rect, FrameStoreBytes::area(frame)) != area.rect)
+        throw CallError(PMR_ERROR_FILE, "a bucket of a pass where it does not belong");
+    if (m_done.hasAny(area.rect)) throw CallError(PMR_ERROR_FILE, "a bucket that comes twice");
+    const auto count = static_cast<std::size_t>(area.rect.area());
+    const std::size_t values = count * m_channels;
+    if (payload.size() != (values + count) * sizeof(float))
+        throw CallError(PMR_ERROR_FILE, "a bucket of another size than its rectangle");
+    std::vector<float> buffer(values + count);
+    std::memcpy(buffer.data(), payload.data(), payload.size());
+    frame.addPass(area.pass, area.rect, std::span(buffer).first(values),
+                  std::span(buffer).subspan(values));
+    m_done.add(area.rect);
+    if (m_done.count() < pixels) return;
+    ++m_passes;
+    m_done.clear();
+}
+
+void Checkpoint::addBucket(std::uint32_t pass, const Rect& rect,
+                           std::span<const float> buffer) noexcept {
+    if (m_off) return;
+    try {
+        std::vector<std::byte> payload, record;
+        payload.reserve(buffer.size_bytes() + sizeof(PieceArea));
+        appendArea({pass, rect}, payload);
+        const auto bytes = std::as_bytes(buffer);
+        payload.insert(payload.end(), bytes.begin(), bytes.end());
+        appendRecord(PieceRecord::kPass, payload, record);
+        {
+            const std::lock_guard lock(m_mutex);
+            if (m_off) return;
+            m_file.writeAt(m_end, record);
+            m_end += record.size();
+        }
+        syncNowAndThen();
+    } catch (...) {
+        giveUp();
+    }
+}
+
+// By the worker that finds it due, while the others go on.
+void Checkpoint::syncNowAndThen() {
+    {
+        const std::lock_guard lock(m_mutex);
+        if (std::chrono::steady_clock::now() - m_synced < kBetweenSyncs) return;
+        if (m_syncing.exchange(true)) return;
+    }
+    m_file.sync();
+    const std::lock_guard lock(m_mutex);
+    m_synced = std::chrono::steady_clock::now();
+    m_syncing = false;
+}
+
+void Checkpoint::giveUp() noexcept {
+    const std::lock_guard lock(m_mutex);
+    if (m_off.exchange(true)) return;
+    try {
+        try {
+            throw;
+        } catch (const std::exception& error) {
+            m_trouble = error.what();
+        }
+        m_file.truncate(m_end);
+    } catch (...) {
+        // What is torn at the end will be dropped by whoever resumes.
+    }
+}
+
+void Checkpoint::endPass(const FrameStore& frame, std::uint32_t passesDone,
+                         const std::atomic<bool>& cancelled) noexcept {
+    if (m_off) return;
+    try {
+        m_done.clear();
+        const std::uint64_t sums = static_cast<std::uint64_t>(FrameStoreBytes::area(frame).area()) *
+                                   FrameStoreBytes::bytesPerPixel(frame);
+        if (m_end - m_sumsEnd > sums) writeSums(frame, passesDone, cancelled);
+    } catch (...) {
+        giveUp();
+    }
+}
+
+void Checkpoint::writeSums(const FrameStore& frame, std::uint32_t passesDone,
+                           const std::atomic<bool>& cancelled) {
+    PieceHead head = m_head;
+    head.passes = passesDone;
+    const std::string name = m_file.name();
+    OwnedFile next(name + kTemporary, O_RDWR | O_CREAT | O_TRUNC);
+    std::vector<std::byte> payload, bytes = beginningOfPiece(head.toJson());
+    std::uint64_t end = 0;
+    try {
+        next.lock();
+        for (const Rect& band : bandsOf(frame)) {
+            payload.clear();
+            appendArea({0, band}, payload);
+            FrameStoreBytes::append(frame, band, payload);
+            appendRecord(PieceRecord::kSums, payload, bytes);
+            next.writeAt(end, bytes);
+            end += bytes.size();
+            bytes.clear();
+            if (cancelled) break;
+        }
+        if (!cancelled) {
+            next.sync();
+            next.rename(name);
+        }
+    } catch (...) {
+        std::error_code ignored;
+        fs::remove(name + kTemporary, ignored);
+        throw;
+    }
+    if (cancelled) {
+        std::error_code ignored;
+        fs::remove(name + kTemporary, ignored);
+        return;
+    }
+    syncFolderOf(name);
+    m_head = std::move(head);
+    m_file = std::move(next);
+    m_end = m_sumsEnd = end;
+    m_isNew = false;
+    m_synced = std::chrono::steady_clock::now();
+}
+
+void Checkpoint::close(bool sync) noexcept {
+    const std::lock_guard lock(m_mutex);
+    m_off = true;
+    if (!m_file) return;
+    try {
+        if (sync) m_file.sync();
+    } catch (const std::exception& error) {
+        m_trouble = error.what();
+    }
+    m_file = {};
+}
+
+std::string Checkpoint::takeTrouble() {
+    const std::lock_guard lock(m_mutex);
+    return std::exchange(m_trouble, {});
+}
+
+}  // namespace pm::plugin

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/src/merge_object.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "integrator/values/error.h"
+#include "plugin/src/call_error.h"
+#include "plugin/src/part_file.h"
+#include "plugin/src/pixel_reader.h"
+#include "plugin/src/render_work.h"
+#include "plugin/src/statistics_json.h"
+#include "plugin/src/version.h"
+#include "scheduler/frame_store_bytes.h"
+
+namespace pm::plugin {
+
+namespace {
+
+CallError refusal(PmrStatus status, const std::string& file, const std::string& why) {
+    return {status, fmt::format("{}: {}", file, why)};
+}
+
+// Another build may have other settings, so it is told apart before they are looked at.
+void checkBuild(const std::string& file, const PieceHead& head) {
+    Identity theirs;
+    for (const IdentityPart& part : head.identity)
+        if (part.name == "build") theirs.push_back(part);
+    if (const std::string text = differences(theirs, buildIdentity()); !text.empty())
+        throw refusal(PMR_ERROR_MISMATCH, file,
+                      "the part is of another picture; it differs in: " + text);
+}
+
+}  // namespace
+
+MergeObject::Picture::Picture(PieceHead partHead, std::string fileName)
+    : head(std::move(partHead)), firstFile(std::move(fileName)) {
+    for (const auto& [name, value] : head.settings) settings.setText(name, value);
+    settings.setInteger("passes", head.passes);
+    const RenderSettings render = settings.toRenderSettings();
+    layout = channelLayout(render);
+    frame = makeFrame(render, layout);
+    files.resize(head.bucketCount);
+}
+
+void MergeObject::checkFits(const std::string& file, const PieceHead& head) const {
+    const PieceHead& first = m_picture->head;
+    const std::string text = differences(head.identity, first.identity);
+    if (!text.empty() || head.bucketCount != first.bucketCount)
+        throw refusal(PMR_ERROR_MISMATCH, file,
+                      fmt::format("the part is of another picture than {}; it differs in: {}",
+                                  m_picture->firstFile, text));
+}
+
+void MergeObject::addPart(const std::string& file) {
+    const std::lock_guard lock(m_mutex);
+    std::uint32_t index = 0;
+    BucketRange range;
+    readPart(
+        file,
+        [&](const PieceHead& head) {
+            checkBuild(file, head);
+            range = head.range;
+            if (range.last > head.bucketCount)
+                throw refusal(PMR_ERROR_FILE, file, "its range is broken");
+            index = range.first;
+            if (m_picture)
+                checkFits(file, head);
+            else
+                m_picture = std::make_unique<Picture>(head, file);
+        },
+        [&](const Rect& rect, std::span<const std::byte> sums) {
+            addBucket(file, index++, rect, sums);
+        });
+    std::fill(m_picture->files.begin() + range.first, m_picture->files.begin() + range.last, file);
+}
+
+void MergeObject::addBucket(const std::string& file, std::uint32_t index, const Rect& rect,
+                            std::span<const std::byte> sums) {
+    const std::string& other = m_picture->files.at(index);
+    if (other.empty()) {
+        try {
+            FrameStoreBytes::restore(*m_picture->frame, rect, sums);
+        } catch (const Error& error) {
+            throw refusal(PMR_ERROR_FILE, file, error.what());
+        }
+        return;
+    }
+    // An engine may run a task twice: then both made the same bytes, or one of them is wrong.
+    std::vector<std::byte> present;
+    FrameStoreBytes::append(*m_picture->frame, rect, present);
+    if (!std::equal(present.begin(), present.end(), sums.begin(), sums.end()))
+        throw refusal(PMR_ERROR_MISMATCH, file,
+                      fmt::format("bucket {} has other pixels than in {}", index, other));
+}
+
+const MergeObject::Picture& MergeObject::picture() const {
+    if (!m_picture) throw CallError(PMR_ERROR_STATE, "no part was added yet");
+    return *m_picture;
+}
+
+std::string MergeObject::missing() const {
+    const std::lock_guard lock(m_mutex);
+    std::vector<bool> present;
+    for (const std::string& file : picture().files) present.push_back(!file.empty());
+    std::string text;
+    for (const BucketRange& range : missingRanges(present)) text += rangeText(range) + "\n";
+    return text;
+}
+
+std::string MergeObject::settingText(std::string_view name) const {
+    const std::lock_guard lock(m_mutex);
+    return picture().settings.text(name);
+}
+
+std::vector<Layer> MergeObject::layers() const {
+    const std::lock_guard lock(m_mutex);
+    return layersOf(picture().settings);
+}
+
+void MergeObject::readPixels(const PmrRectangle& rectangle, const char* layer, float* destination,
+                             std::int64_t pixelStrideBytes, std::int64_t rowStrideBytes) const {
+    const std::lock_guard lock(m_mutex);
+    readLayerPixels({rectangle, layer, destination, pixelStrideBytes, rowStrideBytes},
+                    picture().settings, picture().frame.get(), picture().layout,
+                    picture().head.passes);
+}
+
+std::string MergeObject::statisticsJson() const {
+    const std::lock_guard lock(m_mutex);
+    const PieceHead& head = picture().head;
+    Json json;
+    json["schema"] = "pm-stats/1";
+    json["versions"] = versionsJson();
+    json["hashes"] = {{"scene", head.sceneHash}, {"settings", head.settingsHash}};
+    json["isa"] = head.isa;
+    json["stopReason"] = "passes done";
+    json["status"] = PMR_OK;
+    json["error"] = "";
+    json["passesDone"] = head.passes;
+    json["passesPlanned"] = head.passes;
+    addError(picture().frame->estimateError(), json);
+    json["buckets"] = {{"count", head.bucketCount}};
+    json["settings"] = settingsJson(picture().settings);
+    return json.dump(2, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace pm::plugin

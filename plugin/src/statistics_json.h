@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// What the statistics of renders and of merged parts share.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "plugin/src/setting_values.h"
+#include "scheduler/frame_error.h"
+
+namespace pm::plugin {
+
+using Json = nlohmann::ordered_json;
+
+Json settingsJson(const SettingValues& values);
+
+// Adds the estimates of the error; with one pass nothing is known of it.
+void addError(const std::optional<FrameError>& error, Json& json);
+
+}  // namespace pm::plugin

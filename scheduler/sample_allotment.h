@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace pm {
+
+// Dynamic anti-aliasing: how many samples a pixel gets in each pass, by how much its samples
+// differed so far. Levels as in the paper of Yavuz et al. 2010, section 4 (P12, P13): level l is
+// 4^(l-1) samples in every four passes.
+//
+// A pixel that decides by the samples it then keeps loses rare light. So even passes decide for odd
+// ones and the reverse: the two share no random number, and the weight of a half in the mean is its
+// number of passes, whatever its samples (FrameStore). Of the half that decides only those samples
+// count that it has in any case, at the least level: how many more it has was decided by the half
+// that it decides for.
+//
+// The rule: of N samples in four passes whose relative spread is s, one more lowers the squared
+// relative error by s^2 / N^2. A pixel gets samples until that is less than threshold^2, so
+// N = s / threshold: the allotment for which the sum of the squared errors is least for the same
+// number of samples. Relative means: to sqrt(r^2 + 0.01), r the mean, as in relMSE.
+struct SampleRule {
+    std::uint32_t least = 1;  // samples of a pixel in a pass, up to 65535
+    std::uint32_t most = 1;   // as well, at least `least`
+    double threshold = 0.01;  // > 0
+};
+
+// The rule for levels from least to most, 1 to 6. Of level 1, less than a sample a pass, the rule
+// has none: who renders knows in which passes they come.
+SampleRule sampleRule(std::uint32_t leastLevel, std::uint32_t mostLevel, double threshold);
+
+// Errors: kInvalidArgument for numbers that are not allowed.
+void checkSampleRule(const SampleRule& rule);
+
+// What one half of the passes, the even or the odd ones, has seen of a pixel by the samples that it
+// has in any case.
+struct SeenSamples {
+    double samples = 0;  // their number
+    double sums[3]{};    // of the beauty
+    double square = 0;   // sum over samples and channels of the beauty squared
+};
+
+// Whether samples are allotted anew after so many passes: 2, 4, 8, ...
+bool allotsAfter(std::uint32_t passes);
+
+// Samples a pass of the pixels of one atom of 8 x 8, row by row, by what the other half of the
+// passes has seen of them. A pixel's neighbours count where they are in the atom: so a picture does
+// not depend on crop or buckets.
+void allotSamples(const SampleRule& rule, std::span<const SeenSamples> seen,
+                  std::span<std::uint16_t> samples);
+
+}  // namespace pm

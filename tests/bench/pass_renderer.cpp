@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "tests/bench/pass_renderer.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <atomic>
+#include <optional>
+
+namespace pm::bench {
+
+namespace {
+
+constexpr std::int32_t kRows = 8;  // of a strip
+const std::atomic<bool> kNotCancelled{false};
+
+}  // namespace
+
+Pass::Pass(const RenderSettings& settings)
+    : pixels(static_cast<std::size_t>(settings.window.area()) *
+             static_cast<std::size_t>(channelLayout(settings).count)),
+      weights(static_cast<std::size_t>(settings.window.area())) {}
+
+FrameStore storeFor(const RenderSettings& settings) {
+    const ChannelLayout layout = channelLayout(settings);
+    std::optional<SampleRule> rule;
+    if (settings.isAdaptive())
+        rule = sampleRule(settings.aaLevel, settings.aaLevelMost, settings.aaThreshold);
+    return {settings.window, layout.count, layout.beauty, layout.biasProbe, layout.emission, rule};
+}
+
+std::vector<double> channelsOf(const FrameStore& store, std::int32_t first) {
+    const Rect& window = store.window();
+    std::vector<float> rgb(3 * static_cast<std::size_t>(window.area()));
+    constexpr std::int64_t kPixelBytes = 3 * sizeof(float);
+    store.read(window, first, 3, rgb.data(), kPixelBytes, kPixelBytes * window.width());
+    return {rgb.begin(), rgb.end()};
+}
+
+PassRenderer::PassRenderer(std::shared_ptr<const Scene> scene, const RenderSettings& settings,
+                           const Plan& plan, int threads)
+    : m_settings(settings), m_arena(threads), m_frame(storeFor(settings)), m_pass(settings) {
+    m_renderer = m_arena.execute(
+        [&] { return std::make_unique<FrameRenderer>(std::move(scene), m_settings, plan); });
+}
+
+const Pass& PassRenderer::next() {
+    m_arena.execute([&] {
+        m_renderer->beginPass(m_passes, kNotCancelled, {});
+        renderStrips();
+    });
+    m_frame.addPass(m_passes++, m_settings.window, m_pass.pixels, m_pass.weights);
+    return m_pass;
+}
+
+std::vector<double> PassRenderer::beauty() const {
+    return channelsOf(m_frame, m_renderer->layout().beauty);
+}
+
+// Whole atoms: the frame's sides are multiples of 8.
+void PassRenderer::renderStrips() {
+    const Rect& frame = m_settings.window;
+    const auto channels = static_cast<std::size_t>(m_renderer->layout().count);
+    const auto width = static_cast<std::size_t>(frame.width());
+    tbb::parallel_for(std::int32_t{0}, (frame.height() + kRows - 1) / kRows, [&](std::int32_t i) {
+        const std::int32_t y = frame.y0 + i * kRows;
+        const Rect strip = intersect({frame.x0, y, frame.x1, y + kRows}, frame);
+        const auto area = static_cast<std::size_t>(strip.area());
+        const std::size_t first = static_cast<std::size_t>(i * kRows) * width;
+        std::vector<FrameStore::NextSamples> next(area);
+        if (m_settings.isAdaptive()) m_frame.nextSamples(m_passes, strip, next);
+        std::vector<SampleRun> runs(area);
+        for (std::size_t at = 0; at < area; ++at) {
+            const auto x = frame.x0 + static_cast<std::int32_t>(at % width);
+            runs[at] =
+                fixedSamples(m_settings, x, y + static_cast<std::int32_t>(at / width), m_passes);
+            if (m_settings.isAdaptive())
+                runs[at] = {next[at].had, std::max(next[at].count, runs[at].count), runs[at].seen};
+            m_pass.weights[first + at] = static_cast<float>(runs[at].count);
+        }
+        m_renderer->renderRegion(
+            strip, runs, std::span(m_pass.pixels).subspan(first * channels, area * channels),
+            kNotCancelled);
+    });
+}
+
+}  // namespace pm::bench
