@@ -139,15 +139,25 @@ GatherPoints::Value GatherPoints::compute(std::size_t index, std::uint64_t& rays
                    static_cast<float>(sum[at + 2] * scale));
     };
     TwoRadii total{irradiance(0), irradiance(3)};
-    if (m_request.descended) {
-        // Narrower in corners and gaps, where this light, too, changes within their width.
-        const float radius = m_request.descended->radius();
-        total += m_request.descended
-                     ->withRadius(std::clamp(kDescendedReach * clearance,
-                                             kNarrowestDescended * radius, radius))
-                     .at(point.position, geometricNormal, static_cast<std::uint32_t>(index));
-    }
+    if (m_request.descended)
+        total += descended(point.position, geometricNormal, clearance,
+                           static_cast<std::uint32_t>(index));
     return {total, static_cast<float>(lamps) / static_cast<float>(count), clearance};
+}
+
+// Narrower in corners and gaps, where this light, too, changes within their width.
+TwoRadii GatherPoints::descended(const Vec3f& position, const Vec3f& normal, float clearance,
+                                 std::uint32_t pattern) const {
+    const float radius = m_request.descended->radius();
+    return m_request.descended
+        ->withRadius(std::clamp(kDescendedReach * clearance, kNarrowestDescended * radius, radius))
+        .at(position, normal, pattern);
+}
+
+TwoRadii GatherPoints::descendedAt(const Place& place, std::uint32_t pattern) const {
+    if (!m_request.descended) return {};
+    const float clearance = probe(place, m_request.descended->radius() / kDescendedReach);
+    return descended(place.position, place.geometricNormal, clearance, pattern);
 }
 
 void GatherPoints::fill(std::size_t index) const {
@@ -198,17 +208,35 @@ std::size_t GatherPoints::findNear(const Place& place, std::array<Near, kMostNea
     return count;
 }
 
+// The clearance straight above the place, or infinity beyond `farthest`. Points in the open, beside
+// a gap, see nothing of what makes it one.
+float GatherPoints::probe(const Place& place, float farthest) const {
+    const Vec3f start = place.position + place.geometricNormal * place.offset;
+    Surface above;
+    if (!m_scene.intersect({start, place.geometricNormal, farthest}, above))
+        return std::numeric_limits<float>::infinity();
+    return std::max(length(above.position - place.position), m_planeTolerance);
+}
+
 bool GatherPoints::estimate(const Place& place, Estimate& result) const {
     std::array<Near, kMostNear> near;
     const std::size_t count = findNear(place, near);
+    if (count == 0) return false;
     // What is near the place is at least as near as this, whichever point it was seen from.
-    float clearance = std::numeric_limits<float>::max();
+    float clearance = std::numeric_limits<float>::max(), farthestSquared = 0.0f;
     for (std::size_t i = 0; i < count; ++i) {
         const Kept& kept = m_kept[near[i].index];
         if (!kept.ready.load(std::memory_order_acquire)) fill(near[i].index);
         clearance = std::min(clearance, kept.number(7) + std::sqrt(near[i].distanceSquared));
+        farthestSquared = std::max(farthestSquared, near[i].distanceSquared);
     }
-    const float reach = kReach * m_request.radiusFactor * clearance;
+    // What is so far up that the reach would still be twice the farthest point's makes no
+    // difference.
+    const float reachOfClearance = kReach * m_request.radiusFactor;
+    const float farthest = 2.0f * std::sqrt(farthestSquared) / reachOfClearance;
+    clearance = std::min(clearance, probe(place, std::min(clearance, farthest)));
+    result.rays = 1;
+    const float reach = reachOfClearance * clearance;
     const float inverseReach = 1.0f / (reach * reach);
     float weights = 0, narrowWeights = 0, lamps = 0;
     TwoRadii sum;

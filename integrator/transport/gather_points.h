@@ -45,10 +45,12 @@ class GatherPoints {
         Vec2f screen;  // where the path left the camera, pixels
         Vec3f position;
         Vec3f shadingNormal, geometricNormal;  // unit, on the side that the path came to
+        float offset = 0.0f;  // along the geometric one, to where rays leave from; scene units
     };
     struct Estimate {
         TwoRadii irradiance;     // W m^-2
         float lampShare = 0.0f;  // of the gather rays that met a lamp's front
+        std::uint32_t rays = 0;  // that this took
     };
 
     // Traces the points in parallel in the calling TBB arena; soon after `cancelled` is set the
@@ -58,6 +60,10 @@ class GatherPoints {
 
     // Indirect irradiance at a place. False where no point is near enough.
     bool estimate(const Place& place, Estimate& result) const;
+
+    // Irradiance of descended light at a place itself, for samples without a point near; 0 where
+    // there is none. pattern: any number that depends on the place alone.
+    TwoRadii descendedAt(const Place& place, std::uint32_t pattern) const;
 
     // Gather rays so far.
     std::uint64_t raysTraced() const { return m_raysTraced.load(std::memory_order_relaxed); }
@@ -107,6 +113,9 @@ class GatherPoints {
     void tracePoint(std::int32_t column, std::int32_t row);
     std::size_t findNear(const Place& place, std::array<Near, kMostNear>& near) const;
     void fill(std::size_t index) const;
+    float probe(const Place& place, float farthest) const;
+    TwoRadii descended(const Vec3f& position, const Vec3f& normal, float clearance,
+                       std::uint32_t pattern) const;
     Value compute(std::size_t index, std::uint64_t& rays) const;
 
     const Scene& m_scene;

@@ -76,10 +76,10 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(Vec2f screen, const Sur
     };
     StillToFind still;
     GatherPoints::Estimate indirect;
-    const bool kept = m_maps.points &&
-                      m_maps.points->estimate({screen, surface.position, bsdf.facingShadingNormal(),
-                                               bsdf.facingGeometricNormal()},
-                                              indirect);
+    const GatherPoints::Place place{screen, surface.position, bsdf.facingShadingNormal(),
+                                    bsdf.facingGeometricNormal(), surface.offset};
+    const bool kept = m_maps.points && m_maps.points->estimate(place, indirect);
+    result.rays += indirect.rays;
     if (kept) {
         add(indirect.irradiance, result.indirect);
         if (indirect.lampShare < kLargeLampShare) still.lamps = LampStrategy::kNextEventOnly;
@@ -92,7 +92,9 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(Vec2f screen, const Sur
         // Any pattern that depends on the place alone.
         const auto pattern = std::bit_cast<std::uint32_t>(surface.position.x) ^
                              std::bit_cast<std::uint32_t>(surface.position.y);
-        add(m_maps.descended->at(surface.position, normal, pattern), result.indirect);
+        add(m_maps.points ? m_maps.points->descendedAt(place, pattern)
+                          : m_maps.descended->at(surface.position, normal, pattern),
+            result.indirect);
     }
     return still;
 }

@@ -16,10 +16,11 @@ namespace pm {
 
 namespace {
 
-// Photons a pass where nothing else is asked for. Halving or doubling them changes the time to a
-// relMSE of 1e-3 by a few per cent; see docs/decisions.md.
+// Photons a pass where nothing else is asked for, for a frame of 256 x 256 pixels. Others have more
+// or fewer in proportion, so that photons take the same share of the time; see docs/decisions.md.
 constexpr std::uint64_t kAutoGlobalPhotons = 30'000;
 constexpr std::uint64_t kAutoCausticPhotons = 150'000;
+constexpr double kLeastOfThose = 0.5, kMostOfThose = 16.0;
 constexpr std::uint32_t kAutoGatherRays = 24;
 // Gather points: one for 2.5 x 2.5 pixels, but no more than these in a frame.
 constexpr float kGatherSpacing = 2.5f;
@@ -55,6 +56,14 @@ SceneTraits findTraits(const Scene& scene) {
         traits.pointLights |= light.kind == Light::Kind::kPoint;
     traits.flat = scene.isFlat();
     return traits;
+}
+
+std::uint64_t photonsOf(const RenderSettings& settings, std::uint64_t ofSmallFrame) {
+    if (settings.photons > 0) return settings.photons;
+    // Of the frame, not the window: a crop has the same pixels.
+    const double frames = static_cast<double>(settings.width) * settings.height / (256.0 * 256.0);
+    return static_cast<std::uint64_t>(static_cast<double>(ofSmallFrame) *
+                                      std::clamp(frames, kLeastOfThose, kMostOfThose));
 }
 
 // Memory at most; time from what each part took where docs/benchmarks.md was measured.
@@ -116,7 +125,7 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     plan.causticMap = (traits.specular && !traits.flat) || everything;
     plan.tracePhotons = plan.globalMap || plan.causticMap;
     if (plan.globalMap) {
-        plan.globalPhotons = settings.photons > 0 ? settings.photons : kAutoGlobalPhotons;
+        plan.globalPhotons = photonsOf(settings, kAutoGlobalPhotons);
         plan.gatherRays = settings.gatherRays > 0 ? settings.gatherRays : kAutoGatherRays;
         plan.gatherSpacing = std::max(
             kGatherSpacing, static_cast<float>(std::sqrt(static_cast<double>(settings.width) *
@@ -133,7 +142,7 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
         plan.reasons.push_back("no global map: all surfaces lie in one plane");
     }
     if (plan.causticMap) {
-        plan.causticPhotons = settings.photons > 0 ? settings.photons : kAutoCausticPhotons;
+        plan.causticPhotons = photonsOf(settings, kAutoCausticPhotons);
         plan.reasons.push_back(
             fmt::format("caustic map: {} photons a pass, aimed, {}", plan.causticPhotons,
                         traits.specular ? "since the scene has surfaces that are not diffuse"

@@ -191,8 +191,9 @@ TEST(GatherPoints, RaysFollowTheCosine) {
                         camera.ray(static_cast<double>(screen.x), static_cast<double>(screen.y)),
                         surface));
                     GatherPoints::Estimate found;
-                    ASSERT_TRUE(points.estimate(
-                        {screen, surface.position, Vec3f(normal), surface.geometricNormal}, found));
+                    ASSERT_TRUE(points.estimate({screen, surface.position, Vec3f(normal),
+                                                 surface.geometricNormal, surface.offset},
+                                                found));
                     ASSERT_LT(length(surface.position - onFloor), 0.02f);
                     share += static_cast<double>(found.lampShare);
                     ++places;

@@ -64,6 +64,21 @@ TEST(Plan, ManyLampsAreToldOf) {
     EXPECT_TRUE(told());
 }
 
+TEST(Plan, PhotonsGoWithTheFrameNotTheCrop) {
+    RenderSettings settings;
+    settings.width = settings.height = 512;
+    settings.window = {0, 0, 512, 512};
+    const std::uint64_t whole = planOf(litFloor(), settings).globalPhotons;
+    settings.window = {8, 8, 24, 24};
+    EXPECT_EQ(planOf(litFloor(), settings).globalPhotons, whole);
+    settings.width = 256;
+    EXPECT_EQ(planOf(litFloor(), settings).globalPhotons, whole / 2);
+    settings.width = settings.height = 8;
+    EXPECT_GE(planOf(litFloor(), settings).globalPhotons, whole / 8);
+    settings.width = settings.height = 1 << 16;
+    EXPECT_LE(planOf(litFloor(), settings).globalPhotons, whole * 4);
+}
+
 TEST(Plan, NothingThatEmitsOrNothingDiffuseWantsNoPhotons) {
     SceneMaker dark;
     dark.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, dark.diffuse(Rgb(0.5f)));
