@@ -28,6 +28,16 @@ void RenderRun::onProgress(void* user, PmrRender, double fraction, double remain
     static_cast<RenderRun*>(user)->m_progress.update(fraction, remainingSeconds);
 }
 
+void RenderRun::onBucketStarted(void* user, PmrRender, const PmrBucketInfo* bucket) {
+    const auto& run = *static_cast<RenderRun*>(user);
+    run.m_bucketTimes->started(*bucket, run.m_log.elapsedSeconds());
+}
+
+void RenderRun::onBucketFinished(void* user, PmrRender, const PmrBucketInfo* bucket) {
+    const auto& run = *static_cast<RenderRun*>(user);
+    run.m_bucketTimes->finished(*bucket, run.m_log.elapsedSeconds());
+}
+
 void RenderRun::onFinished(void* user, PmrRender, PmrStatus status) {
     auto* run = static_cast<RenderRun*>(user);
     run->m_finished = true;
@@ -35,13 +45,17 @@ void RenderRun::onFinished(void* user, PmrRender, PmrStatus status) {
 }
 
 RenderRun::RenderRun(const PluginScene& scene, const Options& options, const std::string& identity,
-                     Log& log, Progress& progress)
-    : m_context(scene.context()), m_log(log), m_progress(progress) {
+                     Log& log, Progress& progress, BucketTimes* bucketTimes)
+    : m_context(scene.context()), m_log(log), m_progress(progress), m_bucketTimes(bucketTimes) {
     auto desc = PMR_INIT(PmrRenderDesc);
     desc.callbackMode = PMR_CALLBACKS_POLL;
     desc.user = this;
     desc.message = onMessage;
     desc.progress = onProgress;
+    if (bucketTimes != nullptr) {
+        desc.bucketStarted = onBucketStarted;
+        desc.bucketFinished = onBucketFinished;
+    }
     desc.finished = onFinished;
     m_context.check(api().createRender(scene.handle(), &desc, &m_handle), "render");
     try {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include "host_shim/app/bucket_times.h"
 #include "host_shim/app/log.h"
 #include "host_shim/app/picture_source.h"
 #include "host_shim/app/progress.h"
@@ -15,10 +16,11 @@ namespace pm::host {
 // One render of a scene: settings, the run itself, and what it left.
 class RenderRun : public PictureSource {
   public:
-    // Settings are given here. identity: what of the host decides on the picture. Errors: kUsage
-    // for a setting that the plugin refuses.
+    // Settings are given here. identity: what of the host decides on the picture. bucketTimes:
+    // where the buckets are timed, null where nobody asks. Errors: kUsage for a setting that the
+    // plugin refuses.
     RenderRun(const PluginScene& scene, const Options& options, const std::string& identity,
-              Log& log, Progress& progress);
+              Log& log, Progress& progress, BucketTimes* bucketTimes);
     ~RenderRun() override;
     RenderRun(const RenderRun&) = delete;
     RenderRun& operator=(const RenderRun&) = delete;
@@ -40,11 +42,14 @@ class RenderRun : public PictureSource {
     void apply(const GivenSetting& setting);
     static void onMessage(void* user, PmrRender, int32_t level, int32_t code, const char* text);
     static void onProgress(void* user, PmrRender, double fraction, double remainingSeconds);
+    static void onBucketStarted(void* user, PmrRender, const PmrBucketInfo* bucket);
+    static void onBucketFinished(void* user, PmrRender, const PmrBucketInfo* bucket);
     static void onFinished(void* user, PmrRender, PmrStatus status);
 
     const PluginContext& m_context;
     Log& m_log;
     Progress& m_progress;
+    BucketTimes* m_bucketTimes;
     PmrRender m_handle{};
     bool m_finished{};
     PmrStatus m_status{PMR_OK};

@@ -57,13 +57,17 @@ int Session::run() {
     if (m_statistics.exitCode == 143) m_statistics.stopReason = "terminated";
     m_log.reportHiddenWarnings();
     const bool toFile = m_options.statistics != "-";
-    if (m_options.statistics.empty() || (toFile && !m_mayWriteStatistics)) {
-        return m_statistics.exitCode;
-    }
-    const int written = guarded(m_log, [this] {
-        writeStatistics();
-        return 0;
-    });
+    int written = 0;
+    const auto write = [&](void (Session::*work)()) {
+        const int code = guarded(m_log, [&] {
+            (this->*work)();
+            return 0;
+        });
+        if (written == 0) written = code;
+    };
+    if (!m_options.statistics.empty() && (!toFile || m_mayWriteStatistics))
+        write(&Session::writeStatistics);
+    if (!m_options.report.empty() && m_mayWriteStatistics) write(&Session::writeReport);
     return m_statistics.exitCode != 0 ? m_statistics.exitCode : written;
 }
 
@@ -149,10 +153,7 @@ void Session::readReference(const ColourPipeline& colour) {
 int Session::renderScene(const ColourPipeline& colour, const PluginContext& context) {
     const WarningSink sink = [this](Warning code, const std::string& text) { warn(code, text); };
     std::optional<DisplayTransform> display;
-    const bool wantsDisplay = std::ranges::any_of(m_options.outputs, [](const fs::path& file) {
-        return isDisplayReferred(pictureFormat(file));
-    });
-    if (wantsDisplay) display = colour.displayTransform();
+    if (wantsDisplay(m_options)) display = colour.displayTransform();
     TemporaryFolder folder;
     MaterialBuilder materials(context, colour, folder, sink);
     PluginScene scene(context);
@@ -182,7 +183,8 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
         });
     }
     Progress progress(m_options.progress, m_options.quiet, m_log);
-    RenderRun run(scene, m_options, colourIdentity(colour), m_log, progress);
+    RenderRun run(scene, m_options, colourIdentity(colour), m_log, progress,
+                  m_options.report.empty() ? nullptr : &m_report.bucketTimes());
     if (m_options.explain) {
         std::fputs(run.explain().c_str(), stdout);
         m_statistics.stopReason = "finished";
@@ -199,7 +201,18 @@ int Session::finish(const PictureSource& source, PmrStatus status, const ColourP
     const bool complete = status == PMR_OK;
     const auto start = m_log.elapsedSeconds();
     const Picture picture = assemblePicture(source, m_options, colour, complete);
-    writeOutputs(picture, complete, display);
+    const auto report = [&] {
+        if (m_options.report.empty()) return;
+        m_report.takePicture(source, picture, m_reference ? &*m_reference : nullptr,
+                             display.value(), colour.luminanceWeights());
+    };
+    try {
+        writeOutputs(picture, complete, display);
+    } catch (...) {
+        report();
+        throw;
+    }
+    report();
     m_statistics.phaseSeconds["writePicturesSeconds"] = m_log.elapsedSeconds() - start;
     if (!complete) {
         throwIfInterrupted();
@@ -303,6 +316,11 @@ void Session::writeStatistics() {
     } else {
         writeFinishedFile(m_options.statistics, text);
     }
+}
+
+void Session::writeReport() {
+    writeFinishedFile(m_options.report, m_report.page(m_statistics.toJson(m_log)));
+    m_log.info("wrote " + m_options.report.string());
 }
 
 }  // namespace pm::host

@@ -4,6 +4,7 @@
 
 #include "host_shim/app/log.h"
 #include "host_shim/app/render_run.h"
+#include "host_shim/app/report.h"
 #include "host_shim/app/statistics.h"
 #include "host_shim/cli/options.h"
 #include "host_shim/colour/colour_pipeline.h"
@@ -40,6 +41,7 @@ class Session {
     int compareWithReference(const Picture& picture);
     void printPixel(const Picture& picture) const;
     void writeStatistics();
+    void writeReport();
     // Runs work and notes how long it took.
     void phase(const std::string& name, const std::function<void()>& work);
     void warn(Warning code, const std::string& text);
@@ -47,8 +49,10 @@ class Session {
     Options m_options;
     Log& m_log;
     Statistics m_statistics;
+    Report m_report;  // gathers only where one is wanted
     std::optional<Picture> m_reference;
-    bool m_mayWriteStatistics{};  // not before it is known that they overwrite no input
+    // Statistics and report; not before it is known that they overwrite no input.
+    bool m_mayWriteStatistics{};
 };
 
 }  // namespace pm::host

@@ -2,6 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/session_files.h"
 
+#include "host_shim/pictures/picture_io.h"
+
+#include <algorithm>
 #include <utility>
 
 namespace pm::host {
@@ -30,9 +33,16 @@ std::vector<fs::path> otherOutputs(const Options& options) {
     if (!options.statistics.empty() && options.statistics != "-") {
         files.emplace_back(options.statistics);
     }
-    for (const fs::path& file : {options.log, options.part, options.checkpoint})
+    for (const fs::path& file : {options.log, options.report, options.part, options.checkpoint})
         if (!file.empty()) files.push_back(file);
     return files;
+}
+
+bool wantsDisplay(const Options& options) {
+    return !options.report.empty() ||
+           std::ranges::any_of(options.outputs, [](const fs::path& file) {
+               return isDisplayReferred(pictureFormat(file));
+           });
 }
 
 std::vector<fs::path> allOutputs(const Options& options) {

@@ -13,8 +13,12 @@ namespace pm::host {
 // The files that a command line reads; of the scene (null: not read yet) those that it names.
 std::vector<std::filesystem::path> inputsOf(const Options& options, const SceneData* scene);
 
-// The files that it writes and that are no pictures: statistics, log, part, checkpoint.
+// The files that it writes and that are no pictures: statistics, log, report, part,
+// checkpoint.
 std::vector<std::filesystem::path> otherOutputs(const Options& options);
+
+// Whether something that it writes goes through display and view.
+bool wantsDisplay(const Options& options);
 
 // All files that it writes.
 std::vector<std::filesystem::path> allOutputs(const Options& options);

@@ -58,10 +58,7 @@ int Session::merge() {
     m_statistics.renderingSpace = colour.renderingSpace();
     if (!m_options.reference.empty()) readReference(colour);
     std::optional<DisplayTransform> display;
-    if (std::ranges::any_of(m_options.outputs, [](const std::filesystem::path& file) {
-            return isDisplayReferred(pictureFormat(file));
-        }))
-        display = colour.displayTransform();
+    if (wantsDisplay(m_options)) display = colour.displayTransform();
     m_statistics.library = run.statistics();
     return finish(run, PMR_OK, colour, display);
 }

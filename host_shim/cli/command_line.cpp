@@ -129,6 +129,9 @@ void addReportOptions(CLI::App& app, Typed& typed, Options& options) {
             "exit 6 when the relMSE against --reference is above, or a value is not finite");
     addText(app, "--stats", options.statistics, "FILE", "statistics as JSON; - = standard output");
     app.add_option("--log", options.log, "all messages, also to a file")->type_name("FILE");
+    app.add_option("--report", options.report,
+                   "a page to look at: status, picture, error, time of the buckets")
+        ->type_name("FILE.html");
     app.add_flag("-q,--quiet", options.quiet, "only warnings and errors");
     app.add_flag("-v,--verbose", options.verbose, "more messages");
     app.add_option("--plugin", options.plugin,
@@ -256,6 +259,13 @@ void readFiles(const Typed& typed, std::optional<std::int64_t> frame, Options& o
     }
     options.statistics = withFrame("--stats", options.statistics, frame);
     options.log = withFrame("--log", options.log.string(), frame);
+    options.report = withFrame("--report", options.report.string(), frame);
+    const auto pageType = options.report.extension();
+    if (!options.report.empty() && pageType != ".html" && pageType != ".htm") {
+        throw HostError(ExitCode::kUsage,
+                        fmt::format("--report '{}': its name must end in .html or .htm",
+                                    options.report.string()));
+    }
     for (const std::string& part : typed.parts) {
         options.merge.emplace_back(withFrame("PART", part, frame));
     }

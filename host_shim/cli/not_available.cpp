@@ -13,7 +13,7 @@
 namespace pm::host {
 namespace {
 
-constexpr std::array<std::string_view, 5> kLaterOptions{"--filter", "--photon-map", "--report",
+constexpr std::array<std::string_view, 4> kLaterOptions{"--filter", "--photon-map",
                                                         "--photons-only", "--denoise"};
 
 }  // namespace

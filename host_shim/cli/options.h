@@ -44,6 +44,7 @@ struct Options {
     std::optional<double> errorLimit;
     std::string statistics;  // file, "-" = standard output, empty = none
     std::filesystem::path log;
+    std::filesystem::path report;  // a page, empty = none
     bool explain{};
     std::string list;  // empty, views, spaces, aovs, orders or settings
     bool version{};

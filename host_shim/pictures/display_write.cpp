@@ -3,6 +3,7 @@
 #include "host_shim/pictures/image_output.h"
 #include "host_shim/pictures/picture_io.h"
 
+#include <OpenImageIO/strutil.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -96,6 +97,26 @@ void writeDisplayPicture(const std::filesystem::path& path, const DisplayPicture
         const auto codes = quantize<std::uint8_t>(picture.values, 255.0f);
         return output.write_image(OIIO::TypeDesc::UINT8, codes.data());
     });
+}
+
+std::string pngDataUri(const DisplayPicture& picture) {
+    const std::filesystem::path name = "picture.png";  // of which only the format is used
+    checkOptions(name, picture, {}, PictureFormat::kPng);
+    const auto codes = quantize<std::uint8_t>(picture.values, 255.0f);
+    OIIO::Filesystem::IOVecOutput memory;
+    const auto output = OIIO::ImageOutput::create(name.string());
+    bool good = output && output->set_ioproxy(&memory);
+    good = good && output->open(name.string(), makeSpec(picture, {}, PictureFormat::kPng));
+    good = good && output->write_image(OIIO::TypeDesc::UINT8, codes.data());
+    if (output) good = output->close() && good;
+    if (!good) {
+        throw HostError(ExitCode::kInternal, "a PNG can't be encoded: " +
+                                                 (output ? output->geterror() : OIIO::geterror()));
+    }
+    const auto& bytes = memory.buffer();
+    return "data:image/png;base64," +
+           OIIO::Strutil::base64_encode(
+               {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace pm::host

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <string>
 
 namespace pm::host {
 
@@ -51,6 +52,10 @@ struct DisplayWriteOptions {
 // Errors: kFile when it can't be written, kUsage for a depth that the format has not.
 void writeDisplayPicture(const std::filesystem::path& path, const DisplayPicture& picture,
                          const DisplayWriteOptions& options = {});
+
+// A PNG of 8 bits a channel as the address of an <img>: data:image/png;base64,... with the codes
+// that writeDisplayPicture writes. Errors: kInternal when it can't be encoded.
+std::string pngDataUri(const DisplayPicture& picture);
 
 // The first part of an EXR file with all its channels as floats, its windows and its attributes.
 // Errors: kFile when it can't be opened; kBadInput when it is no EXR, broken or truncated, or its

@@ -479,7 +479,8 @@ typedef struct PmrApi {
     /* The layers of this render, in the order of the pixels. */
     PmrStatus(PMR_CALL* renderLayerCount)(PmrRender render, uint32_t* count);
     PmrStatus(PMR_CALL* renderLayerInfo)(PmrRender render, uint32_t index, PmrLayerInfo* info);
-    /* Copies a rectangle of a layer, all its channels as floats side by side. Strides in bytes; the
+    /* Copies a rectangle of a layer, all its channels as floats side by side. stderr, samples and
+     * aalevel need not be among the render's layers: every render has them. Strides in bytes; the
      * row stride may be negative (destination is where the rectangle's top row goes); 0 means side
      * by side without a gap. Pixels that
      * are not rendered yet, or outside the frame, are 0. */

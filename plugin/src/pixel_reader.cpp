@@ -150,8 +150,12 @@ void readLayerPixels(const PixelRequest& request, const SettingValues& settings,
     if (request.layer == nullptr) throw argumentError("layer is null");
     const LayerSpec* spec = findLayer(request.layer);
     const std::vector<Layer> available = layersOf(settings);
+    // What every frame holds anyway may be read without being asked for.
+    const bool isKept =
+        spec != nullptr && (spec->id == Layer::kStandardError || spec->id == Layer::kSamples ||
+                            spec->id == Layer::kAaLevel);
     if (spec == nullptr ||
-        std::find(available.begin(), available.end(), spec->id) == available.end())
+        (!isKept && std::find(available.begin(), available.end(), spec->id) == available.end()))
         throw CallError(PMR_ERROR_NAME,
                         fmt::format("this render has no layer '{}'", request.layer));
     const Rect rect = checkedRectangle(request.rectangle);

@@ -53,6 +53,23 @@ TEST_F(Pixels, LayersOfARender) {
     EXPECT_STREQ("Z", info.name);
 }
 
+TEST_F(Pixels, WhatEveryFrameHoldsIsReadWithoutBeingAskedFor) {
+    const PmrRender plain = m_host.makeRender({});
+    ASSERT_EQ(PMR_OK, api().startRender(plain));
+    ASSERT_EQ(PMR_OK, api().waitRender(plain, -1.0));
+    finish();
+    for (const auto& [layer, channels] :
+         {std::pair("stderr", 3u), std::pair("samples", 1u), std::pair("aalevel", 1u)}) {
+        const auto values = readLayer(plain, layer, channels, kWhole);
+        EXPECT_EQ(readLayer(m_render, layer, channels, kWhole), values) << layer;
+        EXPECT_GT(*std::max_element(values.begin(), values.end()), 0.0f) << layer;
+    }
+    float albedo[3] = {};
+    const PmrRectangle one{0, 0, 1, 1};
+    EXPECT_EQ(PMR_ERROR_NAME, api().readPixels(plain, &one, "albedo", albedo, 0, 0));
+    EXPECT_EQ(PMR_OK, api().destroyRender(plain));
+}
+
 TEST_F(Pixels, LevelsAreWhatTheSamplesAmountTo) {
     for (const float level : readLayer(m_render, "aalevel", 1, kWhole)) EXPECT_EQ(0.0f, level);
     ASSERT_EQ(PMR_OK, api().setSettingInteger(m_render, "passes", 3));

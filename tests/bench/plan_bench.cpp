@@ -339,7 +339,8 @@ int runProgram(int argc, char** argv) {
     app.add_option("--seeds", options.seeds, "renders of each plan (2)")->check(CLI::Range(1, 999));
     app.add_option("--error", options.error, "relMSE to reach (0: the scene's own)")
         ->check(CLI::Range(0.0, 1.0));
-    app.add_option("--most-passes", options.mostPasses, "then a render gives up (64)");
+    app.add_option("--most-passes", options.mostPasses, "then a render gives up (64)")
+        ->check(CLI::Range(1, 9999));
     app.add_option("--reference-passes", options.referencePasses,
                    "of either half of the reference (0: the scene's own)")
         ->check(CLI::Range(0, 9999));

@@ -59,7 +59,7 @@ TEST(CommandLine, refusesWhatIsUnknownOrToCome) {
     EXPECT_TRUE(refusal({"--bogus"}).starts_with("2 "));
     EXPECT_TRUE(refusal({"another.obj"}).starts_with("2 "));
     EXPECT_TRUE(refusal({"-o"}).starts_with("2 "));
-    for (const char* later : {"--filter", "--photon-map", "--photons-only", "--report"}) {
+    for (const char* later : {"--filter", "--photon-map", "--photons-only"}) {
         EXPECT_EQ(refusal({later, "x"}), std::string("2 ") + later + ": not available yet");
         EXPECT_EQ(refusal({std::string(later) + "=x"}),
                   std::string("2 ") + later + ": not available yet");

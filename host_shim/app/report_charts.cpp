@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/app/report_charts.h"
+
+#include "host_shim/app/report_html.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace pm::host {
+namespace {
+
+constexpr double kWidth = 720, kHeight = 320;  // of a chart, CSS pixels
+constexpr double kLeft = 70, kRight = 170, kTop = 12, kBottom = 40;
+
+// One axis: from a value to a place, over whole decades.
+struct LogAxis {
+    int leastDecade{}, mostDecade{};
+    double from{}, to{};
+
+    LogAxis(double least, double most, double from_, double to_) : from(from_), to(to_) {
+        leastDecade = static_cast<int>(std::floor(std::log10(least)));
+        mostDecade = std::max(static_cast<int>(std::ceil(std::log10(most))), leastDecade + 1);
+    }
+    double place(double value) const {
+        const double share = (std::log10(value) - leastDecade) / (mostDecade - leastDecade);
+        return from + share * (to - from);
+    }
+};
+
+struct Range {
+    double least{std::numeric_limits<double>::infinity()}, most{0};
+    void add(double value) {
+        least = std::min(least, value);
+        most = std::max(most, value);
+    }
+};
+
+std::string line(double x0, double y0, double x1, double y1, const char* style) {
+    return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", x0,
+                       y0, x1, y1, style);
+}
+
+std::string label(double x, double y, const char* anchor, const std::string& text) {
+    return fmt::format(
+        "<text class=\"label\" x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\">{}</text>\n", x, y,
+        anchor, escaped(text));
+}
+
+std::string axes(const LogAxis& x, const LogAxis& y) {
+    std::string text;
+    for (int decade = x.leastDecade; decade <= x.mostDecade; ++decade) {
+        const double value = std::pow(10.0, decade), at = x.place(value);
+        text += line(at, y.to, at, y.from, "class=\"grid\"");
+        text += label(at, y.from + 16, "middle", fmt::format("{:g}", value));
+    }
+    for (int decade = y.leastDecade; decade <= y.mostDecade; ++decade) {
+        const double value = std::pow(10.0, decade), at = y.place(value);
+        text += line(x.from, at, x.to, at, "class=\"grid\"");
+        text += label(x.from - 6, at + 4, "end", fmt::format("{:g}", value));
+    }
+    text += line(x.from, y.from, x.to, y.from, "class=\"axis\"");
+    text += line(x.from, y.from, x.from, y.to, "class=\"axis\"");
+    return text + label((x.from + x.to) / 2, y.from + 34, "middle", "seconds");
+}
+
+bool canBeDrawn(const std::pair<double, double>& point) {
+    return point.first > 0 && point.second > 0 && std::isfinite(point.first) &&
+           std::isfinite(point.second);
+}
+
+std::string polyline(const Curve& curve, const LogAxis& x, const LogAxis& y) {
+    std::string points, dots;
+    for (const auto& point : curve.points) {
+        if (!canBeDrawn(point)) continue;
+        const double px = x.place(point.first), py = y.place(point.second);
+        points += fmt::format("{:.1f},{:.1f} ", px, py);
+        dots += fmt::format("<circle cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"2.5\" fill=\"{}\"/>\n", px, py,
+                            curve.colour);
+    }
+    return fmt::format(
+               "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" points=\"{}\"/>\n",
+               curve.colour, points) +
+           dots;
+}
+
+// Each bucket's seconds a pass, at 1/shrink of the window.
+Plane bucketPlane(const std::vector<BucketTimes::Bucket>& buckets, const PixelRect& window,
+                  int shrink) {
+    Plane plane{
+        (window.width() + shrink - 1) / shrink, (window.height() + shrink - 1) / shrink, {}};
+    plane.values.assign(static_cast<std::size_t>(plane.width) * plane.height, 0.0f);
+    for (const auto& bucket : buckets) {
+        const PmrRectangle& r = bucket.rectangle;
+        const auto within = [shrink](std::int32_t v, std::int32_t first, std::int32_t most) {
+            return std::clamp((v - first + shrink - 1) / shrink, 0, most);
+        };
+        for (int y = within(r.y0, window.y0, plane.height);
+             y < within(r.y1, window.y0, plane.height); ++y)
+            for (int x = within(r.x0, window.x0, plane.width);
+                 x < within(r.x1, window.x0, plane.width); ++x)
+                plane.values[static_cast<std::size_t>(y) * plane.width + x] =
+                    static_cast<float>(bucket.secondsPerPass());
+    }
+    return plane;
+}
+
+}  // namespace
+
+std::string errorChart(const std::vector<Curve>& curves, std::optional<double> limit) {
+    Range seconds, errors;
+    std::size_t count = 0;
+    for (const Curve& curve : curves) {
+        for (const auto& point : curve.points) {
+            if (!canBeDrawn(point)) continue;
+            seconds.add(point.first);
+            errors.add(point.second);
+            ++count;
+        }
+    }
+    if (count < 2) return {};
+    if (limit && !(*limit > 0)) limit.reset();
+    if (limit) errors.add(*limit);
+    const LogAxis x(seconds.least, seconds.most, kLeft, kWidth - kRight);
+    const LogAxis y(errors.least, errors.most, kHeight - kBottom, kTop);
+    std::string text = fmt::format(
+        "<svg width=\"{0:g}\" height=\"{1:g}\" viewBox=\"0 0 {0:g} {1:g}\" role=\"img\" "
+        "aria-label=\"error over time\">\n",
+        kWidth, kHeight);
+    text += axes(x, y);
+    double legend = kTop + 10;
+    const auto name = [&](const std::string& colour, const std::string& words) {
+        text += line(kWidth - kRight + 12, legend - 4, kWidth - kRight + 28, legend - 4,
+                     fmt::format("stroke=\"{}\" stroke-width=\"2\"", colour).c_str());
+        text += label(kWidth - kRight + 33, legend, "start", words);
+        legend += 18;
+    };
+    for (const Curve& curve : curves) {
+        text += polyline(curve, x, y);
+        name(curve.colour, curve.name);
+    }
+    if (limit) {
+        text += line(x.from, y.place(*limit), x.to, y.place(*limit),
+                     "stroke=\"#b3261e\" stroke-dasharray=\"5 4\"");
+        name("#b3261e", "against the reference");
+    }
+    return text + "</svg>\n";
+}
+
+std::string bucketMap(const std::vector<BucketTimes::Bucket>& buckets, const PixelRect& window,
+                      std::size_t mostBytes) {
+    constexpr double kMostPixels = 1e6;
+    constexpr std::size_t kMostPoints = 20'000;
+    if (buckets.empty() || window.empty()) return {};
+    const int shrink = std::max(
+        1,
+        static_cast<int>(std::ceil(std::sqrt(static_cast<double>(window.area()) / kMostPixels))));
+    double slowest = 0;
+    for (const auto& bucket : buckets) slowest = std::max(slowest, bucket.secondsPerPass());
+    const EmbeddedPicture heat = embedded(
+        heatMap(bucketPlane(buckets, window, shrink), 0, static_cast<float>(slowest)), mostBytes);
+    const std::size_t step = (buckets.size() + kMostPoints - 1) / kMostPoints;
+    std::string points;
+    for (std::size_t i = 0; i < buckets.size(); i += step) {
+        const PmrRectangle& r = buckets[i].rectangle;
+        points += fmt::format("{:g},{:g} ", (r.x0 + r.x1) / 2.0 - window.x0,
+                              (r.y0 + r.y1) / 2.0 - window.y0);
+    }
+    std::string text = fmt::format(
+        "<svg id=\"bucket-curve\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" role=\"img\" "
+        "aria-label=\"time of the buckets and their order\">\n",
+        heat.shownWidth, heat.shownHeight, window.width(), window.height());
+    text += fmt::format(
+        "<image width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" href=\"{}\"/>\n",
+        window.width(), window.height(), heat.dataUri);
+    text += fmt::format(
+        "<polyline fill=\"none\" stroke=\"#fff\" stroke-width=\"1.5\" stroke-opacity=\"0.8\" "
+        "vector-effect=\"non-scaling-stroke\" points=\"{}\"/>\n</svg>\n",
+        points);
+    text += scaleHtml("0 s a pass", fmt::format("{:.3g} s", slowest));
+    if (step > 1) text += paragraph(fmt::format("The line joins every {}th bucket.", step));
+    return text;
+}
+
+}  // namespace pm::host

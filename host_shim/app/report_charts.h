@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/app/bucket_times.h"
+#include "host_shim/app/report_pictures.h"
+#include "host_shim/pictures/picture.h"
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace pm::host {
+
+// Drawings of a page, as inline SVG.
+
+// Relative error over seconds, both axes logarithmic; points whose coordinates are not above 0 are
+// left out. limit: a level line, the error against a reference. Empty with fewer than two points.
+struct Curve {
+    std::string name;
+    std::string colour;
+    std::vector<std::pair<double, double>> points;  // seconds, relMSE
+};
+std::string errorChart(const std::vector<Curve>& curves, std::optional<double> limit);
+
+// Seconds a pass of each bucket as a heat map, and a line through the buckets' centres in their
+// order. window: what the picture shows. Empty without buckets.
+std::string bucketMap(const std::vector<BucketTimes::Bucket>& buckets, const PixelRect& window,
+                      std::size_t mostBytes);
+
+}  // namespace pm::host

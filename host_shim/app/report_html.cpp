@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/app/report_html.h"
+
+#include <fmt/format.h>
+
+namespace pm::host {
+namespace {
+
+constexpr const char* kStyle = R"(
+body { font: 15px/1.45 system-ui, sans-serif; color: #222; background: #fff;
+       max-width: 1100px; margin: 0 auto; padding: 0 16px 48px; }
+h1 { font-size: 24px; margin: 24px 0 8px; }
+h2 { font-size: 18px; margin: 32px 0 8px; border-bottom: 1px solid #ccc; }
+p { margin: 6px 0; }
+.status { padding: 8px 12px; border-left: 6px solid #2a7d3c; background: #eef7f0; }
+.status.bad { border-color: #b3261e; background: #fbeceb; }
+pre { background: #f3f3f3; padding: 8px; white-space: pre-wrap; overflow-wrap: anywhere; }
+table { border-collapse: collapse; margin: 6px 0; }
+td, th { padding: 2px 14px 2px 0; text-align: left; vertical-align: top;
+         border-bottom: 1px solid #eee; font-variant-numeric: tabular-nums; }
+figure { margin: 8px 0; }
+figcaption { color: #555; }
+img, svg { display: block; max-width: 100%; height: auto; image-rendering: pixelated; }
+.scale { display: inline-block; width: 160px; height: 10px; margin: 0 6px; }
+.pair { position: relative; }
+.pair img + img { position: absolute; left: 0; top: 0; clip-path: inset(0 0 0 50%); }
+input[type=range] { max-width: 100%; margin: 0; }
+.axis { stroke: #999; } .grid { stroke: #e4e4e4; } .label { font: 12px sans-serif; fill: #444; }
+)";
+
+// Nothing is fetched from anywhere.
+constexpr const char* kPolicy =
+    "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
+
+}  // namespace
+
+std::string escaped(std::string_view text) {
+    std::string result;
+    for (const char c : text) {
+        switch (c) {
+            case '&':
+                result += "&amp;";
+                break;
+            case '<':
+                result += "&lt;";
+                break;
+            case '>':
+                result += "&gt;";
+                break;
+            case '"':
+                result += "&quot;";
+                break;
+            case '\'':
+                result += "&#39;";
+                break;
+            default: {
+                const auto byte = static_cast<unsigned char>(c);
+                const bool isControl = (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f;
+                result += isControl ? std::string("\xEF\xBF\xBD") : std::string(1, c);
+            }
+        }
+    }
+    return result;
+}
+
+std::string section(std::string_view id, std::string_view heading, const std::string& content) {
+    return fmt::format("<section id=\"{}\">\n<h2>{}</h2>\n{}</section>\n", id, escaped(heading),
+                       content);
+}
+
+std::string paragraph(std::string_view text) {
+    return fmt::format("<p>{}</p>\n", escaped(text));
+}
+
+std::string table(const Row& head, const std::vector<Row>& rows) {
+    std::string text = "<table>\n";
+    const auto add = [&](const Row& row, const char* cell) {
+        text += "<tr>";
+        for (const std::string& content : row) text += fmt::format("<{0}>{1}</{0}>", cell, content);
+        text += "</tr>\n";
+    };
+    if (!head.empty()) add(head, "th");
+    for (const Row& row : rows) add(row, "td");
+    return text + "</table>\n";
+}
+
+std::string codeBlock(std::string_view text) {
+    return fmt::format("<pre><code>{}</code></pre>\n", escaped(text));
+}
+
+std::string details(std::string_view summary, const std::string& content) {
+    return fmt::format("<details><summary>{}</summary>\n{}</details>\n", escaped(summary), content);
+}
+
+std::string wholePage(std::string_view title, const std::string& body) {
+    return fmt::format(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\"/>\n"
+        "<meta name=\"viewport\" content=\"width=device-width\"/>\n"
+        "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
+        kPolicy, escaped(title), kStyle, body);
+}
+
+}  // namespace pm::host

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pm::host {
+
+// Pieces of a page that is HTML and well-formed XML at once. Texts are UTF-8.
+
+// As content or as the value of an attribute; what XML can't hold becomes U+FFFD.
+std::string escaped(std::string_view text);
+
+// <section> with a heading. content is HTML.
+std::string section(std::string_view id, std::string_view heading, const std::string& content);
+
+// A paragraph of plain text.
+std::string paragraph(std::string_view text);
+
+// A table; cells are HTML. head may be empty.
+using Row = std::vector<std::string>;
+std::string table(const Row& head, const std::vector<Row>& rows);
+
+// A code block with a plain text, to be copied.
+std::string codeBlock(std::string_view text);
+
+// What folds away under a line of plain text. content is HTML.
+std::string details(std::string_view summary, const std::string& content);
+
+// The whole page. title is plain text, body HTML.
+std::string wholePage(std::string_view title, const std::string& body);
+
+}  // namespace pm::host
