@@ -147,7 +147,7 @@ TEST(SampleAllotment, samplesGrowWithTheRelativeSpread) {
     std::array<std::uint16_t, kPixels> samples{};
     // s / (4 threshold), s relative to sqrt(r^2 + 0.01).
     for (const double deviation : {0.1, 0.4, 1.0}) {
-        allotSamples(kRule, evenAtom(8, 2.0, deviation), samples);
+        allotSamples(kRule, evenAtom(2, 2.0, deviation), samples);
         const double expected = deviation / std::sqrt(4.01) / 0.04;
         for (const std::uint16_t count : samples) EXPECT_EQ(count, std::lround(expected));
     }
@@ -155,7 +155,7 @@ TEST(SampleAllotment, samplesGrowWithTheRelativeSpread) {
     const double none = std::numeric_limits<double>::quiet_NaN();
     for (const auto& [deviation, count] :
          {std::pair{0.0, 1u}, std::pair{1e3, 64u}, std::pair{none, 1u}}) {
-        allotSamples(kRule, evenAtom(8, 2.0, deviation), samples);
+        allotSamples(kRule, evenAtom(2, 2.0, deviation), samples);
         for (const std::uint16_t s : samples) EXPECT_EQ(s, count) << deviation;
     }
 }
