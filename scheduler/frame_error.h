@@ -14,6 +14,9 @@
 
 namespace pm {
 
+// The offset of relMSE's denominator.
+inline constexpr double kRelMseOffset = 0.01;
+
 // How far a frame is from the truth, as relMSE (mean over pixels and channels of
 // (x - r)^2 / (r^2 + 0.01)), told without a reference.
 //

@@ -11,8 +11,6 @@
 namespace pm {
 namespace {
 
-// The offset of relMSE's denominator, as in design and documentation.
-constexpr double kRelMseOffset = 0.01;
 // Bias is minus twice the probe, so its square four times the probe's.
 constexpr double kBiasPerProbe = 4;
 // A pixel is taken as unlike its neighbours by what is more than so many variances of its mean.

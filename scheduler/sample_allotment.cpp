@@ -11,14 +11,12 @@
 
 #include "integrator/values/error.h"
 #include "scheduler/bucket_grid.h"
+#include "scheduler/frame_error.h"
 
 namespace pm {
 namespace {
 
 constexpr double kPassesOfALevel = 4;
-// The offset of relMSE's denominator.
-constexpr double kRelMseOffset = 0.01;
-
 constexpr std::size_t kSide = kAtomSizePixels;
 
 // Calls visit with each pixel of the 3 x 3 around (x, y) that lies in the atom.

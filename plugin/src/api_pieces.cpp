@@ -52,9 +52,7 @@ PmrStatus PMR_CALL mergeLayerCount(PmrMerge merge, uint32_t* count) noexcept {
 PmrStatus PMR_CALL mergeLayerInfo(PmrMerge merge, uint32_t index, PmrLayerInfo* info) noexcept {
     return onObject<MergeObject>(merge, [&](const MergePointer& object) {
         const std::vector<Layer> layers = object->layers();
-        if (index >= layers.size())
-            throw argumentError("index is " + std::to_string(index) + "; there are " +
-                                std::to_string(layers.size()));
+        checkIndex(index, layers.size());
         const LayerSpec& spec = layerSpecs()[static_cast<std::size_t>(layers[index])];
         writeStruct(info, toInfo(spec), "PmrLayerInfo");
     });

@@ -23,12 +23,6 @@ const char* checkedName(const char* name) {
     return name;
 }
 
-void checkIndex(std::uint32_t index, std::size_t count) {
-    if (index >= count)
-        throw argumentError("index is " + std::to_string(index) + "; there are " +
-                            std::to_string(count));
-}
-
 }  // namespace
 
 const char* PMR_CALL versionText() noexcept {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -24,6 +25,12 @@ class CallError : public std::runtime_error {
 // The most common one: a value outside of what is allowed.
 inline CallError argumentError(const std::string& text) {
     return {PMR_ERROR_ARGUMENT, text};
+}
+
+inline void checkIndex(std::size_t index, std::size_t count) {
+    if (index >= count)
+        throw argumentError("index is " + std::to_string(index) + "; there are " +
+                            std::to_string(count));
 }
 
 }  // namespace pm::plugin

@@ -8,9 +8,9 @@
 
 #include "integrator/values/error.h"
 #include "plugin/src/call_error.h"
+#include "plugin/src/frame_samples.h"
 #include "plugin/src/part_file.h"
 #include "plugin/src/pixel_reader.h"
-#include "plugin/src/render_work.h"
 #include "plugin/src/statistics_json.h"
 #include "plugin/src/version.h"
 #include "scheduler/frame_store_bytes.h"
@@ -41,7 +41,7 @@ MergeObject::Picture::Picture(PieceHead partHead, std::string fileName)
     settings.setInteger("passes", head.passes);
     const RenderSettings render = settings.toRenderSettings();
     layout = channelLayout(render);
-    frame = makeFrame(render, layout);
+    frame = std::make_unique<FrameStore>(makeFrame(render));
     files.resize(head.bucketCount);
 }
 

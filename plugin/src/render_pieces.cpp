@@ -108,10 +108,9 @@ void RenderPieces::takeBucket(std::uint32_t pass, const Rect& rect, std::span<co
         if (m_checkpoint) m_checkpoint->addBucket(pass, part, floats);
     };
     if (!isWithinPass() || !m_checkpoint->done().hasAny(rect)) return take(rect, buffer);
-    const Rect whole = wholeAtoms(rect);
-    for (std::int32_t y = whole.y0; y < whole.y1; y += kAtomSizePixels) {
-        for (std::int32_t x = whole.x0; x < whole.x1; x += kAtomSizePixels) {
-            const Rect atom = intersect({x, y, x + kAtomSizePixels, y + kAtomSizePixels}, rect);
+    for (std::int32_t y = rect.y0; y < rect.y1; y += kAtomSizePixels) {
+        for (std::int32_t x = rect.x0; x < rect.x1; x += kAtomSizePixels) {
+            const Rect atom{x, y, x + kAtomSizePixels, y + kAtomSizePixels};
             if (!m_checkpoint->done().hasAny(atom))
                 take(atom, cutOut(rect, atom, buffer, channels));
         }

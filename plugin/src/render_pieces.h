@@ -44,8 +44,8 @@ class RenderPieces {
     // Of a pass: the cells that are still to be rendered; all but in the pass that goes on.
     std::vector<std::uint32_t> remaining(std::span<const std::uint32_t> order) const;
     // Takes what a bucket gave in a pass: floats, `channels` a pixel, then weights, for the pixels
-    // of rect. Calls add(rect, buffer) with what is to go into the frame: all of it, or one by one
-    // the atoms that were not done before. Threads: any.
+    // of rect, whole atoms. Calls add(rect, buffer) with what is to go into the frame: all of it,
+    // or one by one the atoms that were not done before. Threads: any.
     using Add = std::function<void(const Rect& rect, std::span<const float> buffer)>;
     void takeBucket(std::uint32_t pass, const Rect& rect, std::span<const float> buffer,
                     std::size_t channels, const Add& add);

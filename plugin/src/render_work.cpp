@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <ctime>
 #include <optional>
 #include <utility>
@@ -13,6 +12,7 @@
 #include "integrator/values/error.h"
 #include "integrator/values/stopwatch.h"
 #include "plugin/src/call_error.h"
+#include "plugin/src/frame_samples.h"
 #include "plugin/src/memory_limit.h"
 #include "scheduler/bucket_order.h"
 #include "scheduler/correlated_choice.h"
@@ -52,14 +52,6 @@ ProgressClock::Ends endsOf(const StopRule& rule) {
 
 }  // namespace
 
-std::unique_ptr<FrameStore> makeFrame(const RenderSettings& settings, const ChannelLayout& layout) {
-    std::optional<SampleRule> rule;
-    if (settings.isAdaptive())
-        rule = sampleRule(settings.aaLevel, settings.aaLevelMost, settings.aaThreshold);
-    return std::make_unique<FrameStore>(settings.window, layout.count, layout.beauty,
-                                        layout.biasProbe, layout.emission, rule);
-}
-
 RenderWork::RenderWork(std::shared_ptr<const Scene> scene, const Identity& sceneIdentity,
                        const SettingValues& values)
     : m_processorStart(processorSeconds()),
@@ -81,7 +73,7 @@ RenderWork::RenderWork(std::shared_ptr<const Scene> scene, const Identity& scene
     for (std::uint32_t i = 0; i < m_order.size(); ++i) m_orderIndex[m_order[i]] = i;
     m_renderer = m_arena.execute(
         [this] { return std::make_unique<FrameRenderer>(m_scene, m_settings, m_plan); });
-    m_frame = makeFrame(m_settings, m_layout);
+    m_frame = std::make_unique<FrameStore>(makeFrame(m_settings));
     const Scratch scratch{std::vector<float>(static_cast<std::size_t>(kAtomPixels) *
                                              static_cast<std::size_t>(m_layout.count)),
                           std::vector<SampleRun>(kAtomPixels)};
@@ -240,25 +232,11 @@ PmrBucketInfo RenderWork::bucketInfo(std::uint32_t cell, const Rect& bucket,
     return info;
 }
 
-// The samples of an atom's pixels in this pass.
-void RenderWork::planSamples(const Rect& atom, std::uint32_t pass, Scratch& scratch) const {
-    std::array<FrameStore::NextSamples, kAtomPixels> next;
-    if (m_settings.isAdaptive()) m_frame->nextSamples(pass, atom, next);
-    std::size_t i = 0;
-    for (std::int32_t y = atom.y0; y < atom.y1; ++y)
-        for (std::int32_t x = atom.x0; x < atom.x1; ++x, ++i) {
-            SampleRun& run = scratch.runs[i];
-            run = fixedSamples(m_settings, x, y, pass);
-            if (m_settings.isAdaptive())
-                run = {next[i].had, std::max(next[i].count, run.count), run.seen};
-        }
-}
-
 // A bucket's buffer: its pixels' floats, then its pixels' weights.
 void RenderWork::renderAtom(const Rect& rect, const Rect& atom, std::uint32_t pass, int worker,
                             std::span<float> buffer, const Cancel& cancel) {
     Scratch& scratch = m_scratch[static_cast<std::size_t>(worker)];
-    planSamples(atom, pass, scratch);
+    findSamples(m_settings, *m_frame, pass, atom, scratch.runs);
     m_renderer->renderRegion(atom, scratch.runs, scratch.pixels, cancel.flag);
     const auto floats = static_cast<std::ptrdiff_t>(kAtomSizePixels) * m_layout.count;
     const auto weightsAt = static_cast<std::ptrdiff_t>(rect.area()) * m_layout.count;

@@ -105,7 +105,6 @@ class RenderWork {
     void warn(const Notice& notice, EventQueue& events);
     double beginPass(std::uint32_t pass, const Cancel& cancel, EventQueue& events);
     double renderBuckets(std::uint32_t pass, const Cancel& cancel, EventQueue& events);
-    void planSamples(const Rect& atom, std::uint32_t pass, Scratch& scratch) const;
     void renderAtom(const Rect& rect, const Rect& atom, std::uint32_t pass, int worker,
                     std::span<float> buffer, const Cancel& cancel);
     PmrBucketInfo bucketInfo(std::uint32_t cell, const Rect& bucket, std::uint32_t pass) const;
@@ -134,8 +133,5 @@ class RenderWork {
     mutable std::mutex m_mutex;
     Progress m_progress;
 };
-
-// The empty frame of a render with these settings.
-std::unique_ptr<FrameStore> makeFrame(const RenderSettings& settings, const ChannelLayout& layout);
 
 }  // namespace pm::plugin

@@ -3,9 +3,11 @@
 #include "tests/bench/estimate_run.h"
 
 #include <fmt/format.h>
+
 #include <bit>
 #include <fstream>
 
+#include "plugin/src/frame_samples.h"
 #include "tests/bench/pass_renderer.h"
 
 namespace pm::bench {
@@ -55,7 +57,7 @@ void PassSource::forEachPass(const RenderSettings& settings, const UsePass& useP
 }
 
 std::vector<Judged> PassSource::judged(const RenderSettings& settings) const {
-    FrameStore store = storeFor(settings);
+    FrameStore store = plugin::makeFrame(settings);
     std::vector<Judged> result;
     forEachPass(settings, [&](std::uint32_t pass, const auto& pixels, const auto& weights) {
         store.addPass(pass, settings.window, pixels, weights);
@@ -69,7 +71,7 @@ std::vector<Judged> PassSource::judged(const RenderSettings& settings) const {
 }
 
 Halves PassSource::halves(const RenderSettings& settings) const {
-    FrameStore even = storeFor(settings), odd = storeFor(settings);
+    FrameStore even = plugin::makeFrame(settings), odd = plugin::makeFrame(settings);
     forEachPass(settings, [&](std::uint32_t pass, const auto& pixels, const auto& weights) {
         (pass % 2 == 0 ? even : odd).addPass(pass, settings.window, pixels, weights);
     });

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <atomic>
-#include <optional>
+#include <cstddef>
+
+#include "plugin/src/frame_samples.h"
 
 namespace pm::bench {
 
@@ -22,14 +24,6 @@ Pass::Pass(const RenderSettings& settings)
              static_cast<std::size_t>(channelLayout(settings).count)),
       weights(static_cast<std::size_t>(settings.window.area())) {}
 
-FrameStore storeFor(const RenderSettings& settings) {
-    const ChannelLayout layout = channelLayout(settings);
-    std::optional<SampleRule> rule;
-    if (settings.isAdaptive())
-        rule = sampleRule(settings.aaLevel, settings.aaLevelMost, settings.aaThreshold);
-    return {settings.window, layout.count, layout.beauty, layout.biasProbe, layout.emission, rule};
-}
-
 std::vector<double> channelsOf(const FrameStore& store, std::int32_t first) {
     const Rect& window = store.window();
     std::vector<float> rgb(3 * static_cast<std::size_t>(window.area()));
@@ -40,7 +34,10 @@ std::vector<double> channelsOf(const FrameStore& store, std::int32_t first) {
 
 PassRenderer::PassRenderer(std::shared_ptr<const Scene> scene, const RenderSettings& settings,
                            const Plan& plan, int threads)
-    : m_settings(settings), m_arena(threads), m_frame(storeFor(settings)), m_pass(settings) {
+    : m_settings(settings),
+      m_arena(threads),
+      m_frame(plugin::makeFrame(settings)),
+      m_pass(settings) {
     m_renderer = m_arena.execute(
         [&] { return std::make_unique<FrameRenderer>(std::move(scene), m_settings, plan); });
 }
@@ -68,17 +65,10 @@ void PassRenderer::renderStrips() {
         const Rect strip = intersect({frame.x0, y, frame.x1, y + kRows}, frame);
         const auto area = static_cast<std::size_t>(strip.area());
         const std::size_t first = static_cast<std::size_t>(i * kRows) * width;
-        std::vector<FrameStore::NextSamples> next(area);
-        if (m_settings.isAdaptive()) m_frame.nextSamples(m_passes, strip, next);
         std::vector<SampleRun> runs(area);
-        for (std::size_t at = 0; at < area; ++at) {
-            const auto x = frame.x0 + static_cast<std::int32_t>(at % width);
-            runs[at] =
-                fixedSamples(m_settings, x, y + static_cast<std::int32_t>(at / width), m_passes);
-            if (m_settings.isAdaptive())
-                runs[at] = {next[at].had, std::max(next[at].count, runs[at].count), runs[at].seen};
-            m_pass.weights[first + at] = static_cast<float>(runs[at].count);
-        }
+        plugin::findSamples(m_settings, m_frame, m_passes, strip, runs);
+        std::ranges::transform(runs, m_pass.weights.begin() + static_cast<std::ptrdiff_t>(first),
+                               [](const SampleRun& run) { return static_cast<float>(run.count); });
         m_renderer->renderRegion(
             strip, runs, std::span(m_pass.pixels).subspan(first * channels, area * channels),
             kNotCancelled);

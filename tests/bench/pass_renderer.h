@@ -22,9 +22,6 @@ struct Pass {
     explicit Pass(const RenderSettings& settings);
 };
 
-// The empty frame of a render with these settings.
-FrameStore storeFor(const RenderSettings& settings);
-
 // Three of a frame's channels, those from `first` on, row by row.
 std::vector<double> channelsOf(const FrameStore& store, std::int32_t first);
 

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/src/frame_samples.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "scheduler/bucket_grid.h"
+
+namespace pm::plugin {
+
+FrameStore makeFrame(const RenderSettings& settings) {
+    const ChannelLayout layout = channelLayout(settings);
+    std::optional<SampleRule> rule;
+    if (settings.isAdaptive())
+        rule = sampleRule(settings.aaLevel, settings.aaLevelMost, settings.aaThreshold);
+    return {settings.window, layout.count, layout.beauty, layout.biasProbe, layout.emission, rule};
+}
+
+void findSamples(const RenderSettings& settings, const FrameStore& frame, std::uint32_t pass,
+                 const Rect& rect, std::span<SampleRun> runs) {
+    std::array<FrameStore::NextSamples, kAtomSizePixels> next;
+    auto run = runs.begin();
+    for (std::int32_t y = rect.y0; y < rect.y1; ++y)
+        for (std::int32_t x0 = rect.x0; x0 < rect.x1; x0 += kAtomSizePixels) {
+            const Rect row{x0, y, std::min(x0 + kAtomSizePixels, rect.x1), y + 1};
+            if (settings.isAdaptive()) frame.nextSamples(pass, row, next);
+            for (std::int32_t x = row.x0; x < row.x1; ++x, ++run) {
+                *run = fixedSamples(settings, x, y, pass);
+                if (!settings.isAdaptive()) continue;
+                const FrameStore::NextSamples& allotted =
+                    next[static_cast<std::size_t>(x - row.x0)];
+                *run = {allotted.had, std::max(allotted.count, run->count), run->seen};
+            }
+        }
+}
+
+}  // namespace pm::plugin

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Where the samples that light is asked for meet the frame that keeps and allots them.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "integrator/transport/frame_renderer.h"
+#include "integrator/transport/render_settings.h"
+#include "scheduler/frame_store.h"
+
+namespace pm::plugin {
+
+// The empty frame of a render with these settings. Errors: those of FrameStore.
+FrameStore makeFrame(const RenderSettings& settings);
+
+// The samples of the pixels of rect, row by row, in a pass: of a fixed level, or what the frame
+// allots. rect within the window's atoms.
+void findSamples(const RenderSettings& settings, const FrameStore& frame, std::uint32_t pass,
+                 const Rect& rect, std::span<SampleRun> runs);
+
+}  // namespace pm::plugin
