@@ -9,15 +9,11 @@ namespace pm {
 namespace {
 
 constexpr double kChannels = 3;
-// Of the pixels, those left out of the trimmed figure.
-constexpr double kTrimmedShare = 0.001;
-// Side of the squares whose shares of the bias count as independent: wider than most blurs.
-constexpr std::int32_t kSquarePixels = 32;
 // Samples that saw a lamp, from which on their number is known well enough.
 constexpr double kManySeen = 30;
 
 std::int32_t squareOf(std::int32_t from, std::int32_t at) {
-    return (at - from) / kSquarePixels;
+    return (at - from) / kErrorSquarePixels;
 }
 
 }  // namespace
@@ -39,8 +35,8 @@ void FrameErrorSum::add(std::int32_t x, std::int32_t y, double noise, double bia
 }
 
 double FrameErrorSum::trimmedNoise() const {
-    const auto dropped =
-        static_cast<std::size_t>(std::ceil(kTrimmedShare * static_cast<double>(m_noise.size())));
+    const auto dropped = static_cast<std::size_t>(
+        std::ceil(kErrorTrimmedShare * static_cast<double>(m_noise.size())));
     std::vector<double> sorted = m_noise;
     const auto limit = sorted.end() - static_cast<std::ptrdiff_t>(dropped);
     std::nth_element(sorted.begin(), limit, sorted.end());

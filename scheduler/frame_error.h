@@ -49,6 +49,11 @@ struct FrameError {
     double totalTrimmed() const { return noiseTrimmed + std::max(0.0, bias); }
 };
 
+// Of the pixels, those left out of the trimmed figure.
+inline constexpr double kErrorTrimmedShare = 0.001;
+// Side of the squares whose shares of the bias count as independent: wider than most blurs.
+inline constexpr std::int32_t kErrorSquarePixels = 32;
+
 // Adds up the pixels of a frame, given in one fixed order.
 class FrameErrorSum {
   public:

@@ -4,8 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <new>
+#include <type_traits>
 
 #include "integrator/values/error.h"
 #include "scheduler/bucket_grid.h"
@@ -26,6 +28,11 @@ std::size_t evenChannels(std::int32_t channels, std::int32_t biasProbeFirst, boo
 
 // Floats of SeenSamples.
 constexpr std::int32_t kSeenChannels = 5;
+
+// Of a rule's samples: floats of a pass that can't be read.
+std::int32_t ruleChannels(bool adaptive, bool groups) {
+    return adaptive ? kSeenChannels + (groups ? 1 : 0) : 0;
+}
 
 void addSeen(const float* values, SeenSamples& seen) {
     seen.samples += static_cast<double>(values[0]);
@@ -70,7 +77,7 @@ FrameStore::FrameStore(const Rect& window, std::int32_t channels, std::int32_t b
                        const std::optional<SampleRule>& rule)
     : m_window(window),
       m_area(wholeAtoms(window)),
-      m_channels(rule ? channels - kSeenChannels : channels),
+      m_channels(channels - ruleChannels(rule.has_value(), rule && rule->groups)),
       m_beautyFirst(beautyFirst),
       m_biasProbeFirst(biasProbeFirst),
       m_emissionFirst(emissionFirst),
@@ -93,26 +100,28 @@ FrameStore::FrameStore(const Rect& window, std::int32_t channels, std::int32_t b
             m_allotted.assign(2 * pixels, static_cast<std::uint16_t>(rule->least));
             m_seen.resize(2 * pixels);
         }
+        if (hasGroups()) m_groups.assign(pixels, kUnseen);
         m_bandLocks = std::make_unique<std::mutex[]>(bandCount(window));
     } catch (const std::exception&) {  // bad_alloc, or length_error for sizes beyond any memory
         throw Error(
             Status::kOutOfMemory,
             fmt::format("no memory for a frame of {} x {} pixels with {} channels: {} bytes",
                         window.width(), window.height(), channels,
-                        memoryBytes(window, channels, biasProbeFirst, isAdaptive())));
+                        memoryBytes(window, channels, biasProbeFirst, isAdaptive(), hasGroups())));
     }
 }
 
 std::uint64_t FrameStore::memoryBytes(const Rect& window, std::int32_t channels,
-                                      std::int32_t biasProbeFirst, bool adaptive) {
+                                      std::int32_t biasProbeFirst, bool adaptive, bool groups) {
     if (window.empty() || channels < 0) return sizeof(FrameStore);
-    if (adaptive) channels -= kSeenChannels;
+    channels -= ruleChannels(adaptive, groups);
     const std::uint64_t pixelBytes =
         (static_cast<std::uint64_t>(channels) + 2 + kBeautyChannels +
          evenChannels(channels, biasProbeFirst, adaptive)) *
             sizeof(double) +
         2 * sizeof(std::uint32_t) +
-        (adaptive ? 2 * (sizeof(std::uint16_t) + sizeof(SeenSamples)) : 0);
+        (adaptive ? 2 * (sizeof(std::uint16_t) + sizeof(SeenSamples)) : 0) +
+        (groups ? sizeof(float) : 0);
     return sizeof(FrameStore) + static_cast<std::uint64_t>(wholeAtoms(window).area()) * pixelBytes +
            bandCount(window) * sizeof(std::mutex);
 }
@@ -128,8 +137,7 @@ void FrameStore::addPass(std::uint32_t pass, const Rect& rect, std::span<const f
     }
     const FpEnvironment guard;
     const auto area = static_cast<std::size_t>(rect.area());
-    const auto channels =
-        static_cast<std::size_t>(isAdaptive() ? m_channels + kSeenChannels : m_channels);
+    const auto channels = static_cast<std::size_t>(passChannels());
     if (pixels.size() != area * channels || weights.size() != area) {
         throw Error(Status::kInvalidArgument,
                     fmt::format("pass of {} pixels has {} floats and {} weights; it must have {} "
@@ -144,6 +152,7 @@ void FrameStore::addPass(std::uint32_t pass, const Rect& rect, std::span<const f
             if (!(weights[source] > 0.0f)) continue;
             const float* const values = pixels.data() + source * channels;
             const auto weight = static_cast<double>(weights[source]);
+            if (hasGroups()) noteContribution(pixel, values[channels - 1]);
             addPixel(pixel, values, weight);
             if (pass % 2 == 0) addToEvenPasses(pixel, values, weight);
             if (isAdaptive()) addSeen(values + m_channels, m_seen[2 * pixel + pass % 2]);
@@ -153,12 +162,58 @@ void FrameStore::addPass(std::uint32_t pass, const Rect& rect, std::span<const f
     for (std::int32_t y = rect.y0; y < rect.y1; y += kAtomSizePixels) {
         const std::lock_guard lock(bandLock(y));
         for (std::int32_t x = rect.x0; x < rect.x1; x += kAtomSizePixels)
-            allot({x, y, x + kAtomSizePixels, y + kAtomSizePixels});
+            allot({x, y, x + kAtomSizePixels, y + kAtomSizePixels}, pass + 1);
     }
 }
 
+std::int32_t FrameStore::passChannels() const {
+    return m_channels + ruleChannels(isAdaptive(), hasGroups());
+}
+
+void FrameStore::noteContribution(std::size_t pixel, float contribution) {
+    float& group = m_groups[pixel];
+    if (group == kDivided) {
+        forget(pixel);
+        group = kOwn;
+    } else if (group == kUnseen) {
+        group = contribution;
+    } else if (group != kOwn && group != contribution) {
+        group = kUnlike;
+    }
+}
+
+// What the pixel knows by samples of its group: those that divided it would bias it.
+void FrameStore::forget(std::size_t pixel) {
+    const auto clear = [pixel](auto& array, std::size_t perPixel) {
+        std::fill_n(array.begin() + static_cast<std::ptrdiff_t>(pixel * perPixel), perPixel,
+                    typename std::remove_reference_t<decltype(array)>::value_type{});
+    };
+    clear(m_sums, static_cast<std::size_t>(m_channels));
+    clear(m_weights, 1);
+    clear(m_deviations, kBeautyChannels);
+    clear(m_passes, 1);
+    clear(m_evenSums, evenChannels(m_channels, m_biasProbeFirst, isAdaptive()));
+    clear(m_evenWeights, 1);
+    clear(m_evenPasses, 1);
+    clear(m_seen, 2);
+}
+
+void FrameStore::divideGroups(const Rect& atom) {
+    for (std::int32_t y = atom.y0; y < atom.y1; y += 2)
+        for (std::int32_t x = atom.x0; x < atom.x1; x += 2) {
+            const std::size_t first = pixelIndex(x, y), below = pixelIndex(x, y + 1);
+            const float group = m_groups[first];
+            if (group == kDivided || group == kOwn) continue;
+            if (group != kUnlike && !isDivided(*m_rule, m_seen[2 * first], m_seen[2 * first + 1]))
+                continue;
+            for (const std::size_t pixel : {first, first + 1, below, below + 1})
+                m_groups[pixel] = kDivided;
+        }
+}
+
 // Each half by what the other has seen.
-void FrameStore::allot(const Rect& atom) {
+void FrameStore::allot(const Rect& atom, std::uint32_t passes) {
+    if (hasGroups()) divideGroups(atom);
     std::array<SeenSamples, kAtomPixels> seen;
     std::array<std::uint16_t, kAtomPixels> samples{};
     for (int half = 0; half < 2; ++half) {
@@ -171,7 +226,7 @@ void FrameStore::allot(const Rect& atom) {
         forEachPixel([&](std::size_t pixel) {
             seen[i] = m_seen[2 * pixel + static_cast<std::size_t>(1 - half)];
         });
-        allotSamples(*m_rule, seen, samples);
+        allotSamples(*m_rule, passes, seen, samples);
         forEachPixel([&](std::size_t pixel) {
             m_allotted[2 * pixel + static_cast<std::size_t>(half)] = samples[i];
         });
@@ -185,9 +240,11 @@ void FrameStore::nextSamples(std::uint32_t pass, const Rect& rect,
         const std::lock_guard lock(bandLock(y));
         for (std::int32_t x = rect.x0; x < rect.x1; ++x, ++to) {
             const std::size_t pixel = pixelIndex(x, y);
+            const float group = hasGroups() ? m_groups[pixel] : kOwn;
             const double even = m_evenWeights[pixel];
             *to = {static_cast<std::uint32_t>(pass % 2 == 0 ? even : m_weights[pixel] - even),
                    m_allotted[2 * pixel + pass % 2]};
+            if (group != kOwn) *to = {0, group == kDivided ? to->count : 0, group != kDivided};
         }
     }
 }

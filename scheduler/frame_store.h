@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -38,6 +39,11 @@ namespace pm {
 // are allotted as soon as its pass 1, 3, 7, ... is there, so the store holds whole atoms, also
 // those that the window cuts.
 //
+// At level 0 such a render begins with groups of 2 x 2 pixels: a group's samples count for each of
+// its pixels. Where those of a group differ, in what they show or by their spread (isDivided), it
+// is divided when samples are allotted; its pixels forget them as soon as they have one of their
+// own. That a group whose samples happen to agree is kept is a blur, and a bias.
+//
 // [1] Welford, "Note on a method for calculating corrected sums of squares and products",
 //     Technometrics 4(3), 1962; with weights as West, Communications of the ACM 22(9), 1979.
 //
@@ -55,8 +61,9 @@ class FrameStore {
     // biasProbeFirst: the first of three that hold their bias probe, -1 where nothing is biased.
     // emissionFirst: the first of three with the part of the beauty that comes from lamps the pixel
     // sees, -1 where that is not told apart. rule: of adaptive renders; there the last 5 channels
-    // of a pass are its SeenSamples, which are added up by halves and can't be read. Errors:
-    // kInvalidArgument outside of that; kOutOfMemory.
+    // of a pass are its SeenSamples, which are added up by halves and can't be read; with groups
+    // one more follows, the contribution: any number from 0 on that is alike where samples show the
+    // same. Errors: kInvalidArgument outside of that; kOutOfMemory.
     FrameStore(const Rect& window, std::int32_t channels, std::int32_t beautyFirst,
                std::int32_t biasProbeFirst = -1, std::int32_t emissionFirst = -1,
                const std::optional<SampleRule>& rule = std::nullopt);
@@ -66,7 +73,8 @@ class FrameStore {
 
     // Bytes that a store of this size takes.
     static std::uint64_t memoryBytes(const Rect& window, std::int32_t channels,
-                                     std::int32_t biasProbeFirst = -1, bool adaptive = false);
+                                     std::int32_t biasProbeFirst = -1, bool adaptive = false,
+                                     bool groups = false);
 
     // Adds pass `pass`, from 0, of the pixels of rect. pixels: for each pixel, row by row, the
     // means of its samples in this pass, channels() floats side by side. weights: for each pixel
@@ -103,19 +111,33 @@ class FrameStore {
     std::optional<std::array<float, 3>> standardError(std::int32_t x, std::int32_t y) const;
 
     // The samples that the pixels of rect, row by row, are to get in a pass of an adaptive render:
-    // how many, and how many the pixel's passes of that half have had so far. rect within the
-    // window's atoms.
+    // how many, and how many the pixel's passes of that half have had so far; of a pixel that is
+    // still one of a group neither, as who renders knows. rect within the window's atoms.
     struct NextSamples {
         std::uint32_t had = 0, count = 0;
+        bool isOfGroup = false;
     };
     void nextSamples(std::uint32_t pass, const Rect& rect, std::span<NextSamples> next) const;
+
+    // Whether the pixel has no samples but those of its group; false outside the window.
+    bool showsGroup(std::int32_t x, std::int32_t y) const;
 
     // What is known of the frame's error without a reference: of the pixels whose even and odd
     // passes both had samples; nothing where there is no such pixel.
     std::optional<FrameError> estimateError() const;
 
+    // The same pixel by pixel, row by row from the top: the sums over a pixel's channels of its
+    // shares of noise and bias, as FrameErrorSum::add takes them.
+    using ErrorVisitor =
+        std::function<void(std::int32_t x, std::int32_t y, double noise, double bias)>;
+    void visitErrors(const ErrorVisitor& visit) const;
+
   private:
     friend class FrameStoreBytes;  // the arrays below as bytes; a new one belongs there too
+
+    // In place of a group's contribution: it has no sample yet; its samples show more than one; it
+    // is divided, but the pixel still has its samples only; the pixel has samples of its own.
+    static constexpr float kUnseen = -1, kUnlike = -2, kDivided = -3, kOwn = -4;
 
     // Reads one pixel, index in the window, to floats; called under its band's lock.
     template <typename ReadPixel>
@@ -126,13 +148,18 @@ class FrameStore {
     void addPixel(std::size_t pixel, const float* values, double weight);
     void addToEvenPasses(std::size_t pixel, const float* values, double weight);
     bool isAdaptive() const { return m_rule.has_value(); }
-    void allot(const Rect& atom);
+    bool hasGroups() const { return m_rule && m_rule->groups; }
+    std::int32_t passChannels() const;
+    void allot(const Rect& atom, std::uint32_t passes);
+    void divideGroups(const Rect& atom);
+    void noteContribution(std::size_t pixel, float contribution);
+    void forget(std::size_t pixel);
     // Where the sum of a pixel's even passes stands; of beauty, probe and, if adaptive, any
     // channel.
     double evenSum(std::size_t pixel, std::int32_t channel) const;
     void readMeans(std::int32_t y, std::vector<NeighbourRows::Pixel>& row) const;
-    void addError(std::int32_t x, std::int32_t y, const NeighbourRows& rows,
-                  FrameErrorSum& sum) const;
+    void visitError(std::int32_t x, std::int32_t y, const NeighbourRows& rows,
+                    const ErrorVisitor& visit) const;
     double mean(std::size_t pixel, std::int32_t channel) const;
     double varianceOfMean(std::size_t pixel, std::int32_t beautyChannel) const;
     std::size_t pixelIndex(std::int32_t x, std::int32_t y) const;
@@ -157,6 +184,9 @@ class FrameStore {
     // seen.
     std::vector<std::uint16_t> m_allotted;
     std::vector<SeenSamples> m_seen;
+    // If there are groups: of each pixel the contribution that its group's samples have shown so
+    // far, or one of the numbers above.
+    std::vector<float> m_groups;
 
     // One for each row of atoms on the frame's grid: buckets of one row of buckets share a few,
     // which are held for microseconds; others share none.

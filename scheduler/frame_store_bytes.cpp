@@ -33,6 +33,7 @@ void FrameStoreBytes::forEachArray(Store& store, Visit visit) {
     visit(store.m_evenPasses);
     visit(store.m_allotted);
     visit(store.m_seen);
+    visit(store.m_groups);
 }
 
 template <typename Store, typename Visit>

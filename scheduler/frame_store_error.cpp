@@ -84,8 +84,8 @@ void FrameStore::readMeans(std::int32_t y, std::vector<NeighbourRows::Pixel>& ro
     }
 }
 
-void FrameStore::addError(std::int32_t x, std::int32_t y, const NeighbourRows& rows,
-                          FrameErrorSum& sum) const {
+void FrameStore::visitError(std::int32_t x, std::int32_t y, const NeighbourRows& rows,
+                            const ErrorVisitor& visit) const {
     const std::size_t pixel = pixelIndex(x, y);
     const double evenPasses = m_evenPasses[pixel], oddPasses = m_passes[pixel] - evenPasses;
     if (evenPasses == 0 || oddPasses == 0) return;
@@ -117,19 +117,26 @@ void FrameStore::addError(std::int32_t x, std::int32_t y, const NeighbourRows& r
         bias += kBiasPerProbe * meanEven(m_biasProbeFirst + i) * meanOdd(m_biasProbeFirst + i) *
                 inverse;
     }
-    sum.add(x, y, noise, bias);
+    visit(x, y, noise, bias);
 }
 
-std::optional<FrameError> FrameStore::estimateError() const {
+void FrameStore::visitErrors(const ErrorVisitor& visit) const {
     const FpEnvironment guard;
-    FrameErrorSum sum(m_window);
     NeighbourRows rows(static_cast<std::size_t>(m_window.width()));
     readMeans(m_window.y0, rows.nextRow());
     for (std::int32_t y = m_window.y0; y < m_window.y1; ++y) {
         readMeans(y + 1, rows.nextRow());
         const std::lock_guard lock(bandLock(y));
-        for (std::int32_t x = m_window.x0; x < m_window.x1; ++x) addError(x, y, rows, sum);
+        for (std::int32_t x = m_window.x0; x < m_window.x1; ++x) visitError(x, y, rows, visit);
     }
+}
+
+std::optional<FrameError> FrameStore::estimateError() const {
+    const FpEnvironment guard;
+    FrameErrorSum sum(m_window);
+    visitErrors([&sum](std::int32_t x, std::int32_t y, double noise, double bias) {
+        sum.add(x, y, noise, bias);
+    });
     return sum.result();
 }
 

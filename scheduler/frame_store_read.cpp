@@ -110,6 +110,12 @@ double FrameStore::sampleCount(std::int32_t x, std::int32_t y) const {
     return m_weights[pixelIndex(x, y)];
 }
 
+bool FrameStore::showsGroup(std::int32_t x, std::int32_t y) const {
+    if (!hasGroups() || !m_window.contains(x, y)) return false;
+    const std::lock_guard lock(bandLock(y));
+    return m_groups[pixelIndex(x, y)] != kOwn;
+}
+
 std::optional<std::array<float, 3>> FrameStore::standardError(std::int32_t x,
                                                               std::int32_t y) const {
     if (!m_window.contains(x, y)) return std::nullopt;

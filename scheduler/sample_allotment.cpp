@@ -8,6 +8,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <numbers>
 
 #include "integrator/values/error.h"
 #include "scheduler/bucket_grid.h"
@@ -17,6 +18,14 @@ namespace pm {
 namespace {
 
 constexpr double kPassesOfALevel = 4;
+// What two passes show is little; from four on the threshold is divided by this, and no further:
+// what the samples of a pass share, such as its photons, gains nothing by more of them.
+constexpr double kFiner = 2;
+// What the neighbours met may be here, too, and not have been met yet: they count as so many
+// samples of the pixel's own.
+constexpr double kSamplesOfNeighbours = 4;
+// In four passes; see isDivided().
+constexpr double kSamplesThatDivide = 16;
 constexpr std::size_t kSide = kAtomSizePixels;
 
 // Calls visit with each pixel of the 3 x 3 around (x, y) that lies in the atom.
@@ -47,18 +56,29 @@ class Spread {
     double m_samples = 0, m_sums[3]{}, m_square = 0;
 };
 
+// Of so many that are wanted in four passes.
+std::uint16_t samplesOfPass(const SampleRule& rule, double wanted) {
+    const double inPass = wanted / kPassesOfALevel;
+    // A number that is none asks for nothing.
+    std::uint32_t power = inPass >= 0.5 ? 1 : 0;
+    while (power > 0 && power < rule.most && power * std::numbers::sqrt2 < inPass) power *= 2;
+    return static_cast<std::uint16_t>(std::clamp(power, rule.least, rule.most));
+}
+
 }  // namespace
 
 SampleRule sampleRule(std::uint32_t leastLevel, std::uint32_t mostLevel, double threshold) {
     const auto inPass = [](std::uint32_t level) {
         return level < 2 ? 0u : 1u << (2 * (level - 2));
     };
-    return {inPass(leastLevel), inPass(mostLevel), threshold};
+    return {inPass(leastLevel), inPass(mostLevel), threshold, leastLevel == 0};
 }
 
 void checkSampleRule(const SampleRule& rule) {
     constexpr std::uint32_t kMost = 0xFFFF;
-    if (rule.most < rule.least || rule.most < 1 || rule.most > kMost || !(rule.threshold > 0))
+    const std::uint32_t leastMost = rule.groups ? 0 : 1;
+    if (rule.most < rule.least || rule.most < leastMost || rule.most > kMost ||
+        !(rule.threshold > 0))
         throw Error(Status::kInvalidArgument,
                     fmt::format("{} to {} samples a pass by the threshold {}; they must be 0 to {} "
                                 "and rise, the threshold above 0",
@@ -69,7 +89,15 @@ bool allotsAfter(std::uint32_t passes) {
     return passes >= 2 && std::has_single_bit(passes);
 }
 
-void allotSamples(const SampleRule& rule, std::span<const SeenSamples> seen,
+bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSamples& odd) {
+    Spread spread;
+    spread.add(even);
+    spread.add(odd);
+    // Also where it is not a number.
+    return !(std::sqrt(spread.variance()) <= kSamplesThatDivide * rule.threshold);
+}
+
+void allotSamples(const SampleRule& rule, std::uint32_t passes, std::span<const SeenSamples> seen,
                   std::span<std::uint16_t> samples) {
     std::array<double, kSide * kSide> variance{};
     for (std::size_t i = 0; i < variance.size(); ++i) {
@@ -81,20 +109,17 @@ void allotSamples(const SampleRule& rule, std::span<const SeenSamples> seen,
             around(i % kSide, i / kSide, [&](std::size_t at) { spread.add(seen[at]); });
         variance[i] = spread.variance();
     }
+    const double threshold = passes < 4 ? rule.threshold : rule.threshold / kFiner;
     for (std::size_t i = 0; i < variance.size(); ++i) {
-        // What the neighbours met may be here, too, and not have been met yet.
         double sum = 0, count = 0;
         around(i % kSide, i / kSide, [&](std::size_t at) {
             sum += variance[at];
             ++count;
         });
-        const double wanted =
-            std::sqrt(std::max(variance[i], sum / count)) / (rule.threshold * kPassesOfALevel);
-        // A spread that is not a number asks for nothing.
-        const double most =
-            std::min(std::isnan(wanted) ? 0.0 : wanted, static_cast<double>(rule.most));
-        samples[i] = static_cast<std::uint16_t>(
-            std::lround(std::max(most, static_cast<double>(rule.least))));
+        const double own = seen[i].samples;
+        const double pooled =
+            (own * variance[i] + kSamplesOfNeighbours * sum / count) / (own + kSamplesOfNeighbours);
+        samples[i] = samplesOfPass(rule, std::sqrt(pooled) / threshold);
     }
 }
 

@@ -20,15 +20,20 @@ namespace pm {
 // The rule: of N samples in four passes whose relative spread is s, one more lowers the squared
 // relative error by s^2 / N^2. A pixel gets samples until that is less than threshold^2, so
 // N = s / threshold: the allotment for which the sum of the squared errors is least for the same
-// number of samples. Relative means: to sqrt(r^2 + 0.01), r the mean, as in relMSE.
+// number of samples. Relative means: to sqrt(r^2 + 0.01), r the mean, as in relMSE. Two passes
+// show little: from four on the threshold is halved. In a pass N / 4, rounded to a power of two:
+// low-discrepancy sequences are at their best there, and a pixel that needs no more samples than
+// another is not to have some more.
 struct SampleRule {
     std::uint32_t least = 1;  // samples of a pixel in a pass, up to 65535
     std::uint32_t most = 1;   // as well, at least `least`
-    double threshold = 0.01;  // > 0
+    double threshold = 0.01;  // > 0; of what is allotted after two passes
+    // At first, pixels are taken together in groups of 2 x 2, on even coordinates.
+    bool groups = false;
 };
 
-// The rule for levels from least to most, 1 to 6. Of level 1, less than a sample a pass, the rule
-// has none: who renders knows in which passes they come.
+// The rule for levels from least to most, 0 to 6. Of levels 0, where it begins with groups, and 1,
+// less than a sample a pass, the rule has none: who renders knows in which passes they come.
 SampleRule sampleRule(std::uint32_t leastLevel, std::uint32_t mostLevel, double threshold);
 
 // Errors: kInvalidArgument for numbers that are not allowed.
@@ -45,10 +50,14 @@ struct SeenSamples {
 // Whether samples are allotted anew after so many passes: 2, 4, 8, ...
 bool allotsAfter(std::uint32_t passes);
 
-// Samples a pass of the pixels of one atom of 8 x 8, row by row, by what the other half of the
-// passes has seen of them. A pixel's neighbours count where they are in the atom: so a picture does
-// not depend on crop or buckets.
-void allotSamples(const SampleRule& rule, std::span<const SeenSamples> seen,
+// Whether the samples of a group differ so much that it is divided: by their spread, a pixel would
+// get the 16 samples of level 3. A group blurs what is even, and noise alone is not to divide it.
+bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSamples& odd);
+
+// Samples a pass of the pixels of one atom of 8 x 8, row by row, after so many passes, by what the
+// other half of them has seen. A pixel's neighbours count where they are in the atom: so a picture
+// does not depend on crop or buckets.
+void allotSamples(const SampleRule& rule, std::uint32_t passes, std::span<const SeenSamples> seen,
                   std::span<std::uint16_t> samples);
 
 }  // namespace pm

@@ -5,6 +5,8 @@
 #include <signal.h>
 #include <unistd.h>
 
+#include <chrono>
+
 namespace pm::host {
 namespace {
 
@@ -27,12 +29,33 @@ void installInterruptHandlers() {
     sigaction(SIGTERM, &action, nullptr);
 }
 
+void ignoreBrokenPipes() {
+    signal(SIGPIPE, SIG_IGN);
+}
+
 int interruptSignal() {
     return s_signal;
 }
 
 void throwIfInterrupted() {
     if (s_signal != 0) throw Interrupted(s_signal);
+}
+
+InterruptWatch::InterruptWatch(const std::function<void()>& onSignal)
+    : m_thread([this, onSignal] {
+          constexpr std::chrono::milliseconds kBetweenLooks{10};
+          std::unique_lock lock(m_mutex);
+          while (!m_ends && s_signal == 0) m_changed.wait_for(lock, kBetweenLooks);
+          if (!m_ends) onSignal();
+      }) {}
+
+InterruptWatch::~InterruptWatch() {
+    {
+        const std::lock_guard lock(m_mutex);
+        m_ends = true;
+    }
+    m_changed.notify_all();
+    m_thread.join();
 }
 
 }  // namespace pm::host

@@ -42,8 +42,7 @@ MaterialBuilder::~MaterialBuilder() {
 PmrTexture MaterialBuilder::texture(const std::optional<TextureUse>& use,
                                     const std::string& material) {
     if (!use) return nullptr;
-    throwIfInterrupted();
-    if (!m_baker) m_baker.emplace(m_colour, m_folder.path());
+    if (!m_baker) m_baker.emplace(m_colour, m_folder.path(), throwIfInterrupted);
     std::string file;
     try {
         const auto kind = use->isData ? TextureKind::kData : TextureKind::kColour;

@@ -40,7 +40,8 @@ void checkTextName(const fs::path& file) {
         if (identity(file).extension() != extension) continue;
         throw HostError(
             ExitCode::kUsage,
-            fmt::format("{}: statistics, logs, reports, parts and checkpoints may not end in {}, "
+            fmt::format("{}: statistics, logs, reports, parts, checkpoints and photon maps may not "
+                        "end in {}, "
                         "like an input or a picture; .json, .log or .pmcheck would do",
                         file.string(), extension));
     }

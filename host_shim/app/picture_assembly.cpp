@@ -33,21 +33,27 @@ std::vector<std::string> channelNames(std::string_view list) {
     }
 }
 
-void addLayer(const PictureSource& source, const PmrLayerInfo& info, Picture& picture) {
+void addChannels(const PmrLayerInfo& info, Picture& picture) {
+    const auto names = channelNames(info.channels);
+    for (std::size_t c = 0; c < names.size() && c < info.channelCount; ++c)
+        picture.channels.push_back({names[c], info.kind == PMR_LAYER_COLOUR, {}});
+}
+
+// Fills the channels of a layer, from `channel` on; returns the first one after them.
+std::size_t fillLayer(const PictureSource& source, const PmrLayerInfo& info, std::size_t channel,
+                      Picture& picture) {
     const PixelRect& window = picture.dataWindow;
     const PmrRectangle rectangle{window.x0, window.y0, window.x1, window.y1};
     const std::size_t stride = info.channelCount;
     const auto pixels = static_cast<std::size_t>(window.area());
     std::vector<float> values(pixels * stride);
     source.readPixels(rectangle, info.name, values.data());
-    const auto names = channelNames(info.channels);
-    for (std::size_t c = 0; c < names.size() && c < stride; ++c) {
-        Channel& channel = picture.channels.emplace_back();
-        channel.name = names[c];
-        channel.isColour = info.kind == PMR_LAYER_COLOUR;
-        channel.values.resize(pixels);
-        for (std::size_t i = 0; i < pixels; ++i) channel.values[i] = values[i * stride + c];
+    for (std::size_t c = 0; c < stride; ++c, ++channel) {
+        std::vector<float>& to = picture.channels.at(channel).values;
+        to.resize(pixels);
+        for (std::size_t i = 0; i < pixels; ++i) to[i] = values[i * stride + c];
     }
+    return channel;
 }
 
 // Settings that change no pixel are left out: the same picture gives the same bytes.
@@ -84,12 +90,21 @@ void addStatistics(const PictureSource& source, Picture& picture) {
 
 Picture assemblePicture(const PictureSource& source, const Options& options,
                         const ColourPipeline& colour, bool complete) {
+    Picture picture = assembleHead(source, options, colour, complete);
+    std::size_t channel = 0;
+    for (std::uint32_t i = 0; i < source.layerCount(); ++i)
+        channel = fillLayer(source, source.layerInfo(i), channel, picture);
+    return picture;
+}
+
+Picture assembleHead(const PictureSource& source, const Options& options,
+                     const ColourPipeline& colour, bool complete) {
     Picture picture;
     picture.width = options.width;
     picture.height = options.height;
     picture.dataWindow = dataWindowOf(options);
     for (std::uint32_t i = 0; i < source.layerCount(); ++i)
-        addLayer(source, source.layerInfo(i), picture);
+        addChannels(source.layerInfo(i), picture);
     if (const auto chromaticities = colour.chromaticities()) {
         picture.attributes["chromaticities"] =
             std::vector<float>(chromaticities->begin(), chromaticities->end());

@@ -14,6 +14,10 @@ namespace pm::host {
 Picture assemblePicture(const PictureSource& source, const Options& options,
                         const ColourPipeline& colour, bool complete);
 
+// The same without pixels: windows, the channels' names and kinds, attributes.
+Picture assembleHead(const PictureSource& source, const Options& options,
+                     const ColourPipeline& colour, bool complete);
+
 // What of the host decides on a picture, as the library's setting hostIdentity.
 std::string colourIdentity(const ColourPipeline& colour);
 

@@ -52,6 +52,16 @@ void Progress::update(double fraction, double remainingSeconds) {
     show(fraction, remainingSeconds);
 }
 
+void Progress::showAlf() {
+    const std::string line = fmt::format("ALF_PROGRESS {}%\n", m_shownPercent);
+    std::fwrite(line.data(), 1, line.size(), stdout);
+    if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
+    // Nobody listens any more: no reason to end a render, and no failure of its results.
+    std::clearerr(stdout);
+    m_style = ProgressStyle::kNone;
+    m_log.message(Level::kWarning, "standard output is closed; progress is not told any more");
+}
+
 void Progress::show(double fraction, double remainingSeconds) {
     const std::string remaining = remainingText(remainingSeconds);
     switch (m_style) {
@@ -68,8 +78,7 @@ void Progress::show(double fraction, double remainingSeconds) {
                 std::isnan(remainingSeconds) ? "null" : fmt::format("{:.2f}", remainingSeconds)));
             break;
         case ProgressStyle::kAlf:
-            fmt::print(stdout, "ALF_PROGRESS {}%\n", m_shownPercent);
-            std::fflush(stdout);
+            showAlf();
             break;
         default:
             m_log.rawLine(fmt::format("Progress: {}%, {} elapsed, {}", m_shownPercent,

@@ -22,6 +22,7 @@ class Progress {
 
   private:
     void show(double fraction, double remainingSeconds);
+    void showAlf();
 
     ProgressStyle m_style;
     Log& m_log;

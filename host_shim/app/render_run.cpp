@@ -34,8 +34,17 @@ void RenderRun::onBucketStarted(void* user, PmrRender, const PmrBucketInfo* buck
 }
 
 void RenderRun::onBucketFinished(void* user, PmrRender, const PmrBucketInfo* bucket) {
-    const auto& run = *static_cast<RenderRun*>(user);
-    run.m_bucketTimes->finished(*bucket, run.m_log.elapsedSeconds());
+    auto& run = *static_cast<RenderRun*>(user);
+    if (run.m_bucketTimes != nullptr)
+        run.m_bucketTimes->finished(*bucket, run.m_log.elapsedSeconds());
+    if (run.m_taker == nullptr || run.m_failure) return;
+    try {
+        run.m_taker->take(*bucket);
+    } catch (...) {
+        // Not through the plugin.
+        run.m_failure = std::current_exception();
+        run.api().cancelRender(run.m_handle);
+    }
 }
 
 void RenderRun::onFinished(void* user, PmrRender, PmrStatus status) {
@@ -52,10 +61,8 @@ RenderRun::RenderRun(const PluginScene& scene, const Options& options, const std
     desc.user = this;
     desc.message = onMessage;
     desc.progress = onProgress;
-    if (bucketTimes != nullptr) {
-        desc.bucketStarted = onBucketStarted;
-        desc.bucketFinished = onBucketFinished;
-    }
+    if (bucketTimes != nullptr) desc.bucketStarted = onBucketStarted;
+    desc.bucketFinished = onBucketFinished;
     desc.finished = onFinished;
     m_context.check(api().createRender(scene.handle(), &desc, &m_handle), "render");
     try {
@@ -67,6 +74,7 @@ RenderRun::RenderRun(const PluginScene& scene, const Options& options, const std
         }
         if (!options.layers.empty()) apply({"--aov", "layers", options.layers});
         apply({"", "hostIdentity", identity});
+        apply({"", "delivery", "fit"});
         for (const GivenSetting& setting : options.settings) apply(setting);
     } catch (...) {
         api().destroyRender(m_handle);
@@ -103,6 +111,24 @@ void RenderRun::readPixels(const PmrRectangle& rectangle, const char* layer,
                     fmt::format("layer {}", layer));
 }
 
+void RenderRun::readPixels(const PmrRectangle& rectangle, const char* layer, float* destination,
+                           std::int64_t pixelStride, std::int64_t rowStride) const {
+    m_context.check(
+        api().readPixels(m_handle, &rectangle, layer, destination, pixelStride, rowStride),
+        fmt::format("layer {}", layer));
+}
+
+bool RenderRun::deliversBuckets() const {
+    std::int32_t delivery = PMR_DELIVERY_FRAME;
+    m_context.check(api().renderDelivery(m_handle, &delivery), "render");
+    return delivery == PMR_DELIVERY_BUCKETS;
+}
+
+void RenderRun::keepFrame(const std::string& reason) {
+    m_whyFrame = reason;
+    apply({"", "delivery", "frame"});
+}
+
 std::string RenderRun::settingText(const std::string& name) const {
     return pluginText([&](char* buffer, uint64_t capacity, uint64_t* needed) {
         return api().settingText(m_handle, name.c_str(), buffer, capacity, needed);
@@ -126,12 +152,14 @@ PmrStatus RenderRun::run() {
     // What is wrong with the settings together is wrong with the command line.
     const PmrStatus started = api().startRender(m_handle);
     if (started == PMR_ERROR_ARGUMENT) throw HostError(ExitCode::kUsage, m_context.lastError());
-    m_context.check(started, "render");
+    const bool tooLarge = started == PMR_ERROR_MEMORY && !m_whyFrame.empty();
+    m_context.check(started, tooLarge ? m_whyFrame : "render");
     while (!m_finished) {
         if (interruptSignal() != 0) api().cancelRender(m_handle);
         const PmrStatus status = api().pollRender(m_handle, kPollSeconds);
         if (status != PMR_OK && status != PMR_ERROR_TIMEOUT) m_context.check(status, "render");
     }
+    if (m_failure) std::rethrow_exception(m_failure);
     if (m_status != PMR_ERROR_CANCELLED) m_context.check(m_status, "render");
     return m_status;
 }

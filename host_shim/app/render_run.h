@@ -9,9 +9,18 @@
 #include "host_shim/app/scene_builder.h"
 #include "host_shim/cli/options.h"
 
+#include <exception>
 #include <string>
 
 namespace pm::host {
+
+// Takes the pixels of a render that delivers bucket by bucket.
+class BucketTaker {
+  public:
+    virtual ~BucketTaker() = default;
+    // Inside the callback, while the bucket's pixels can be read. What it throws ends the render.
+    virtual void take(const PmrBucketInfo& bucket) = 0;
+};
 
 // One render of a scene: settings, the run itself, and what it left.
 class RenderRun : public PictureSource {
@@ -26,6 +35,12 @@ class RenderRun : public PictureSource {
     RenderRun& operator=(const RenderRun&) = delete;
 
     std::string explain() const;
+    // Whether the frame is too large for the memory limit, so that its pixels come bucket by bucket
+    // and some BucketTaker is needed. Before run.
+    bool deliversBuckets() const;
+    // Wants the whole frame, whatever it needs. reason: why, to say when that is too much.
+    void keepFrame(const std::string& reason);
+    void setTaker(BucketTaker* taker) { m_taker = taker; }
     // Renders; a signal cancels. Returns PMR_OK or PMR_ERROR_CANCELLED. Errors: those of the
     // plugin.
     PmrStatus run();
@@ -35,6 +50,9 @@ class RenderRun : public PictureSource {
     PmrLayerInfo layerInfo(std::uint32_t index) const override;
     void readPixels(const PmrRectangle& rectangle, const char* layer,
                     float* destination) const override;
+    // The same with strides, in bytes.
+    void readPixels(const PmrRectangle& rectangle, const char* layer, float* destination,
+                    std::int64_t pixelStride, std::int64_t rowStride) const;
     std::string settingText(const std::string& name) const override;
     std::string statistics() const override;
 
@@ -50,6 +68,9 @@ class RenderRun : public PictureSource {
     Log& m_log;
     Progress& m_progress;
     BucketTimes* m_bucketTimes;
+    BucketTaker* m_taker{};
+    std::exception_ptr m_failure;  // of the taker
+    std::string m_whyFrame;
     PmrRender m_handle{};
     bool m_finished{};
     PmrStatus m_status{PMR_OK};

@@ -145,7 +145,7 @@ void Report::takeBrightest(const Picture& picture, const std::array<double, 3>& 
                  ++u) {
                 const std::size_t other = at(u, v);
                 // Of equal ones the first counts.
-                if (light[other] > light[me] || (light[other] == light[me] && other < me))
+                if (light[other] > light[me] || (other < me && light[other] == light[me]))
                     return true;
             }
         return false;

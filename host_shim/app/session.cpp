@@ -45,12 +45,18 @@ void Session::warn(Warning code, const std::string& text) {
 void Session::phase(const std::string& name, const std::function<void()>& work) {
     throwIfInterrupted();
     const auto start = std::chrono::steady_clock::now();
-    work();
+    try {
+        work();
+    } catch (...) {
+        throwIfInterrupted();  // what failed was given up
+        throw;
+    }
     m_statistics.phaseSeconds[name] +=
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 int Session::run() {
+    ignoreBrokenPipes();
     m_statistics.exitCode = guarded(
         m_log, [this] { return render(); }, &m_statistics.error);
     if (m_statistics.exitCode == 130) m_statistics.stopReason = "interrupted";
@@ -159,7 +165,8 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
     PluginScene scene(context);
     {
         SceneData data;
-        phase("readSceneSeconds", [&] { data = readObjFile(m_options.scene, sink); });
+        phase("readSceneSeconds",
+              [&] { data = readObjFile(m_options.scene, sink, throwIfInterrupted); });
         m_mayWriteStatistics = false;
         checkNotInputs(allOutputs(m_options), inputsOf(m_options, &data));
         m_mayWriteStatistics = true;
@@ -178,6 +185,7 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
                         data.materialFiles.size(), camera.eye[0], camera.eye[1], camera.eye[2],
                         camera.lookAt[0], camera.lookAt[1], camera.lookAt[2]));
         phase("buildSceneSeconds", [&] {
+            const InterruptWatch watch([&] { context.api().cancelBuilds(context.handle(), 1); });
             scene.build(data, m_options.scene.string(), m_options.subdivide, camera, colour,
                         materials, sink);
         });
@@ -185,6 +193,14 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
     Progress progress(m_options.progress, m_options.quiet, m_log);
     RenderRun run(scene, m_options, colourIdentity(colour), m_log, progress,
                   m_options.report.empty() ? nullptr : &m_report.bucketTimes());
+    std::optional<TiledOutput> tiles;
+    if (run.deliversBuckets()) {
+        const std::string whole = needsWholePicture(m_options);
+        if (whole.empty())
+            run.setTaker(&tiles.emplace(run, m_options, colour));
+        else
+            run.keepFrame(whole + " needs the whole picture at once");
+    }
     if (m_options.explain) {
         std::fputs(run.explain().c_str(), stdout);
         m_statistics.stopReason = "finished";
@@ -193,7 +209,20 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
     PmrStatus status = PMR_OK;
     phase("renderCallSeconds", [&] { status = run.run(); });
     m_statistics.library = run.statistics();
-    return finish(run, status, colour, display);
+    if (m_options.photonsOnly) return finishPhotons(status);
+    return tiles ? finishTiles(status, *tiles) : finish(run, status, colour, display);
+}
+
+int Session::finishPhotons(PmrStatus status) {
+    if (status != PMR_OK) {
+        throwIfInterrupted();
+        throw HostError(static_cast<ExitCode>(exitCodeOf(status)), "the render was cancelled");
+    }
+    m_statistics.outputs.push_back(m_options.photonMap.string());
+    m_statistics.stopReason = m_statistics.libraryStopReason();
+    m_log.info(
+        fmt::format("wrote {}: {}", m_options.photonMap.string(), m_statistics.photonMapText()));
+    return 0;
 }
 
 int Session::finish(const PictureSource& source, PmrStatus status, const ColourPipeline& colour,
@@ -229,22 +258,33 @@ int Session::finish(const PictureSource& source, PmrStatus status, const ColourP
     m_statistics.stopReason = m_statistics.libraryStopReason();
     if (m_statistics.stopReason == "error target" || m_statistics.stopReason == "time limit")
         m_log.info("stopped by the " + m_statistics.stopReason);
-    if (isBlackThoughHit(picture))
-        warn(Warning::kBlackPicture,
-             "the picture is black though it shows surfaces: no light reaches their seen side; a "
-             "room that is closed all round is seen from inside with --eye and --look-at only");
+    if (isBlackThoughHit(picture)) warnOfBlack();
     if (m_options.onlyPixel) printPixel(picture);
     return m_reference ? compareWithReference(picture) : 0;
 }
 
+void Session::warnOfBlack() {
+    warn(Warning::kBlackPicture,
+         "the picture is black though it shows surfaces: no light reaches their seen side; a "
+         "room that is closed all round is seen from inside with --eye and --look-at only");
+}
+
+void Session::warnOfClamped(const fs::path& file, const ExrReport& report) {
+    if (report.clampedToHalf > 0)
+        warn(Warning::kOutput, fmt::format("{}: {} values are beyond half's 65504 and clamped",
+                                           file.string(), report.clampedToHalf));
+}
+
+std::string Session::errorText() const {
+    const auto estimate = m_statistics.estimatedRelMse();
+    if (!estimate) return "";
+    return fmt::format(", estimated relMSE {:.2e} (noise and bias, from what passes differ by)",
+                       *estimate);
+}
+
 void Session::writeOutputs(const Picture& picture, bool complete,
                            const std::optional<DisplayTransform>& display) {
-    const auto estimate = m_statistics.estimatedRelMse();
-    const std::string error =
-        estimate
-            ? fmt::format(", estimated relMSE {:.2e} (noise and bias, from what passes differ by)",
-                          *estimate)
-            : "";
+    const std::string error = errorText();
     // One that fails must not take the others with it.
     std::optional<HostError> failure;
     for (const fs::path& output : m_options.outputs) {
@@ -265,11 +305,7 @@ void Session::writeOutputs(const Picture& picture, bool complete,
 void Session::writeOutput(const fs::path& file, const Picture& picture,
                           const std::optional<DisplayTransform>& display) {
     if (!isDisplayReferred(pictureFormat(file))) {
-        const ExrReport report = writeExr(file, picture, {m_options.exrHalf});
-        if (report.clampedToHalf > 0) {
-            warn(Warning::kOutput, fmt::format("{}: {} values are beyond half's 65504 and clamped",
-                                               file.string(), report.clampedToHalf));
-        }
+        warnOfClamped(file, writeExr(file, picture, {m_options.exrHalf}));
         return;
     }
     const DisplayResult result = makeDisplayPicture(picture, display.value());

@@ -6,6 +6,7 @@
 #include "host_shim/app/render_run.h"
 #include "host_shim/app/report.h"
 #include "host_shim/app/statistics.h"
+#include "host_shim/app/tiled_output.h"
 #include "host_shim/cli/options.h"
 #include "host_shim/colour/colour_pipeline.h"
 #include "host_shim/pictures/picture.h"
@@ -32,8 +33,15 @@ class Session {
     int merge();
     void checkBeforeMerging();
     PmrContextDesc contextDesc(const Plugin& plugin);
+    int finishPhotons(PmrStatus status);
     int finish(const PictureSource& source, PmrStatus status, const ColourPipeline& colour,
                const std::optional<DisplayTransform>& display);
+    // The same for a render whose buckets went to files as they came (session_tiles.cpp).
+    int finishTiles(PmrStatus status, TiledOutput& output);
+    void warnOfBlack();
+    void warnOfClamped(const std::filesystem::path& file, const ExrReport& report);
+    // " estimated relMSE ..." for lines that tell what was written.
+    std::string errorText() const;
     void writeOutputs(const Picture& picture, bool complete,
                       const std::optional<DisplayTransform>& display);
     void writeOutput(const std::filesystem::path& file, const Picture& picture,

@@ -15,6 +15,7 @@ std::vector<fs::path> inputsOf(const Options& options, const SceneData* scene) {
     std::vector<fs::path> inputs = options.merge;
     if (!options.scene.empty()) inputs.push_back(options.scene);
     if (!options.reference.empty()) inputs.push_back(options.reference);
+    if (!options.photonMap.empty() && !options.photonsOnly) inputs.push_back(options.photonMap);
     if (!options.colour.ocioFile.empty()) inputs.emplace_back(options.colour.ocioFile);
     if (scene == nullptr) return inputs;
     for (const std::string& file : scene->materialFiles) inputs.emplace_back(file);
@@ -35,6 +36,7 @@ std::vector<fs::path> otherOutputs(const Options& options) {
     }
     for (const fs::path& file : {options.log, options.report, options.part, options.checkpoint})
         if (!file.empty()) files.push_back(file);
+    if (options.photonsOnly) files.push_back(options.photonMap);
     return files;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/statistics.h"
 
+#include <fmt/format.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>
 
@@ -61,6 +62,17 @@ std::optional<double> Statistics::estimatedRelMse() const {
 
 std::string Statistics::libraryStopReason() const {
     return parsed(library).value("stopReason", "finished");
+}
+
+std::string Statistics::photonMapText() const {
+    const Json json = parsed(library);
+    const Json map = json.value("photonMap", Json::object());
+    const Json counters = json.value("counters", Json::object());
+    return fmt::format("{} photons of {} passes, {:.1f} MB",
+                       counters.value("photonsStoredGlobal", std::uint64_t{0}) +
+                           counters.value("photonsStoredCaustic", std::uint64_t{0}),
+                       map.value("passesHeld", 0u),
+                       static_cast<double>(map.value("fileBytes", std::uint64_t{0})) / 1e6);
 }
 
 std::string Statistics::toJson(const Log& log) const {

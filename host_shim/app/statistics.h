@@ -37,6 +37,8 @@ struct Statistics {
     std::optional<double> estimatedRelMse() const;
     // Why the library's render ended, in its words; "finished" when it doesn't say.
     std::string libraryStopReason() const;
+    // Of a photon map that was written, for people.
+    std::string photonMapText() const;
     std::string toJson(const Log& log) const;
 };
 

@@ -22,7 +22,7 @@ namespace {
 // reads numbers through the locale.
 struct Typed {
     std::string scene, frame, size, eye, lookAt, up, fov, crop, aa, seed, subdivide, onlyPixel,
-        errorLimit, progress, checkpoint;
+        errorLimit, progress, checkpoint, photonMap;
     std::vector<std::string> outputs, context, layers, parts;
     std::map<std::string, std::string> settings;  // option -> text
 };
@@ -33,13 +33,14 @@ struct SettingOption {
     const char* setting;
     const char* placeholder;
 };
-constexpr std::array<SettingOption, 16> kSettingOptions{{
+constexpr std::array<SettingOption, 17> kSettingOptions{{
     {"--threads", "threads", "N"},
     {"--bucket-size", "bucketSize", "N|auto"},
     {"--bucket-order", "bucketOrder", "NAME"},
     {"--buckets", "buckets", "A:B|I/N"},
     {"--aa", "aaLevel", "N|MIN:MAX"},
     {"--aa-threshold", "aaThreshold", "T"},
+    {"--filter", "filter", "box|gaussian"},
     {"--integrator", "integrator", "photon|path"},
     {"--plan", "plan", "auto|everything"},
     {"--photons", "photons", "N|auto"},
@@ -104,6 +105,10 @@ void addPieceOptions(CLI::App& app, Typed& typed, Options& options) {
                  "go on from the checkpoint where it is there, else begin");
     app.add_flag("--keep-checkpoint", options.keepCheckpoint,
                  "don't remove it, so that the render can go on with more passes");
+    addText(app, "--photon-map", typed.photonMap, "FILE",
+            "read the photons from it in place of tracing them, for the same picture");
+    app.add_flag("--photons-only", options.photonsOnly,
+                 "trace the photons of all passes, write --photon-map FILE and stop; no picture");
 }
 
 void addColourOptions(CLI::App& app, Typed& typed, Options& options) {
@@ -213,11 +218,6 @@ void readAntiAliasing(const std::string& text, Options& options) {
     if (least > most) {
         throw HostError(ExitCode::kUsage, fmt::format("--aa '{}': MIN is above MAX", text));
     }
-    if (least == 0) {
-        throw HostError(
-            ExitCode::kUsage,
-            fmt::format("--aa {}: level 0 is not available yet; levels from 1 to 6 are", text));
-    }
     options.settings.push_back({"--aa", "aaLevel", std::to_string(least)});
     options.settings.push_back({"--aa", "aaLevelMost", std::to_string(most)});
 }
@@ -272,7 +272,8 @@ void readFiles(const Typed& typed, std::optional<std::int64_t> frame, Options& o
 }
 
 void addDefaultOutput(Options& options) {
-    if (options.outputs.empty() && !options.onlyPixel && !options.scene.empty()) {
+    if (options.outputs.empty() && !options.onlyPixel && !options.photonsOnly &&
+        !options.scene.empty()) {
         options.outputs.push_back(options.scene.stem().string() + ".exr");
     }
 }
@@ -342,6 +343,7 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
     }
     readCamera(typed, options);
     readSettings(typed, frame, options);
+    readPhotonMap(typed.photonMap, typed.settings, frame, options);
     addDefaultOutput(options);
     readPieces(typed.checkpoint, frame, options);
     checkBuckets(typed.settings, options);

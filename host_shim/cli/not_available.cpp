@@ -13,8 +13,7 @@
 namespace pm::host {
 namespace {
 
-constexpr std::array<std::string_view, 4> kLaterOptions{"--filter", "--photon-map",
-                                                        "--photons-only", "--denoise"};
+constexpr std::array<std::string_view, 1> kLaterOptions{"--denoise"};
 
 }  // namespace
 

@@ -58,6 +58,8 @@ struct Options {
     bool exrHalf{};
     std::filesystem::path part;        // of the outputs the one that ends in .pmpart
     std::filesystem::path checkpoint;  // empty: none
+    std::filesystem::path photonMap;   // empty: none
+    bool photonsOnly{};                // it is written, and no picture
     bool resume{};
     bool keepCheckpoint{};
     std::vector<std::filesystem::path> merge;  // parts to put together, instead of a scene

@@ -28,6 +28,8 @@ void readPieces(const std::string& checkpoint, std::optional<std::int64_t> frame
     }
     std::erase_if(options.outputs, isPart);
     options.checkpoint = withFrame("--checkpoint", checkpoint, frame);
+    if (!options.checkpoint.empty() && options.photonsOnly)
+        throw HostError(ExitCode::kUsage, "--photons-only does not go together with --checkpoint");
     if (options.checkpoint.empty() && (options.resume || options.keepCheckpoint))
         throw HostError(ExitCode::kUsage,
                         fmt::format("{} needs --checkpoint FILE",
@@ -38,6 +40,30 @@ void readPieces(const std::string& checkpoint, std::optional<std::int64_t> frame
     give("-o", "part", options.part.string());
     give("--checkpoint", "checkpoint", options.checkpoint.string());
     give("--resume", "resume", options.resume ? "1" : "");
+}
+
+void readPhotonMap(const std::string& photonMap, const std::map<std::string, std::string>& typed,
+                   std::optional<std::int64_t> frame, Options& options) {
+    options.photonMap = withFrame("--photon-map", photonMap, frame);
+    if (!options.photonMap.empty())
+        options.settings.push_back({"--photon-map", "photonMap", options.photonMap.string()});
+    if (!options.photonsOnly) return;
+    if (options.photonMap.empty())
+        throw HostError(ExitCode::kUsage, "--photons-only needs --photon-map FILE, to be written");
+    options.settings.push_back({"--photons-only", "photonsOnly", "1"});
+    const auto refuse = [](bool isGiven, const std::string& option) {
+        if (isGiven)
+            throw HostError(
+                ExitCode::kUsage,
+                "--photons-only makes no picture and does not go together with " + option);
+    };
+    refuse(!options.outputs.empty(), "-o");
+    refuse(!options.reference.empty(), "--reference");
+    refuse(!options.report.empty(), "--report");
+    refuse(options.onlyPixel.has_value(), "--only-pixel");
+    refuse(!options.layers.empty(), "--aov");
+    for (const char* option : {"--buckets", "--time-limit", "--error-target"})
+        refuse(!typed.at(option).empty(), option);
 }
 
 void checkBuckets(const std::map<std::string, std::string>& typed, const Options& options) {

@@ -16,6 +16,11 @@ namespace pm::host {
 // Takes the part out of the outputs, and gives the library its settings.
 void readPieces(const std::string& checkpoint, std::optional<std::int64_t> frame, Options& options);
 
+// The photon map and, with --photons-only, what that forbids: all that is about a picture or leaves
+// the number of passes open. Before the outputs and readPieces. typed: as for checkBuckets.
+void readPhotonMap(const std::string& photonMap, const std::map<std::string, std::string>& typed,
+                   std::optional<std::int64_t> frame, Options& options);
+
 // A run of buckets is one of many, of which a merge makes a picture: what that forbids. typed: the
 // texts of options that are settings of the library.
 void checkBuckets(const std::map<std::string, std::string>& typed, const Options& options);

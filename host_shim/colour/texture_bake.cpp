@@ -110,8 +110,9 @@ std::string bakedName(const std::filesystem::path& file, const std::string& key)
 
 }  // namespace
 
-TextureBaker::TextureBaker(const ColourPipeline& colour, std::filesystem::path folder)
-    : m_colour(colour), m_folder(std::move(folder)) {}
+TextureBaker::TextureBaker(const ColourPipeline& colour, std::filesystem::path folder,
+                           std::function<void()> goOn)
+    : m_colour(colour), m_folder(std::move(folder)), m_goOn(std::move(goOn)) {}
 
 const BakedTexture& TextureBaker::bake(const TextureRequest& request) {
     const bool isColour = request.kind == TextureKind::kColour;
@@ -120,7 +121,12 @@ const BakedTexture& TextureBaker::bake(const TextureRequest& request) {
                                           isColour ? request.colorspace : "", request.clamp);
     if (const auto found = m_baked.find(asked); found != m_baked.end()) return found->second;
 
+    const auto ask = [this] {
+        if (m_goOn) m_goOn();
+    };
+    ask();
     TextureImage image = readTexture(request.file, isColour);
+    ask();
     BakedTexture baked;
     baked.badTexels = replaceBadTexels(image.values);
     SpaceConversion conversion;
@@ -134,6 +140,7 @@ const BakedTexture& TextureBaker::bake(const TextureRequest& request) {
     } else {
         baked.space.isData = true;
     }
+    ask();
     const bool half = isColour && image.is8Bit && fitsHalf(image.values);
     baked.width = image.width;
     baked.height = image.height;

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <string>
 
@@ -37,8 +38,10 @@ struct BakedTexture {
 class TextureBaker {
   public:
     // folder must exist and outlive the use of the textures; the caller removes it. colour must
-    // outlive the baker.
-    TextureBaker(const ColourPipeline& colour, std::filesystem::path folder);
+    // outlive the baker. goOn: called between the steps of a texture; what it throws ends bake()
+    // and leaves nothing of it; may be empty.
+    TextureBaker(const ColourPipeline& colour, std::filesystem::path folder,
+                 std::function<void()> goOn = {});
 
     // Bakes once for each file, space, kind and clamp; asked again, it answers from memory. The
     // name is the file's stem and a hash of these and of the conversion.
@@ -50,6 +53,7 @@ class TextureBaker {
   private:
     const ColourPipeline& m_colour;
     std::filesystem::path m_folder;
+    std::function<void()> m_goOn;
     std::map<std::string, BakedTexture> m_baked;
 };
 

@@ -15,8 +15,11 @@
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <exception>
 #include <fstream>
 #include <sstream>
+#include <streambuf>
+#include <utility>
 
 namespace pm::host {
 namespace {
@@ -46,14 +49,54 @@ struct Parsed {
     std::vector<tinyobj::shape_t> shapes;
 };
 
-Parsed parse(ObjText& text, const std::string& fileName) {
+// Text for the parser, a piece at a time, with a question before each whether to go on. The parser
+// takes a stop for the end of the text, so who asked throws once it has returned.
+class TextInPieces : public std::streambuf {
+  public:
+    TextInPieces(std::string& text, const GoOn& goOn) : m_text(text), m_goOn(goOn) {}
+
+    void throwIfStopped() const {
+        if (m_stop) std::rethrow_exception(m_stop);
+    }
+
+  protected:
+    int_type underflow() override {
+        constexpr std::size_t kPiece = 1 << 16;
+        const std::size_t size = std::min(kPiece, m_text.size() - m_next);
+        if (size == 0 || isStopped()) return traits_type::eof();
+        char* const piece = m_text.data() + m_next;
+        setg(piece, piece, piece + size);
+        m_next += size;
+        return traits_type::to_int_type(*piece);
+    }
+
+  private:
+    bool isStopped() {
+        try {
+            if (m_goOn && !m_stop) m_goOn();
+        } catch (...) {
+            m_stop = std::current_exception();
+        }
+        return m_stop != nullptr;
+    }
+
+    std::string& m_text;
+    const GoOn& m_goOn;
+    std::size_t m_next = 0;
+    std::exception_ptr m_stop;
+};
+
+Parsed parse(ObjText& text, const std::string& fileName, const GoOn& goOn) {
     Parsed parsed;
     std::vector<tinyobj::material_t> materials;
     NumberedMaterials reader(text.materialNames.size());
-    std::istringstream stream(std::move(text.cleaned));
+    TextInPieces pieces(text.cleaned, goOn);
+    std::istream stream(&pieces);
     std::string warning, error;
     const bool good = tinyobj::LoadObj(&parsed.attributes, &parsed.shapes, &materials, &warning,
                                        &error, &stream, &reader, false, false);
+    pieces.throwIfStopped();
+    text.cleaned = {};
     if (!good) {
         std::ranges::replace(error, '\n', ' ');
         throw HostError(ExitCode::kBadInput, fmt::format("{}: {}", fileName, error));
@@ -121,10 +164,15 @@ bool SceneData::hasLight() const {
 }
 
 SceneData readObj(std::string_view text, const std::string& fileName, const fs::path& folder,
-                  const WarningSink& warn) {
-    ObjText objText = readObjText(text, fileName, warn);
-    const Parsed parsed = parse(objText, fileName);
+                  const WarningSink& warn, const GoOn& goOn) {
+    const auto ask = [&goOn] {
+        if (goOn) goOn();
+    };
+    ObjText objText = readObjText(text, fileName, warn, goOn);
+    const Parsed parsed = parse(objText, fileName, goOn);
+    ask();
     checkParsed(parsed, objText, fileName);
+    ask();
     SceneData scene;
     MaterialLibrary library = loadMaterials(objText, fileName, folder, warn);
     scene.materials = std::move(library.materials);
@@ -136,6 +184,7 @@ SceneData readObj(std::string_view text, const std::string& fileName, const fs::
     for (const tinyobj::shape_t& shape : parsed.shapes) {
         const std::size_t faces = shape.mesh.num_face_vertices.size();
         if (faces == 0) continue;
+        ask();
         MeshData& mesh = scene.meshes.emplace_back(assembly.assemble(
             shape, objText.faceSizes.data() + scene.faceCount, faces, defaultMaterial));
         const auto tags = tagsOfGroup(objText, scene.meshes.size() - 1);
@@ -147,9 +196,9 @@ SceneData readObj(std::string_view text, const std::string& fileName, const fs::
     return scene;
 }
 
-SceneData readObjFile(const fs::path& file, const WarningSink& warn) {
+SceneData readObjFile(const fs::path& file, const WarningSink& warn, const GoOn& goOn) {
     checkSceneFile(file);
-    return readObj(readWholeFile(file), file.string(), file.parent_path(), warn);
+    return readObj(readWholeFile(file), file.string(), file.parent_path(), warn, goOn);
 }
 
 void checkSceneFile(const fs::path& file) {

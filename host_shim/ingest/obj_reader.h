@@ -13,12 +13,15 @@ namespace pm::host {
 
 // Reads an OBJ file and its material libraries. Every index is checked; polygons stay polygons.
 // Missing libraries, materials and pictures are warned of, not errors.
+// goOn: called again and again on the way; what it throws ends the reading; may be empty.
 // Errors: kFile when the file can't be read; kBadInput, "FILE:LINE: what", when it is bad.
-SceneData readObjFile(const std::filesystem::path& file, const WarningSink& warn);
+SceneData readObjFile(const std::filesystem::path& file, const WarningSink& warn,
+                      const GoOn& goOn = {});
 
 // The same from text; fileName is for messages, folder is where libraries and pictures are.
 SceneData readObj(std::string_view text, const std::string& fileName,
-                  const std::filesystem::path& folder, const WarningSink& warn);
+                  const std::filesystem::path& folder, const WarningSink& warn,
+                  const GoOn& goOn = {});
 
 // Errors: kFile when the file can't be opened for reading, kBadInput when it is a folder.
 void checkSceneFile(const std::filesystem::path& file);

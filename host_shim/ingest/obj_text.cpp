@@ -29,8 +29,12 @@ class ObjScan {
         m_out.cleaned = "mtllib 0\n";
     }
 
-    ObjText run() {
-        while (m_lines.next()) statement();
+    ObjText run(const GoOn& goOn) {
+        constexpr std::uint64_t kLinesBetweenQuestions = 1 << 14;
+        for (std::uint64_t lines = 0; m_lines.next(); ++lines) {
+            if (goOn && lines % kLinesBetweenQuestions == 0) goOn();
+            statement();
+        }
         if (m_out.counts[0] == 0 || m_out.faceSizes.empty()) {
             throw HostError(ExitCode::kBadInput,
                             fmt::format("{}: no geometry: {} vertices and {} faces (an OBJ file in "
@@ -293,8 +297,9 @@ class ObjScan {
 
 }  // namespace
 
-ObjText readObjText(std::string_view text, const std::string& fileName, const WarningSink& warn) {
-    return ObjScan(text, fileName, warn).run();
+ObjText readObjText(std::string_view text, const std::string& fileName, const WarningSink& warn,
+                    const GoOn& goOn) {
+    return ObjScan(text, fileName, warn).run(goOn);
 }
 
 }  // namespace pm::host

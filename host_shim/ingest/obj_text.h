@@ -39,7 +39,8 @@ struct ObjText {
 // Checks and rewrites the text of an OBJ file.
 // Errors: kBadInput, beginning "FILE:LINE: ", for a vertex that is not finite or lacks numbers, a
 // face corner that is not v, v/vt, v//vn or v/vt/vn, and an index that is 0 or out of range; and
-// "FILE: no geometry" where there is none.
-ObjText readObjText(std::string_view text, const std::string& fileName, const WarningSink& warn);
+// "FILE: no geometry" where there is none; what goOn throws.
+ObjText readObjText(std::string_view text, const std::string& fileName, const WarningSink& warn,
+                    const GoOn& goOn = {});
 
 }  // namespace pm::host

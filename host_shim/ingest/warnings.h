@@ -24,4 +24,7 @@ enum class Warning : int {
 
 using WarningSink = std::function<void(Warning code, const std::string& text)>;
 
+// Called now and then by what takes long; throws where it is to be given up. May be empty.
+using GoOn = std::function<void()>;
+
 }  // namespace pm::host

@@ -75,11 +75,15 @@ FinishedFile::~FinishedFile() {
 }
 
 void FinishedFile::commit() {
-    if (const int error = syncPath(m_temporary, O_RDWR)) fail(m_final, error);
-    if (::rename(m_temporary.c_str(), m_final.c_str()) != 0) fail(m_final, errno);
+    commitAs(m_final);
+}
+
+void FinishedFile::commitAs(const std::filesystem::path& name) {
+    if (const int error = syncPath(m_temporary, O_RDWR)) fail(name, error);
+    if (::rename(m_temporary.c_str(), name.c_str()) != 0) fail(name, errno);
     m_committed = true;
     // Some network file systems can't sync a folder; the file itself is safe by then.
-    syncPath(m_final.has_parent_path() ? m_final.parent_path() : ".", O_RDONLY | O_DIRECTORY);
+    syncPath(name.has_parent_path() ? name.parent_path() : ".", O_RDONLY | O_DIRECTORY);
 }
 
 void writeFinishedFile(const std::filesystem::path& path, std::string_view bytes) {

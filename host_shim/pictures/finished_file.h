@@ -27,6 +27,8 @@ class FinishedFile {
     const std::filesystem::path& temporaryPath() const { return m_temporary; }
     // Syncs the temporary file, renames it and syncs the folder. Errors: kFile.
     void commit();
+    // The same under another name in the same folder.
+    void commitAs(const std::filesystem::path& name);
 
   private:
     std::filesystem::path m_final, m_temporary;

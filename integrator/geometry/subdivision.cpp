@@ -45,8 +45,8 @@ Vec3f normalOf(const Vec3d& du, const Vec3d& dv) {
 // Builds the mesh of one cage.
 class LimitMesher {
   public:
-    LimitMesher(const SubdivisionCage& cage, int rate)
-        : m_cage(cage), m_rate(rate), m_limit(cage) {}
+    LimitMesher(const SubdivisionCage& cage, int rate, const CancelCheck& cancel)
+        : m_cage(cage), m_rate(rate), m_cancel(cancel), m_limit(cage) {}
     BuiltMesh build();
 
   private:
@@ -69,6 +69,7 @@ class LimitMesher {
         std::vector<bool> owned;            // whether this face evaluates that point
     };
 
+    void goOn() const { m_cancel.throwIfSet("tessellating"); }
     void layOut();
     void layOutFace(std::uint32_t face);
     void allocate();
@@ -84,6 +85,7 @@ class LimitMesher {
 
     const SubdivisionCage& m_cage;
     const int m_rate;
+    const CancelCheck m_cancel;
     LimitSurface m_limit;
     std::map<std::uint32_t, SamplePattern> m_patterns;  // by the size of the face
     std::vector<Face> m_faces;
@@ -110,6 +112,7 @@ void LimitMesher::layOut() {
     m_vertices.resize(m_cage.mesh.positions.size());
     m_edges.resize(m_limit.edgeCount());
     for (std::uint32_t face = 0; face < m_faces.size(); ++face) {
+        goOn();
         if (m_limit.hasSurface(face)) layOutFace(face);
         if (m_sampleCount >= kNone || 3 * m_triangleCount >= kNone) {
             throw Error(Status::kInvalidScene,
@@ -147,15 +150,20 @@ void LimitMesher::layOutFace(std::uint32_t face) {
 
 void LimitMesher::allocate() {
     TriangleMesh& mesh = m_built.mesh;
-    mesh.positions.resize(m_pointCount);
-    mesh.triangles.resize(m_triangleCount);
-    mesh.normals.resize(m_sampleCount);
-    mesh.normalIndices.resize(m_triangleCount);
-    mesh.materials.resize(m_triangleCount);
-    mesh.faces.resize(m_triangleCount);
+    // So much memory takes a while to get.
+    const auto resize = [this](auto& array, std::uint64_t size) {
+        goOn();
+        array.resize(size);
+    };
+    resize(mesh.positions, m_pointCount);
+    resize(mesh.triangles, m_triangleCount);
+    resize(mesh.normals, m_sampleCount);
+    resize(mesh.normalIndices, m_triangleCount);
+    resize(mesh.materials, m_triangleCount);
+    resize(mesh.faces, m_triangleCount);
     if (!m_limit.hasTexcoords()) return;
-    mesh.texcoords.resize(m_sampleCount);
-    mesh.texcoordIndices.resize(m_triangleCount);
+    resize(mesh.texcoords, m_sampleCount);
+    resize(mesh.texcoordIndices, m_triangleCount);
 }
 
 // Every face writes only what is its own, so the order of the faces changes nothing.
@@ -167,6 +175,7 @@ void LimitMesher::fillFaces() {
                           LimitSurface::Evaluator evaluator(m_limit);
                           Scratch scratch;
                           for (std::uint32_t face = range.begin(); face < range.end(); ++face) {
+                              goOn();
                               if (m_faces[face].pattern == nullptr) continue;
                               evaluator.select(face);
                               listPoints(face, scratch);
@@ -246,6 +255,7 @@ void LimitMesher::joinNormals() {
     Scratch scratch;
     std::vector<std::uint32_t> joined;
     for (std::uint32_t index = 0; index < m_faces.size(); ++index) {
+        goOn();
         const Face& face = m_faces[index];
         if (face.pattern == nullptr) continue;
         listPoints(index, scratch);
@@ -320,10 +330,11 @@ TessellationSize tessellationSize(const SubdivisionCage& cage, int rate) {
     return {triangles, samples * perSample + triangles * perTriangle};
 }
 
-BuiltMesh tessellate(const SubdivisionCage& cage, int rate) {
+BuiltMesh tessellate(const SubdivisionCage& cage, int rate, const CancelCheck& cancel) {
     checkRate(rate);
     validate(cage);
-    return LimitMesher(cage, rate).build();
+    cancel.throwIfSet("tessellating");
+    return LimitMesher(cage, rate, cancel).build();
 }
 
 }  // namespace pm

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "integrator/geometry/polygon_mesh.h"
+#include "integrator/values/cancel_check.h"
 
 namespace pm {
 
@@ -78,8 +79,8 @@ TessellationSize tessellationSize(const SubdivisionCage& cage, int rate);
 // belong to, so an infinitely sharp crease stays visible; where the surface has none, the triangles
 // around the point give it, counted in `repairs`. Triangles without area stay in: leaving them out
 // could open the mesh. Errors: validate(), kInvalidArgument for the rate, kInvalidScene for more
-// than 2^32 - 1 indices. Threads: runs on the caller's TBB arena; the result is the same for any
-// number of threads.
-BuiltMesh tessellate(const SubdivisionCage& cage, int rate);
+// than 2^32 - 1 indices; kCancelled soon after cancel is set, but while the cage is connected.
+// Threads: runs on the caller's TBB arena; the result is the same for any number of threads.
+BuiltMesh tessellate(const SubdivisionCage& cage, int rate, const CancelCheck& cancel = {});
 
 }  // namespace pm

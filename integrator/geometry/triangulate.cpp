@@ -16,7 +16,7 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 class MeshTriangulator {
   public:
     explicit MeshTriangulator(const PolygonMesh& source);
-    BuiltMesh build();
+    BuiltMesh build(const CancelCheck& cancel);
 
   private:
     void addFace(std::size_t face, std::uint32_t size);
@@ -55,8 +55,9 @@ MeshTriangulator::MeshTriangulator(const PolygonMesh& source) : m_source(source)
     }
 }
 
-BuiltMesh MeshTriangulator::build() {
+BuiltMesh MeshTriangulator::build(const CancelCheck& cancel) {
     for (std::size_t face = 0; face < m_source.faceCount(); ++face) {
+        cancel.throwIfSet("cutting faces into triangles");
         addFace(face, m_source.faceVertexCounts[face]);
     }
     return std::move(m_built);
@@ -132,9 +133,9 @@ std::uint32_t MeshTriangulator::texcoordOf(std::size_t corner) {
 
 }  // namespace
 
-BuiltMesh triangulate(const PolygonMesh& mesh) {
+BuiltMesh triangulate(const PolygonMesh& mesh, const CancelCheck& cancel) {
     validate(mesh);
-    return MeshTriangulator(mesh).build();
+    return MeshTriangulator(mesh).build(cancel);
 }
 
 }  // namespace pm

@@ -219,10 +219,17 @@ bool Bsdf::sample(float uLobe, Vec2f u, BsdfSample& sample) const {
         i = static_cast<std::size_t>(std::max_element(m_probability.begin(), m_probability.end()) -
                                      m_probability.begin());
     }
-    const float probability = m_probability[i];
-    sample.lobe = static_cast<Lobe>(i);
+    return take(static_cast<Lobe>(i), m_probability[i], u, sample);
+}
+
+bool Bsdf::follow(Lobe lobe, BsdfSample& sample) const {
+    return has(lobe) && take(lobe, 1.0f, {}, sample);
+}
+
+bool Bsdf::take(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const {
+    sample.lobe = lobe;
     sample.pdfSolidAngle = probability;
-    sample.weight = m_reflectance[i] / probability;
+    sample.weight = m_reflectance[index(lobe)] / probability;
     switch (sample.lobe) {
         case Lobe::kDiffuse:
             sample.direction = normalize(Frame(m_ns).toWorld(sampleCosineHemisphere(u)));

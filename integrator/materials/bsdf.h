@@ -59,6 +59,9 @@ class Bsdf {
 
     // False: absorbed (photons), or the sampled direction has no value.
     bool sample(float uLobe, Vec2f u, BsdfSample& sample) const;
+    // The same for a delta lobe that is taken for sure, so that no choice is in the weight. False
+    // also where the surface has no such lobe.
+    bool follow(Lobe lobe, BsdfSample& sample) const;
 
     // f |cos| of a lobe that is not delta, for light from `in` (unit, away from the surface).
     Rgb evaluate(Lobe lobe, const Vec3f& in) const;
@@ -85,6 +88,7 @@ class Bsdf {
     void limitEnergy();
     void chooseDiffuse(const Rgb& carried);
     void chooseProbabilities(const Rgb& carried);
+    bool take(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const;
     bool isReflection(const Vec3f& in) const;
     // correction: of the normal that was used, see adjointCorrection.
     bool refract(Vec3f& direction, float& correction) const;

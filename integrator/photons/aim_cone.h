@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include "integrator/scene/beam.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
@@ -19,12 +20,13 @@ struct Caster {
 struct EmissionPoint {
     Vec3d position;  // scene's own coordinates
     // Of a point on a surface: its normal; light leaves by the cosine, to that side only. Of a
-    // point light: the axis of the cone that it fills evenly.
+    // point light or spot: the axis of the cone that it fills, evenly or as the beam says.
     Vec3f axis;
     bool onSurface = false;
-    float oneMinusCos = 2.0f;  // of that cone
+    float oneMinusCos = 2.0f;    // of that cone
+    const Beam* beam = nullptr;  // of a spot
 
-    // Direction of unaimed emission, unit, and its density.
+    // Direction of unaimed emission, unit, and its density; of a spot even over its cone.
     Vec3f sample(Vec2f u, float& pdfSolidAngle) const;
     float pdfSolidAngle(const Vec3f& direction) const;
     // Solid angle of all directions, on a surface weighted by the cosine; sr.
@@ -41,11 +43,12 @@ struct AimCone {
     float oneMinusCos = 0.0f;  // of its half angle
     bool folded = false;
     bool all = false;  // the point lies inside or next to the caster: unaimed emission serves it
-    // Solid angle, on a surface about that weighted by the cosine; > 0, sr.
+    // Solid angle, on a surface about that weighted by the cosine, of a spot by the largest
+    // intensity in the cone; > 0, sr.
     float solidAngle = 0.0f;
 
-    // False when the whole caster lies behind the point's surface. The cone is a little wider than
-    // the caster, beyond what rounding may do to a direction.
+    // False when the whole caster lies behind the point's surface or beside its beam. The cone is a
+    // little wider than the caster, beyond what rounding may do to a direction.
     bool aim(const Caster& caster, const EmissionPoint& from);
 
     // Not for `all`. Unit direction; density sr^-1, as the one that made the direction knows it.

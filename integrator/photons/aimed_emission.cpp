@@ -9,6 +9,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "integrator/photons/aim_shadows.h"
 #include "integrator/photons/caustic_casters.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
@@ -20,6 +21,8 @@ namespace {
 constexpr std::size_t kMostGroups = 64;
 // Points of emission from which casters are judged, over all lights by power.
 constexpr std::uint32_t kViewpoints = 32;
+// Distance over the scene's radius from which lights that are infinitely far judge them.
+constexpr double kFarView = 8.0;
 // Share of the points on a sphere light that are chosen evenly.
 constexpr float kEvenPoints = 0.1f;
 // A caster's worth is the root of the share of flux that lands, within these bounds: at least a
@@ -156,13 +159,23 @@ AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights)
 EmissionPoint AimedEmission::pointLightView(const Light& light) const {
     EmissionPoint point;
     point.position = light.position;
-    m_lights.pointLightCone(light, point.axis, point.oneMinusCos);
+    m_lights.emissionCone(light, point.axis, point.oneMinusCos);
+    if (light.kind == Light::Kind::kSpot) point.beam = &m_scene.beam(light);
+    return point;
+}
+
+EmissionPoint AimedEmission::farView(const Light& light, Vec2f uDirection) const {
+    EmissionPoint point;
+    ParallelLight parallel;
+    if (m_lights.emitParallel(light, uDirection, parallel))
+        point.position = Vec3d(parallel.direction) * (-kFarView * m_scene.radius());
     return point;
 }
 
 EmissionPoint AimedEmission::viewpoint(std::uint32_t index, Vec2f uPoint) const {
     const Light& light = m_scene.lights()[index];
-    if (light.kind == Light::Kind::kPoint) return pointLightView(light);
+    if (light.isAtPoint()) return pointLightView(light);
+    if (light.isFar()) return farView(light, uPoint);
     const Surface surface = m_scene.pointOnLight(light, uPoint);
     EmissionPoint point;
     point.position = Vec3d(surface.position);
@@ -171,19 +184,34 @@ EmissionPoint AimedEmission::viewpoint(std::uint32_t index, Vec2f uPoint) const 
     return point;
 }
 
-double AimedEmission::fluxTowardsCasters(std::uint32_t light, std::uint32_t points) const {
-    if (m_scene.lights()[light].kind == Light::Kind::kPoint) points = 1;
-    double share = 0;
+double AimedEmission::shareTowardsCasters(const EmissionPoint& point) const {
+    double sum = 0;
     AimCone cone;
-    for (std::uint32_t i = 0; i < points; ++i) {
-        const EmissionPoint point = viewpoint(light, spreadPoint(i));
-        double sum = 0;
-        for (const Caster& caster : m_casters)
-            if (cone.aim(caster, point)) sum += static_cast<double>(cone.solidAngle);
-        const double whole = point.onSurface ? static_cast<double>(kPi) : 4.0 * kPi;
-        share += std::min(1.0, sum / whole) / points;
-    }
-    return share * m_scene.lights()[light].powerMean;
+    for (const Caster& caster : m_casters)
+        if (cone.aim(caster, point)) sum += static_cast<double>(cone.solidAngle);
+    const double whole = point.onSurface ? static_cast<double>(kPi)
+                         : point.beam    ? static_cast<double>(point.beam->fluxOverIntensity())
+                                         : 4.0 * kPi;
+    return std::min(1.0, sum / whole);
+}
+
+double AimedEmission::shareInShadows(const Light& light, Vec2f uDirection) const {
+    ParallelLight parallel;
+    if (!m_lights.emitParallel(light, uDirection, parallel)) return 0;
+    const Vec3d direction = normalize(Vec3d(parallel.direction));
+    double sum = 0;
+    for (const Caster& caster : m_casters) sum += AimShadows::areaOf(caster, direction);
+    return std::min(1.0, sum / crossSection(m_scene.halfSize(), direction));
+}
+
+double AimedEmission::fluxTowardsCasters(std::uint32_t index, std::uint32_t points) const {
+    const Light& light = m_scene.lights()[index];
+    if (light.isAtPoint()) points = 1;
+    double share = 0;
+    for (std::uint32_t i = 0; i < points; ++i)
+        share += light.isFar() ? shareInShadows(light, spreadPoint(i))
+                               : shareTowardsCasters(viewpoint(index, spreadPoint(i)));
+    return share / points * light.powerMean;
 }
 
 // Divided by place at the median, the axis in turn, until there are enough groups.
@@ -225,6 +253,7 @@ void AimedEmission::refine(std::span<const EmissionRecord> pilot) {
     }
     // Where nothing landed at all there is nothing to learn from.
     if (!(total.landed > 0)) return;
+    refineSky(pilot);
     const double overall = total.landed / total.emitted;
     for (std::size_t i = 0; i < m_worth.size(); ++i)
         m_worth[i] = static_cast<float>(worthOfShare(casters[i].share(overall)));
@@ -234,9 +263,26 @@ void AimedEmission::refine(std::span<const EmissionRecord> pilot) {
     m_choice = LightChoice(weights);
 }
 
+void AimedEmission::refineSky(std::span<const EmissionRecord> pilot) {
+    std::vector<Landing> parts(SkyParts::kCount);
+    Landing sky;
+    for (const EmissionRecord& record : pilot) {
+        if (record.caster == kNoCaster ||
+            m_scene.lights()[record.light].kind != Light::Kind::kEnvironment)
+            continue;
+        parts[record.part].add(record);
+        sky.add(record);
+    }
+    if (!(sky.landed > 0)) return;
+    std::vector<float> worth;
+    for (const Landing& part : parts)
+        worth.push_back(static_cast<float>(worthOfShare(part.share(sky.share(0)))));
+    m_sky.setWorth(std::move(worth));
+}
+
 void AimedEmission::place(std::uint32_t index, float& uCaster, Vec2f uPoint, Origin& origin) const {
     const Light& light = m_scene.lights()[index];
-    if (light.kind == Light::Kind::kPoint) {
+    if (light.isAtPoint()) {
         origin.point = pointLightView(light);
         origin.strength = light.intensity;
         origin.rayStart = Vec3f(light.position);
@@ -267,6 +313,9 @@ bool AimedEmission::emit(Vec2f uChoice, Vec2f uPoint, Vec2f uDirection, AimedPho
     if (empty()) return false;
     float probability;
     photon.light = m_choice.choose(uChoice.x, probability);
+    const Light& light = m_scene.lights()[photon.light];
+    if (light.isFar())
+        return emitParallel(light, probability, uChoice.y, uPoint, uDirection, photon);
     Origin origin;
     place(photon.light, uChoice.y, uPoint, origin);
     const AimMixture mixture(m_casters, worthOf(photon.light), origin.point);
@@ -277,6 +326,27 @@ bool AimedEmission::emit(Vec2f uChoice, Vec2f uPoint, Vec2f uDirection, AimedPho
     photon.caster = sample.caster;
     photon.ray = {origin.rayStart, sample.direction};
     photon.flux = origin.strength * (cosine / (probability * sample.pdfSolidAngle));
+    if (origin.point.beam) photon.flux *= origin.point.beam->intensity(sample.direction);
+    return !isBlack(photon.flux);
+}
+
+bool AimedEmission::emitParallel(const Light& light, float probability, float uCaster, Vec2f uPoint,
+                                 Vec2f uDirection, AimedPhoton& photon) const {
+    ParallelLight parallel;
+    float factor = 1.0f;
+    const bool isSky = light.kind == Light::Kind::kEnvironment;
+    if (isSky && !m_sky.empty()) factor = m_sky.choose(m_scene.environment(), uCaster, uDirection);
+    if (!m_lights.emitParallel(light, uDirection, parallel)) return false;
+    if (isSky) photon.part = SkyParts::partOf(-parallel.direction);
+    const AimShadows shadows(m_casters, worthOf(photon.light), parallel.direction,
+                             m_scene.halfSize());
+    AimShadows::Sample sample;
+    if (!shadows.sample(uCaster, uPoint, sample)) return false;
+    photon.caster = sample.caster;
+    photon.ray = {m_lights.startOfParallel(sample.point, parallel.direction), parallel.direction};
+    photon.flux = parallel.irradiance *
+                  static_cast<float>(static_cast<double>(factor) /
+                                     (static_cast<double>(probability) * sample.pdfArea));
     return !isBlack(photon.flux);
 }
 

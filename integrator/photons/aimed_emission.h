@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "integrator/photons/aim_mixture.h"
+#include "integrator/photons/sky_parts.h"
 #include "integrator/scene/light_choice.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
@@ -17,6 +18,8 @@ namespace pm {
 struct AimedPhoton : EmittedPhoton {
     std::uint32_t light = 0;
     std::uint32_t caster = kNoCaster;
+    std::uint32_t part =
+        0;  // of the environment: the part of the sky (SkyParts) that it comes from
 };
 
 // What became of one photon of a pilot; flux in any unit, summed over the channels.
@@ -25,6 +28,7 @@ struct EmissionRecord {
     std::uint32_t caster = kNoCaster;
     float emitted = 0.0f;
     float landed = 0.0f;  // as caustic photons
+    std::uint32_t part = 0;
 };
 
 // Emission of photons towards what can cast caustics: lights by the flux that they send to casters,
@@ -32,11 +36,13 @@ struct EmissionRecord {
 // LightSampler::emit's; what makes caustics comes many times as often, with as much less flux.
 //
 // The first guess is geometric; refine() learns from a pilot what is hidden. Lights are learned one
-// by one, casters for each group of neighbouring lights; so memory and time grow with the number of
-// lights, not with that times casters.
+// by one, casters for each group of neighbouring lights, and parts of the sky; so memory and time
+// grow with the number of lights, not with that times casters.
 //
-// A light without position chooses in the other order: it has a direction first, and a disc across
-// it for each caster's sphere; a light without area is an EmissionPoint as it is.
+// A light without area is an EmissionPoint as it is. One without position chooses in the other
+// order: a direction first, as unaimed or, of the environment once a pilot has told which parts of
+// the sky reach casters, one of several of those; then a point in the shadows of casters, by
+// AimShadows.
 //
 // Source (the idea): Jensen 1996, projection maps; here as one mixture over spheres.
 // Threads: const functions from any, at once.
@@ -59,6 +65,7 @@ class AimedEmission {
     std::span<const Caster> casters() const { return m_casters; }
     // Of a light's choice.
     float lightProbability(std::size_t light) const { return m_choice.probability(light); }
+    const SkyParts& sky() const { return m_sky; }
     // Of a caster for a light: how much more its directions are worth than their solid angle.
     float worth(std::size_t light, std::size_t caster) const {
         return worthOf(static_cast<std::uint32_t>(light))[caster];
@@ -75,6 +82,12 @@ class AimedEmission {
 
     EmissionPoint viewpoint(std::uint32_t light, Vec2f uPoint) const;
     EmissionPoint pointLightView(const Light& light) const;
+    EmissionPoint farView(const Light& light, Vec2f uDirection) const;
+    double shareTowardsCasters(const EmissionPoint& point) const;
+    double shareInShadows(const Light& light, Vec2f uDirection) const;
+    void refineSky(std::span<const EmissionRecord> pilot);
+    bool emitParallel(const Light& light, float probability, float uCaster, Vec2f uPoint,
+                      Vec2f uDirection, AimedPhoton& photon) const;
     void place(std::uint32_t light, float& uCaster, Vec2f uPoint, Origin& origin) const;
     double fluxTowardsCasters(std::uint32_t light, std::uint32_t points) const;
     void groupLights();
@@ -88,6 +101,7 @@ class AimedEmission {
     std::vector<std::uint8_t> m_group;  // of each light
     std::vector<float> m_worth;         // of each group and caster
     std::vector<double> m_guess;        // flux that each light sends to casters, unhidden, W
+    SkyParts m_sky;
     LightChoice m_choice;
 };
 

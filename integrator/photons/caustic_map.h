@@ -20,8 +20,10 @@ class PilotRadius {
 
     // pilot: photons as the map's, 1/kPilotShare as many of them emitted, so that a radius with
     // estimatePhotons / kPilotShare of the pilot's holds about estimatePhotons of the map's.
-    // fallback: the typical radius where the pilot found too little; scene units, > 0.
-    PilotRadius(std::vector<Photon> pilot, std::uint32_t estimatePhotons, float fallback);
+    // fallback: the typical radius where the pilot found too little; scene units, > 0. Throws
+    // Error(kCancelled) soon after cancel is set.
+    PilotRadius(std::vector<Photon> pilot, std::uint32_t estimatePhotons, float fallback,
+                const CancelCheck& cancel = {});
 
     // What half of the pilot's photons need; scene units, > 0.
     float typical() const { return m_typical; }
@@ -48,10 +50,11 @@ class CausticRadius : public PilotRadius {
 class CausticMap {
   public:
     // radiusFactor: this pass's radii over the first pass's. radius and patches must outlive this.
-    // patches: null where all discs are to be taken as whole.
+    // patches: null where all discs are to be taken as whole. Throws Error(kCancelled) soon after
+    // cancel is set.
     CausticMap(std::vector<Photon> photons, const CausticRadius& radius, float radiusFactor,
-               const SurfacePatches* patches = nullptr)
-        : m_map(std::move(photons)),
+               const SurfacePatches* patches = nullptr, const CancelCheck& cancel = {})
+        : m_map(std::move(photons), cancel),
           m_radius(radius),
           m_radiusFactor(radiusFactor),
           m_patches(patches) {}

@@ -25,7 +25,8 @@ constexpr std::uint32_t kColdCount = 24;
 
 }  // namespace
 
-PhotonMap::PhotonMap(std::span<const Photon> photons) : m_tree(buildPhotonTree(photons)) {
+PhotonMap::PhotonMap(std::span<const Photon> photons, const CancelCheck& cancel)
+    : m_tree(buildPhotonTree(photons, cancel)) {
     const float largest = std::max(maxAbsComponent(m_tree.lo), maxAbsComponent(m_tree.hi));
     const float tolerance = PhotonGate::kRounding * largest;
     m_planeToleranceSquared = tolerance * tolerance;

@@ -71,7 +71,8 @@ class PhotonMap {
   public:
     // Builds in parallel in the calling TBB arena. Photons whose position is not finite must not be
     // among them. They are copied.
-    explicit PhotonMap(std::span<const Photon> photons);
+    // Throws Error(kCancelled) soon after cancel is set.
+    explicit PhotonMap(std::span<const Photon> photons, const CancelCheck& cancel = {});
 
     // While it is built, the photons that it is built from included.
     static constexpr std::uint64_t kBytesPerPhoton = sizeof(Photon) + kTreeBuildBytesPerPhoton;

@@ -12,7 +12,7 @@
 
 #include "integrator/materials/bsdf.h"
 #include "integrator/sampling/sampler.h"
-#include "integrator/values/error.h"
+#include "integrator/values/cancel_check.h"
 
 namespace pm {
 
@@ -60,7 +60,7 @@ class PhotonWalk {
         if (m_aim && m_request.keepRecords)
             batch.records.push_back({photon.light, photon.caster,
                                      static_cast<float>(sum(photon.flux)),
-                                     static_cast<float>(landed)});
+                                     static_cast<float>(landed), photon.part});
     }
 
   private:
@@ -206,12 +206,14 @@ PhotonTraceResult tracePhotons(const Scene& scene, const LightSampler& lights,
         const std::lock_guard lock(progressMutex);
         progress(static_cast<double>(++done) / static_cast<double>(batchCount));
     });
-    if (cancelled.load()) throw Error(Status::kCancelled, "cancelled while tracing photons");
+    const CancelCheck check(cancelled);
+    check.throwIfSet("tracing photons");
     const auto join = [&](auto member, auto& joined) {
         std::size_t total = 0;
         for (const Batch& batch : batches) total += (batch.*member).size();
         joined.reserve(total);
         for (Batch& batch : batches) {
+            check.throwIfSet("joining photons");
             joined.insert(joined.end(), (batch.*member).begin(), (batch.*member).end());
             std::remove_reference_t<decltype(joined)>().swap(batch.*member);
         }

@@ -22,6 +22,7 @@ struct PhotonBalance {
     double fluxEmitted = 0, fluxAbsorbed = 0, fluxEscaped = 0, fluxLost = 0;
 
     PhotonBalance& operator+=(const PhotonBalance& other);
+    friend bool operator==(const PhotonBalance&, const PhotonBalance&) = default;
 };
 
 enum class PhotonKind : std::uint8_t {

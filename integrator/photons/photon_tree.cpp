@@ -73,9 +73,10 @@ struct Buckets {
 
 class Builder {
   public:
-    Builder(std::span<const Photon> photons, PhotonTree& tree)
+    Builder(std::span<const Photon> photons, PhotonTree& tree, const CancelCheck& cancel)
         : m_photons(photons),
           m_tree(tree),
+          m_cancel(cancel),
           m_entries{std::make_unique_for_overwrite<Entry[]>(photons.size()),
                     std::make_unique_for_overwrite<Entry[]>(photons.size())} {}
 
@@ -108,9 +109,10 @@ class Builder {
 
     // f(chunk, begin, end) for each chunk, in parallel.
     template <typename F>
-    static void forChunks(const Part& part, const F& f) {
+    void forChunks(const Part& part, const F& f) const {
         const std::size_t chunks = part.chunks();
         const auto one = [&](std::size_t chunk) {
+            m_cancel.throwIfSet("building a photon map");
             const std::size_t begin = part.begin + chunk * kChunk;
             f(chunk, begin, std::min(begin + kChunk, part.end));
         };
@@ -255,12 +257,13 @@ class Builder {
 
     std::span<const Photon> m_photons;
     PhotonTree& m_tree;
+    CancelCheck m_cancel;
     std::array<std::unique_ptr<Entry[]>, 2> m_entries;
 };
 
 }  // namespace
 
-PhotonTree buildPhotonTree(std::span<const Photon> photons) {
+PhotonTree buildPhotonTree(std::span<const Photon> photons, const CancelCheck& cancel) {
     PhotonTree tree;
     if (photons.empty()) return tree;
     tree.size = photons.size();
@@ -269,7 +272,7 @@ PhotonTree buildPhotonTree(std::span<const Photon> photons) {
     tree.nodes = std::make_unique_for_overwrite<PhotonTree::Node[]>(tree.nodeCount());
     tree.leaves = std::make_unique_for_overwrite<PhotonLeaf[]>(tree.leafCount);
     tree.fluxes = std::make_unique_for_overwrite<float[]>(3 * tree.size);
-    Builder(photons, tree).build();
+    Builder(photons, tree, cancel).build();
     return tree;
 }
 

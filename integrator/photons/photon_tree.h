@@ -9,6 +9,7 @@
 
 #include "integrator/photons/photon.h"
 #include "integrator/photons/photon_leaf.h"
+#include "integrator/values/cancel_check.h"
 
 namespace pm {
 
@@ -35,8 +36,9 @@ struct PhotonTree {
 };
 
 // In parallel in the calling TBB arena; the same photons give the same tree for any number of
-// threads. Positions must be finite; at most 2^32 - 1 photons.
-PhotonTree buildPhotonTree(std::span<const Photon> photons);
+// threads. Positions must be finite; at most 2^32 - 1 photons. Throws Error(kCancelled) soon after
+// cancel is set.
+PhotonTree buildPhotonTree(std::span<const Photon> photons, const CancelCheck& cancel = {});
 
 // While it is built, beside the photons: two lists of entries and the tree itself.
 constexpr std::uint64_t kTreeBuildBytesPerPhoton = 2 * 16 + 29;

@@ -58,7 +58,8 @@ const SurfacePatch& SurfacePatches::at(const Vec3f& position, const Vec3f& norma
     const std::uint64_t bytes = patch.memoryBytes() + kEntryBytes;
     if (m_table->bytes.load(std::memory_order_relaxed) + bytes > m_mostBytes) {
         m_table->isFull.store(true, std::memory_order_relaxed);
-        return spare = std::move(patch);
+        spare = std::move(patch);
+        return spare;
     }
     // Two threads may both come here: they made the same patch, and one of them is kept.
     const auto [place, isNew] = m_table->patches.emplace(key, std::move(patch));

@@ -208,8 +208,15 @@ std::uint32_t RayTracer::addSphere(const Vec3d& centre, double radius) {
     return id;
 }
 
-void RayTracer::commit() {
+void RayTracer::commit(const CancelCheck& cancel) {
+    // Embree asks now and then whether to go on.
+    CancelCheck check = cancel;
+    rtcSetSceneProgressMonitorFunction(
+        m_impl->scene,
+        [](void* user, double) { return !static_cast<const CancelCheck*>(user)->isSet(); }, &check);
     rtcCommitScene(m_impl->scene);
+    rtcSetSceneProgressMonitorFunction(m_impl->scene, nullptr, nullptr);
+    cancel.throwIfSet("building the ray-tracing structure");
     m_impl->check("building the ray-tracing structure");
 }
 

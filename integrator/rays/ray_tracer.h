@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "integrator/values/cancel_check.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
@@ -50,8 +51,9 @@ class RayTracer {
                                std::span<const std::array<std::uint32_t, 3>> triangles);
     std::uint32_t addSphere(const Vec3d& centre, double radius);
 
-    // Builds; in parallel in the calling TBB arena. Throws Error(kOutOfMemory, kInternal).
-    void commit();
+    // Builds; in parallel in the calling TBB arena. Throws Error(kOutOfMemory, kInternal,
+    // kCancelled).
+    void commit(const CancelCheck& cancel = {});
 
     // Threads: any, at once, after commit.
     bool intersect(const Ray& ray, RayHit& hit) const;

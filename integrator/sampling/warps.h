@@ -68,6 +68,13 @@ inline Vec2f sampleTriangle(Vec2f u) {
     return {1.0f - root, u.y * root};
 }
 
+// 1 - cos of the half angle under which a sphere of squared radius r2 is seen from the squared
+// distance d2 > r2.
+inline float oneMinusCosOfSphere(double r2, double d2) {
+    const double sin2 = r2 / d2;
+    return static_cast<float>(sin2 / (1.0 + std::sqrt(1.0 - sin2)));
+}
+
 // Weight of the strategy with density a against the one with density b: the power heuristic.
 // Source: Veach 1997, section 9.2.4, exponent 2. Written in ratios so that huge densities don't
 // overflow.

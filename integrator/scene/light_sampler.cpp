@@ -25,16 +25,19 @@ Ray shadowSegment(const Vec3f& from, const Vec3f& to, const Vec3f& lightNormal, 
     return {from, end - from, 1.0f - 8.0f * 0x1p-24f};
 }
 
-// 1 - cos of the half angle under which a sphere is seen from squared distance d2, d2 > r2.
-float oneMinusCosThetaMax(double r2, double d2) {
-    const double sin2 = r2 / d2;
-    return static_cast<float>(sin2 / (1.0 + std::sqrt(1.0 - sin2)));
-}
-
-LightChoice choiceByPower(const std::vector<Light>& lights) {
+LightChoice choiceByPower(std::span<const Light> lights) {
     std::vector<double> powers;
     for (const Light& light : lights) powers.push_back(light.powerMean);
     return LightChoice(powers);
+}
+
+// Bounds of the share of choices that lights infinitely far have beside many others.
+constexpr float kLeastFarShare = 0.1f, kMostFarShare = 0.5f;
+
+double powerOf(std::span<const Light> lights) {
+    double power = 0;
+    for (const Light& light : lights) power += light.powerMean;
+    return power;
 }
 
 Receiver receiverAt(const Surface& surface, const Vec3f& side) {
@@ -62,7 +65,13 @@ constexpr std::size_t kMostSightings = 1 << 17;
 
 LightSampler::LightSampler(const Scene& scene)
     : m_scene(scene), m_choice(choiceByPower(scene.lights())) {
-    if (!empty() && scene.lights().size() > kFewLights) m_tree = std::make_unique<LightTree>(scene);
+    if (empty() || scene.nearLights().size() <= kFewLights) return;
+    m_tree = std::make_unique<LightTree>(scene);
+    m_farChoice = choiceByPower(scene.farLights());
+    if (m_farChoice.empty()) return;
+    const double far = powerOf(scene.farLights());
+    m_farShare = std::clamp(static_cast<float>(far / (far + powerOf(scene.nearLights()))),
+                            kLeastFarShare, kMostFarShare);
 }
 
 void LightSampler::learn(std::span<const LitPlace> places, std::uint64_t seed) {
@@ -112,7 +121,15 @@ std::uint32_t LightSampler::choose(const Surface& surface, const Vec3f& side, Ve
     if (!isGuided()) return m_choice.chooseAndStretch(u.x, probability);
     const Receiver receiver = receiverAt(surface, side);
     double x = refined(u);
-    probability = 1.0f;
+    const auto farShare = static_cast<double>(m_farShare);
+    if (x < farShare) {
+        u.x = std::min(static_cast<float>(x / farShare), 1.0f - 0x1p-24f);
+        const std::uint32_t far = m_farChoice.chooseAndStretch(u.x, probability);
+        probability *= m_farShare;
+        return static_cast<std::uint32_t>(m_scene.nearLights().size()) + far;
+    }
+    x = (x - farShare) / (1.0 - farShare);
+    probability = 1.0f - m_farShare;
     const std::uint32_t light = m_guide
                                     ? m_guide->choose(receiver, x, probability)
                                     : m_tree->choose(LightTree::kRoot, receiver, x, probability);
@@ -123,9 +140,11 @@ std::uint32_t LightSampler::choose(const Surface& surface, const Vec3f& side, Ve
 float LightSampler::probability(const Surface& surface, const Vec3f& side,
                                 std::uint32_t light) const {
     if (!isGuided()) return m_choice.probability(light);
+    const std::size_t near = m_scene.nearLights().size();
+    if (light >= near) return m_farShare * m_farChoice.probability(light - near);
     const Receiver receiver = receiverAt(surface, side);
-    return m_guide ? m_guide->probability(receiver, light)
-                   : m_tree->probability(LightTree::kRoot, receiver, light);
+    return (1.0f - m_farShare) * (m_guide ? m_guide->probability(receiver, light)
+                                          : m_tree->probability(LightTree::kRoot, receiver, light));
 }
 
 std::uint64_t LightSampler::memoryBytes() const {
@@ -160,7 +179,11 @@ bool LightSampler::sampleOn(const Light& light, float probability, const Surface
         case Light::Kind::kSphere:
             return sampleSphere(surface, light, probability, uPoint, sample);
         case Light::Kind::kPoint:
+        case Light::Kind::kSpot:
             return samplePoint(surface, light, probability, sample);
+        case Light::Kind::kDirectional:
+        case Light::Kind::kEnvironment:
+            return sampleFar(surface, light, probability, uPoint, sample);
     }
     return false;
 }
@@ -189,7 +212,7 @@ bool LightSampler::sampleSphere(const Surface& surface, const Light& light, floa
     const Vec3d toCentre = sphere.centre - Vec3d(surface.position);
     const double d2 = lengthSquared(toCentre), r2 = sphere.radius * sphere.radius;
     if (!(d2 > r2 * (1 + 1e-6))) return false;  // inside: the front looks away
-    const float oneMinusCos = oneMinusCosThetaMax(r2, d2);
+    const float oneMinusCos = oneMinusCosOfSphere(r2, d2);
     const Frame frame(Vec3f(toCentre / std::sqrt(d2)));
     sample.direction = frame.toWorld(sampleUniformCone(u, oneMinusCos));
     sample.direction = normalize(sample.direction);
@@ -216,11 +239,50 @@ bool LightSampler::samplePoint(const Surface& surface, const Light& light, float
     if (!(d2 > 0)) return false;
     sample.direction = Vec3f(toLight / std::sqrt(d2));
     sample.radiance = light.intensity * static_cast<float>(1 / d2);
+    if (light.kind == Light::Kind::kSpot) {
+        sample.radiance *= m_scene.beam(light).intensity(-sample.direction);
+        if (isBlack(sample.radiance)) return false;
+    }
     sample.pdfSolidAngle = probability;
     sample.isPoint = true;
     const Vec3f origin = rayOrigin(surface, sample.direction);
     sample.shadowRay = {origin, Vec3f(light.position - Vec3d(origin)), 1.0f};
     return true;
+}
+
+bool LightSampler::sampleFar(const Surface& surface, const Light& light, float probability, Vec2f u,
+                             LightSample& sample) const {
+    float pdf = 1.0f;
+    sample.isPoint = false;
+    if (light.kind == Light::Kind::kEnvironment) {
+        sample.direction = m_scene.environment().sample(u, pdf);
+        sample.radiance = m_scene.environment().radiance(sample.direction);
+    } else {
+        const Beam& beam = m_scene.beam(light);
+        sample.direction = -beam.axis;
+        sample.radiance = light.intensity;
+        sample.isPoint = beam.isDelta();
+        if (!beam.isDelta()) {
+            sample.direction =
+                normalize(Frame(sample.direction).toWorld(sampleUniformCone(u, beam.oneMinusCos)));
+            pdf = 1.0f / (2.0f * kPi * beam.oneMinusCos);
+        }
+    }
+    sample.pdfSolidAngle = probability * pdf;
+    sample.shadowRay = rayFrom(surface, sample.direction);
+    return !isBlack(sample.radiance);
+}
+
+float LightSampler::farPdfSolidAngle(const Surface& from, const Vec3f& direction,
+                                     std::size_t far) const {
+    const std::size_t index = m_scene.nearLights().size() + far;
+    const Light& light = m_scene.lights()[index];
+    const float probability = this->probability(from, direction, static_cast<std::uint32_t>(index));
+    if (light.kind == Light::Kind::kEnvironment)
+        return probability * m_scene.environment().pdfSolidAngle(direction);
+    const Beam& beam = m_scene.beam(light);
+    return !beam.isDelta() && beam.holds(-direction) ? probability / (2.0f * kPi * beam.oneMinusCos)
+                                                     : 0.0f;
 }
 
 float LightSampler::pdfSolidAngle(const Surface& from, const Vec3f& direction,
@@ -232,47 +294,12 @@ float LightSampler::pdfSolidAngle(const Surface& from, const Vec3f& direction,
         const SphereShape sphere = m_scene.sphere(light.shape);
         const double d2 = lengthSquared(sphere.centre - Vec3d(from.position));
         const double r2 = sphere.radius * sphere.radius;
-        return d2 > r2 * (1 + 1e-6) ? probability / (2.0f * kPi * oneMinusCosThetaMax(r2, d2))
+        return d2 > r2 * (1 + 1e-6) ? probability / (2.0f * kPi * oneMinusCosOfSphere(r2, d2))
                                     : 0.0f;
     }
     const float cosine = -dot(direction, onLight.geometricNormal);
     if (!(cosine > 0.0f)) return 0.0f;
     return probability * lengthSquared(onLight.position - from.position) / (light.area * cosine);
-}
-
-void LightSampler::pointLightCone(const Light& light, Vec3f& axis, float& oneMinusCos) const {
-    const double r2 = m_scene.radius() * m_scene.radius() * 1.0001;
-    const double d2 = lengthSquared(light.position);
-    const bool outside = d2 > r2;
-    oneMinusCos = outside ? oneMinusCosThetaMax(r2, d2) : 2.0f;
-    axis = outside ? Vec3f(-light.position / std::sqrt(d2)) : Vec3f{0.0f, 0.0f, 1.0f};
-}
-
-bool LightSampler::emitFromPoint(const Light& light, float probability, Vec2f u,
-                                 EmittedPhoton& photon) const {
-    Vec3f axis;
-    float oneMinusCos;
-    pointLightCone(light, axis, oneMinusCos);
-    photon.ray = {Vec3f(light.position),
-                  normalize(Frame(axis).toWorld(sampleUniformCone(u, oneMinusCos)))};
-    photon.flux = light.intensity * (2.0f * kPi * oneMinusCos / probability);
-    return true;
-}
-
-bool LightSampler::emit(float uLight, Vec2f uPoint, Vec2f uDirection, EmittedPhoton& photon) const {
-    if (empty()) return false;
-    float probability;
-    const Light& light = m_scene.lights()[m_choice.choose(uLight, probability)];
-    if (light.kind == Light::Kind::kPoint) {
-        return emitFromPoint(light, probability, uDirection, photon);
-    }
-    const Surface point = m_scene.pointOnLight(light, uPoint);
-    const Frame frame(point.geometricNormal);
-    const Vec3f direction = frame.toWorld(sampleCosineHemisphere(uDirection));
-    photon.ray = {rayOrigin(point, point.geometricNormal), direction};
-    // Uniform area density 1/A and direction density cos/pi leave the radiance times pi A.
-    photon.flux = frontRadiance(point) * (kPi * light.area / probability);
-    return !isBlack(photon.flux);
 }
 
 }  // namespace pm

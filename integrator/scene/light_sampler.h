@@ -23,11 +23,11 @@ namespace pm {
 // A direction towards a light, chosen by next-event estimation.
 struct LightSample {
     Vec3f direction;  // unit, from the surface to the light
-    Rgb radiance;     // what arrives from there, W m^-2 sr^-1; of a point light: irradiance of a
-                      // surface that faces it, W m^-2, to be divided by pdfSolidAngle all the same
-    float pdfSolidAngle = 0.0f;  // sr^-1, the choice of the light included; of a point light that
+    Rgb radiance;     // what arrives from there, W m^-2 sr^-1; of a point: irradiance of a surface
+                      // that faces it, W m^-2, to be divided by pdfSolidAngle all the same
+    float pdfSolidAngle = 0.0f;  // sr^-1, the choice of the light included; of a point that
                                  // choice's probability alone
-    bool isPoint = false;        // no other strategy can find it
+    bool isPoint = false;        // point light, spot, parallel light: no other strategy can find it
     Ray shadowRay;               // to be tested with Scene::occluded
 };
 
@@ -35,6 +35,12 @@ struct LightSample {
 struct EmittedPhoton {
     Ray ray;
     Rgb flux;  // W, of one photon if only one were emitted: divide by the number emitted
+};
+
+// Light that comes from infinitely far along one direction.
+struct ParallelLight {
+    Vec3f direction;  // unit, the way that it travels
+    Rgb irradiance;   // of a surface that faces it, over the density of the direction; W m^-2
 };
 
 // A place where light is asked for, and any direction on the side of the surface that is lit.
@@ -45,13 +51,14 @@ struct LitPlace {
 
 // Chooses lights and points on them. Few lights are chosen by power, with a floor so that none is
 // starved; of many (isGuided()) each receiver has its own choice, by a LightTree and, once learn()
-// was called, a LightGuide. Photons leave lights by power.
+// was called, a LightGuide; those infinitely far are chosen beside it, by power. Photons leave
+// lights by power.
 // Threads: const functions from any, at once.
 class LightSampler {
   public:
     explicit LightSampler(const Scene& scene);
 
-    // More lights than this are many.
+    // More lights than this, those infinitely far not counted, are many.
     static constexpr std::size_t kFewLights = 16;
 
     bool empty() const { return m_choice.empty(); }
@@ -74,14 +81,26 @@ class LightSampler {
     // (whose primitive is a light) along the unit direction `direction`; sr^-1.
     float pdfSolidAngle(const Surface& from, const Vec3f& direction, const Surface& onLight) const;
 
-    // A photon: light by power, point uniform over its area, direction by the cosine; of a point
-    // light outside the scene, towards the sphere around it, and with the flux of that cone. False
-    // when it carries nothing.
+    // The same of the far light of that number in Scene::farLights(), where a ray from there meets
+    // nothing; 0 of parallel light.
+    float farPdfSolidAngle(const Surface& from, const Vec3f& direction, std::size_t far) const;
+
+    // A photon: light by power, point uniform over its area, direction by the cosine; of a spot, by
+    // its intensity. Of a point or spot outside the scene, where that is less, towards the sphere
+    // around the scene, and with the flux of that cone. Of what is infinitely far, direction first,
+    // by radiance, then a point of the scene's box as seen from there. False when it carries
+    // nothing.
     bool emit(float uLight, Vec2f uPoint, Vec2f uDirection, EmittedPhoton& photon) const;
 
-    // The cone that photons of a point light fill: from outside the scene only the one that holds
-    // all of it is worth a photon, the rest of the light's flux would escape; else all directions.
-    void pointLightCone(const Light& light, Vec3f& axis, float& oneMinusCos) const;
+    // The cone that photons of a point light or spot fill: all directions in which it shines, or
+    // from outside the scene, where that is less, the cone that holds all of the scene: the rest of
+    // the light's flux would escape.
+    void emissionCone(const Light& light, Vec3f& axis, float& oneMinusCos) const;
+
+    // Of a far light. False when it carries nothing.
+    bool emitParallel(const Light& light, Vec2f u, ParallelLight& parallel) const;
+    // Where a photon of it starts that goes through a point of the scene: outside the scene.
+    Vec3f startOfParallel(const Vec3d& through, const Vec3f& direction) const;
 
     // Radiance that leaves a point of the scene along the unit direction: emission of its front.
     Rgb emittedRadiance(const Surface& surface, const Vec3f& direction) const;
@@ -106,10 +125,18 @@ class LightSampler {
     bool samplePoint(const Surface& surface, const Light& light, float probability,
                      LightSample& sample) const;
 
+    bool sampleFar(const Surface& surface, const Light& light, float probability, Vec2f u,
+                   LightSample& sample) const;
+
     bool emitFromPoint(const Light& light, float probability, Vec2f u, EmittedPhoton& photon) const;
+    bool emitFromAfar(const Light& light, float probability, Vec2f uPoint, Vec2f uDirection,
+                      EmittedPhoton& photon) const;
 
     const Scene& m_scene;
-    LightChoice m_choice;
+    LightChoice m_choice;  // of all lights
+    // Beside the tree: of the lights that are infinitely far, and the share of choices for them.
+    LightChoice m_farChoice;
+    float m_farShare = 0.0f;
     std::unique_ptr<LightTree> m_tree;  // of many lights
     std::unique_ptr<const LightGuide> m_guide;
 };

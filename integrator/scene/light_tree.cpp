@@ -53,6 +53,11 @@ Bounds boundsOf(const Scene& scene, const Light& light) {
     }
     b.anyDirection = true;
     b.lo = b.hi = light.position;
+    // A spot as a lamp that faces along its axis, where its cone is no wider than such a lamp's.
+    if (light.kind == Light::Kind::kSpot && scene.beam(light).oneMinusCos <= 1.0f) {
+        b.anyDirection = false;
+        b.axis = scene.beam(light).axis;
+    }
     if (light.kind == Light::Kind::kSphere) {
         const SphereShape sphere = scene.sphere(light.shape);
         b.lo = sphere.centre - Vec3d(sphere.radius);
@@ -78,7 +83,7 @@ float sineOf(float cosine) {
 class LightTree::Builder {
   public:
     explicit Builder(LightTree& tree) : m_tree(tree) {
-        const auto& lights = tree.m_scene->lights();
+        const std::span<const Light> lights = tree.m_scene->nearLights();
         for (const Light& light : lights) m_bounds.push_back(boundsOf(*tree.m_scene, light));
         if (lights.size() > kMostSingle)
             m_run = std::max(kRun, (lights.size() + kMostLeaves - 1) / kMostLeaves);
@@ -174,7 +179,7 @@ class LightTree::Builder {
 };
 
 LightTree::LightTree(const Scene& scene) : m_scene(&scene) {
-    if (!scene.lights().empty()) Builder(*this);
+    if (!scene.nearLights().empty()) Builder(*this);
 }
 
 LightTree::Seen LightTree::sum(std::uint32_t node, std::span<const Seen> lights,

@@ -25,13 +25,12 @@ struct Sighting {
     bool visible = false;
 };
 
-// A binary tree over the lights by place. A light is chosen by going down it, at each node towards
-// a child in proportion to what may arrive from there, if nothing is in between, and to how often
-// something is. The lights' order in the tree is a curve through space: neighbours in it are
-// neighbours in space.
-// [1] Conty Estevez & Kulla, "Importance Sampling of Many Lights with Adaptive Tree Splitting",
-// 2018.
-// Threads: const functions from any, at once.
+// A binary tree over the lights by place; those that are infinitely far are not in it. A light is
+// chosen by going down it, at each node towards a child in proportion to what may arrive from
+// there, if nothing is in between, and to how often something is. The lights' order in the tree is
+// a curve through space: neighbours in it are neighbours in space. [1] Conty Estevez & Kulla,
+// "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018. Threads: const functions
+// from any, at once.
 class LightTree {
   public:
     LightTree() = default;

@@ -70,7 +70,7 @@ bool emits(const MaterialDescription& material) {
 
 class Scene::Builder {
   public:
-    explicit Builder(Scene& scene) : m_scene(scene) {}
+    Builder(Scene& scene, const CancelCheck& cancel) : m_scene(scene), m_cancel(cancel) {}
 
     void run() {
         checkInstances();
@@ -79,13 +79,23 @@ class Scene::Builder {
             addShape(instance);
         addToTracer();
         for (std::uint32_t i = 0; i < m_scene.m_shapes.size(); ++i) findLights(i);
-        addPointLights();
+        addPointLights(m_scene.m_description, m_scene.m_centre, m_scene.m_lights, m_scene.m_beams);
+        m_scene.m_nearLightCount = m_scene.m_lights.size();
+        addDirectionalLights(m_scene.m_description, m_scene.m_halfSize, m_scene.m_lights,
+                             m_scene.m_beams);
+        addEnvironment();
         if (m_scene.m_lights.empty())
             m_scene.m_notices.push_back(
                 {NoticeCode::kNoLight, "nothing in the scene emits light: the picture is black"});
     }
 
   private:
+    // Called for every little step of what may take long.
+    void goOn() {
+        constexpr std::uint32_t kStepsBetweenLooks = 1 << 16;
+        if (++m_steps % kStepsBetweenLooks == 0) m_cancel.throwIfSet("building the scene");
+    }
+
     void checkInstances() const {
         const SceneDescription& d = m_scene.m_description;
         if (d.instances.empty()) throw Error(Status::kInvalidScene, "the scene has no geometry");
@@ -144,9 +154,11 @@ class Scene::Builder {
             if (const auto* mesh =
                     std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape)) {
                 const TriangleMesh& m = **mesh;
-                for (const auto& triangle : m.triangles)
+                for (const auto& triangle : m.triangles) {
+                    goOn();
                     for (const std::uint32_t v : triangle)
                         grow(transformPoint(instance.transform, Vec3d(m.positions[v])), 0.0);
+                }
             } else {
                 const auto& sphere = std::get<SphereShape>(instance.shape);
                 grow(transformPoint(instance.transform, sphere.centre),
@@ -185,13 +197,18 @@ class Scene::Builder {
                  ShapeRecord& record) {
         record.mesh = mesh;
         record.positions.reserve(mesh->positions.size() + 1);
-        for (const Vec3f& p : mesh->positions)
+        for (const Vec3f& p : mesh->positions) {
+            goOn();
             record.positions.push_back(
                 Vec3f(transformPoint(transform, Vec3d(p)) - m_scene.m_centre));
+        }
         record.positions.emplace_back();
         const NormalTransform normalTransform(transform);
         record.normals.reserve(mesh->normals.size());
-        for (const Vec3f& n : mesh->normals) record.normals.push_back(normalTransform.apply(n));
+        for (const Vec3f& n : mesh->normals) {
+            goOn();
+            record.normals.push_back(normalTransform.apply(n));
+        }
         m_scene.m_triangleCount += mesh->triangles.size();
     }
 
@@ -211,13 +228,15 @@ class Scene::Builder {
             else
                 m_scene.m_tracer.addSphere(record.sphere.centre, record.sphere.radius);
         }
-        m_scene.m_tracer.commit();
+        m_cancel.throwIfSet("building the scene");
+        m_scene.m_tracer.commit(m_cancel);
     }
 
     void findLights(std::uint32_t shape) {
         ShapeRecord& record = m_scene.m_shapes[shape];
         const std::size_t primitives = record.mesh ? record.mesh->triangles.size() : 1;
         for (std::uint32_t i = 0; i < primitives; ++i) {
+            goOn();
             const std::uint32_t material = record.materialOf(i);
             if (!emits(m_scene.material(material))) continue;
             const double area = record.mesh
@@ -239,38 +258,55 @@ class Scene::Builder {
         }
     }
 
-    void addPointLights() {
-        for (const PointLightDescription& point : m_scene.m_description.pointLights) {
-            if (isBlack(point.intensity)) continue;
-            Light light;
-            light.position = point.position - m_scene.m_centre;
-            light.intensity = point.intensity;
-            light.powerMean =
-                4 * kPiDouble *
-                (static_cast<double>(point.intensity.r) + point.intensity.g + point.intensity.b) /
-                3;
-            m_scene.m_lights.push_back(light);
-        }
+    void addEnvironment() {
+        const auto& description = m_scene.m_description.environment;
+        if (!description || isBlack(description->radiance)) return;
+        auto environment = std::make_unique<const Environment>(
+            *description, m_scene.m_description.textures.get(), m_cancel);
+        if (!(environment->integral() > 0)) return;
+        Light light;
+        light.kind = Light::Kind::kEnvironment;
+        // A convex body's shadow is a quarter of its surface on the average (Cauchy).
+        double area = 0;
+        for (const Vec3d& axis : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}})
+            area += 0.5 * crossSection(m_scene.m_halfSize, axis);
+        light.powerMean = environment->integral() * area;
+        m_scene.m_environment = std::move(environment);
+        m_scene.m_lights.push_back(light);
     }
 
     static constexpr double kPiDouble = 3.14159265358979323846;
     Scene& m_scene;
+    CancelCheck m_cancel;
+    std::uint32_t m_steps = 0;
 };
 
-Scene::Scene(SceneDescription description, const std::string& isa)
+Scene::Scene(SceneDescription description, const std::string& isa, const CancelCheck& cancel)
     : m_description(std::move(description)), m_tracer(isa) {
-    Builder(*this).run();
+    Builder(*this, cancel).run();
 }
 
 Scene::~Scene() = default;
 
-std::shared_ptr<const Scene> Scene::build(SceneDescription description, const std::string& isa) {
-    return std::shared_ptr<const Scene>(new Scene(std::move(description), isa));
+std::shared_ptr<const Scene> Scene::build(SceneDescription description, const std::string& isa,
+                                          const CancelCheck& cancel) {
+    return std::shared_ptr<const Scene>(new Scene(std::move(description), isa, cancel));
 }
 
 std::array<double, 6> Scene::bounds() const {
     const Vec3d lo = m_centre - m_halfSize, hi = m_centre + m_halfSize;
     return {lo.x, lo.y, lo.z, hi.x, hi.y, hi.z};
+}
+
+Rgb Scene::farRadiance(const Light& light, const Vec3f& direction) const {
+    if (light.kind == Light::Kind::kEnvironment) return m_environment->radiance(direction);
+    const Beam& beam = this->beam(light);
+    return !beam.isDelta() && beam.holds(-direction) ? light.intensity : Rgb{};
+}
+
+bool Scene::seesFarLight(const Vec3f& direction) const {
+    return std::ranges::any_of(
+        farLights(), [&](const Light& light) { return !isBlack(farRadiance(light, direction)); });
 }
 
 bool Scene::isFlat() const {
@@ -317,6 +353,7 @@ std::uint64_t Scene::memoryBytes() const {
             bytes += record.mesh->positions.size() * sizeof(Vec3f) +
                      record.mesh->triangles.size() * (sizeof(TriangleMesh::Corners) + 8);
     }
+    if (m_environment) bytes += m_environment->memoryBytes();
     return bytes + m_lights.size() * sizeof(Light);
 }
 

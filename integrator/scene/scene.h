@@ -5,28 +5,18 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "integrator/rays/ray_tracer.h"
+#include "integrator/scene/environment.h"
+#include "integrator/scene/light.h"
 #include "integrator/scene/scene_description.h"
 #include "integrator/scene/surface.h"
 #include "integrator/values/notice.h"
 
 namespace pm {
-
-// One emitting primitive or point, in the scene's own coordinates.
-struct Light {
-    enum class Kind : std::uint8_t { kTriangle, kSphere, kPoint };
-    Kind kind = Kind::kPoint;
-    std::uint32_t shape = 0;
-    std::uint32_t primitive = 0;
-    std::uint32_t material = 0;
-    float area = 0.0f;     // scene units squared
-    Vec3d position;        // of a point light
-    Rgb intensity;         // of a point light, W/sr
-    double powerMean = 0;  // W, mean of the channels, textures taken as 1
-};
 
 // A scene as it is rendered: immutable, moved to its own centre, ray-tracing structure built. Its
 // own coordinates are world coordinates minus centre(), in float. Threads: all const functions from
@@ -34,8 +24,9 @@ struct Light {
 class Scene {
   public:
     // isa: see RayTracer. Builds in parallel in the calling TBB arena. Throws Error (kInvalidScene,
-    // kUnsupported, kOutOfMemory).
-    static std::shared_ptr<const Scene> build(SceneDescription description, const std::string& isa);
+    // kUnsupported, kOutOfMemory; kCancelled soon after cancel is set).
+    static std::shared_ptr<const Scene> build(SceneDescription description, const std::string& isa,
+                                              const CancelCheck& cancel = {});
     ~Scene();
 
     bool intersect(const Ray& ray, Surface& surface) const;
@@ -46,13 +37,33 @@ class Scene {
     const Vec3d& centre() const { return m_centre; }
     // Radius of a sphere around the origin of the scene's own coordinates that holds all shapes.
     double radius() const { return m_radius; }
+    // Half the size of the box around the origin that holds all shapes, along the axes.
+    const Vec3d& halfSize() const { return m_halfSize; }
 
     const SceneDescription& description() const { return m_description; }
     const MaterialDescription& material(std::uint32_t index) const {
         return m_description.materials[index];
     }
     const TextureSource* textures() const { return m_description.textures.get(); }
+    // Those that are infinitely far come last.
     const std::vector<Light>& lights() const { return m_lights; }
+    std::span<const Light> nearLights() const { return {m_lights.data(), m_nearLightCount}; }
+    std::span<const Light> farLights() const {
+        return std::span(m_lights).subspan(m_nearLightCount);
+    }
+    const Beam& beam(const Light& light) const { return m_beams[light.beam]; }
+    const Environment& environment() const { return *m_environment; }  // of a light of that kind
+
+    // Whether rays can meet a light: it has an area, a disc in the sky, or is all of the sky.
+    bool isMet(const Light& light) const {
+        return !light.isAtPoint() &&
+               !(light.kind == Light::Kind::kDirectional && beam(light).isDelta());
+    }
+    // Radiance of a far light that is seen along a unit direction where nothing is in the way;
+    // black of parallel light. W m^-2 sr^-1.
+    Rgb farRadiance(const Light& light, const Vec3f& direction) const;
+    // Whether a ray that meets nothing sees light.
+    bool seesFarLight(const Vec3f& direction) const;
 
     // True when all triangles lie in one plane (to rounding), so that no light goes from one
     // surface to another.
@@ -71,7 +82,7 @@ class Scene {
   private:
     struct ShapeRecord;
     class Builder;
-    Scene(SceneDescription description, const std::string& isa);
+    Scene(SceneDescription description, const std::string& isa, const CancelCheck& cancel);
 
     // A triangle's first vertex and the edges from it.
     struct Corner {
@@ -84,6 +95,9 @@ class Scene {
     SceneDescription m_description;
     std::vector<ShapeRecord> m_shapes;
     std::vector<Light> m_lights;
+    std::size_t m_nearLightCount = 0;
+    std::vector<Beam> m_beams;
+    std::unique_ptr<const Environment> m_environment;
     std::vector<Notice> m_notices;
     Vec3d m_centre;
     Vec3d m_halfSize;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 #include "integrator/values/vec.h"
@@ -26,6 +27,9 @@ class TextureSource {
     // the finest level). Threads: any, at once; the value depends on the arguments only. Errors: a
     // failed look-up returns 0 and counts; it never throws.
     virtual Texel lookUp(std::int32_t index, Vec2f uv, float width) const = 0;
+
+    // Texels across and down of texture `index` over the unit square of uv, at the finest level.
+    virtual std::array<std::uint32_t, 2> texels(std::int32_t index) const = 0;
 
     // Failed look-ups so far.
     virtual std::uint64_t failureCount() const = 0;

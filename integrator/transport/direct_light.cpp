@@ -3,6 +3,7 @@
 #include "integrator/transport/direct_light.h"
 
 #include <algorithm>
+#include <span>
 
 #include "integrator/sampling/warps.h"
 
@@ -45,11 +46,28 @@ Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const L
                                     lights.pdfSolidAngle(last.from, last.direction, surface));
 }
 
+Rgb weightedFarLight(const Scene& scene, const LightSampler& lights, const LastScatter& last) {
+    Rgb sum;
+    const std::span<const Light> far = scene.farLights();
+    for (std::size_t i = 0; i < far.size(); ++i) {
+        const Rgb radiance = scene.farRadiance(far[i], last.direction);
+        if (isBlack(radiance)) continue;
+        sum +=
+            isDelta(last.lobe)
+                ? radiance
+                : radiance * powerHeuristic(last.pdfSolidAngle,
+                                            lights.farPdfSolidAngle(last.from, last.direction, i));
+    }
+    return sum;
+}
+
 void recordFirstHit(const Surface& surface, const Bsdf& bsdf, SampleRadiance& result) {
     result.coverage = 1.0f;
     result.albedo = bsdf.albedo();
     result.normal = bsdf.facingShadingNormal();
     result.firstPosition = surface.position;
+    result.firstShape = surface.shape;
+    result.firstMaterial = surface.material;
 }
 
 }  // namespace pm

@@ -49,6 +49,7 @@ struct SampleRadiance {
     Rgb albedo;
     Vec3f normal;
     Vec3f firstPosition;
+    std::uint32_t firstShape = 0, firstMaterial = 0;
     std::uint32_t rays = 0;
 
     Rgb& of(PathClass c) {
@@ -95,7 +96,10 @@ struct LastScatter {
 // estimation where that could have found it.
 Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const LastScatter& last);
 
-// First-hit layers: albedo, normal, position.
+// The same of lights that are infinitely far, where the path that came by `last` meets nothing.
+Rgb weightedFarLight(const Scene& scene, const LightSampler& lights, const LastScatter& last);
+
+// First hit: albedo, normal, position, and which surface it is.
 void recordFirstHit(const Surface& surface, const Bsdf& bsdf, SampleRadiance& result);
 
 }  // namespace pm

@@ -16,6 +16,7 @@
 #include "integrator/transport/path_integrator.h"
 #include "integrator/transport/photon_integrator.h"
 #include "integrator/transport/photon_pass.h"
+#include "integrator/transport/seen_lamps.h"
 #include "integrator/values/error.h"
 
 namespace pm {
@@ -32,6 +33,17 @@ std::uint64_t pixelKey(std::int32_t x, std::int32_t y) {
            static_cast<std::uint32_t>(x);
 }
 
+// What is sampled as one pixel: a pixel, or a group of twice its side.
+struct Cell {
+    std::int32_t x, y;  // its left and upper edge, pixels
+    bool isGroup;
+};
+
+// Where a ray leaves the camera, pixels of the frame.
+struct Place {
+    double x, y;
+};
+
 // Sums over a pixel's samples, in double and in sample order.
 struct PixelSums {
     std::array<double, 3> emission{}, direct{}, caustic{}, indirect{}, biasProbe{}, albedo{},
@@ -43,6 +55,17 @@ struct PixelSums {
 template <typename Triple>
 void add(std::array<double, 3>& sum, const Triple& value) {
     for (int c = 0; c < 3; ++c) sum[static_cast<std::size_t>(c)] += static_cast<double>(value[c]);
+}
+
+// ChannelLayout::contribution of a sample; 0 where it met nothing.
+float contributionOf(const SampleRadiance& s) {
+    if (s.coverage == 0.0f) return 0.0f;
+    return static_cast<float>(1 + (combineBits(s.firstShape, s.firstMaterial) >> 40));
+}
+
+// Of a pixel's group of 2 x 2, the first; also below 0.
+std::int32_t firstOfGroup(std::int32_t coordinate) {
+    return coordinate & ~1;
 }
 
 void addSeen(const Rgb& beauty, PixelSums& sums) {
@@ -68,6 +91,7 @@ ChannelLayout channelLayout(const RenderSettings& settings) {
     layout.depth = place(settings.wantDepth, 1);
     layout.biasProbe = place(settings.integrator == IntegratorKind::kPhoton, 3);
     layout.seen = place(settings.isAdaptive(), 5);
+    layout.contribution = place(settings.isAdaptive() && settings.hasGroups(), 1);
     return layout;
 }
 
@@ -77,12 +101,17 @@ SampleRun fixedSamples(const RenderSettings& settings, std::int32_t x, std::int3
         const std::uint32_t count = 1u << (2 * (settings.aaLevel - 2));
         return {pass / 2 * count, count, count};
     }
+    const bool isOfGroup = settings.hasGroups();
+    if (isOfGroup) {
+        x = firstOfGroup(x);
+        y = firstOfGroup(y);
+    }
     // The turn moves on by one from four passes to the next: so it falls on even and odd passes
     // alternately.
     const std::uint32_t period = std::min(kPassesOfALevel, settings.passes);
     const std::uint64_t turn = combineBits(settings.seed, pixelKey(x, y)) % period + pass / period;
     const std::uint32_t count = turn % period == pass % period ? 1 : 0;
-    return {pass / (2 * period), count, count};
+    return {pass / (2 * period), count, count, isOfGroup};
 }
 
 struct FrameRenderer::Impl {
@@ -93,14 +122,16 @@ struct FrameRenderer::Impl {
           plan(std::move(plan_)),
           camera(*scene, settings_.width, settings_.height),
           lights(*scene),
-          photons(*scene, camera, lights, plan, settings) {
+          photons(*scene, camera, lights, plan, settings),
+          seenLamps(*scene, lights, camera, settings_.width, settings_.height) {
         if (lights.isGuided()) lights.learn(findLitPlaces(*scene, camera, settings), settings.seed);
     }
 
-    SampleRadiance sample(std::int32_t x, std::int32_t y, std::uint32_t index,
+    Place placeInCell(const Cell& cell, Vec2f u) const;
+    SampleRadiance sample(std::uint32_t pass, const Cell& cell, std::uint32_t index,
                           NearestPhotons& scratch) const;
-    void renderPixel(std::int32_t x, std::int32_t y, SampleRun run, float* pixel,
-                     NearestPhotons& scratch, RenderCounters& local) const;
+    void renderCell(std::uint32_t pass, const Cell& cell, SampleRun run, float* pixel,
+                    NearestPhotons& scratch, RenderCounters& local) const;
     void writePixel(const PixelSums& sums, std::uint32_t samples, float* pixel) const;
 
     std::shared_ptr<const Scene> scene;
@@ -110,33 +141,52 @@ struct FrameRenderer::Impl {
     Camera camera;
     LightSampler lights;
     PhotonPass photons;
-    std::uint32_t pass = 0;
+    SeenLamps seenLamps;
+    std::uint32_t lastPass = 0;  // begun or added
     bool badValuesReported = false;
     mutable std::mutex mutex;  // of what follows
     mutable RenderCounters counters;
     std::vector<Notice> notices;
 };
 
-SampleRadiance FrameRenderer::Impl::sample(std::int32_t x, std::int32_t y, std::uint32_t index,
-                                           NearestPhotons& scratch) const {
-    // The even passes' samples are one low-discrepancy sequence, the odd passes' another: samples
-    // added later fall between those before, and the two halves' errors share nothing. Odd streams
-    // are photons'; see PhotonTracer.
-    Sampler sampler(settings.seed, 2 * std::uint64_t{pass % 2}, pixelKey(x, y), index);
-    const Vec2f jitter = sampler.next2D();
-    const double onX = x + static_cast<double>(jitter.x), onY = y + static_cast<double>(jitter.y);
-    const Ray ray = camera.ray(onX, onY);
-    if (settings.integrator == IntegratorKind::kPath)
-        return PathIntegrator(*scene, lights).sample(ray, sampler);
-    return PhotonIntegrator(*scene, lights, photons.maps())
-        .sample({static_cast<float>(onX), static_cast<float>(onY)}, ray, sampler, scratch);
+Place FrameRenderer::Impl::placeInCell(const Cell& cell, Vec2f u) const {
+    const double side = cell.isGroup ? 2.0 : 1.0;
+    return {cell.x + side * placeInPixel(settings.filter, u.x),
+            cell.y + side * placeInPixel(settings.filter, u.y)};
 }
 
-void FrameRenderer::Impl::renderPixel(std::int32_t x, std::int32_t y, SampleRun run, float* pixel,
-                                      NearestPhotons& scratch, RenderCounters& local) const {
+SampleRadiance FrameRenderer::Impl::sample(std::uint32_t pass, const Cell& cell,
+                                           std::uint32_t index, NearestPhotons& scratch) const {
+    // The even passes' samples are one low-discrepancy sequence, the odd passes' another: samples
+    // added later fall between those before, and the two halves' errors share nothing. Groups have
+    // sequences that no pixel has. Odd streams are photons'; see PhotonTracer.
+    const std::uint64_t stream = 2 * std::uint64_t{pass % 2} + (cell.isGroup ? 4 : 0);
+    Sampler sampler(settings.seed, stream, pixelKey(cell.x, cell.y), index);
+    const Place place = placeInCell(cell, sampler.next2D());
+    const Ray ray = camera.ray(place.x, place.y);
+    if (settings.integrator == IntegratorKind::kPath)
+        return PathIntegrator(*scene, lights).sample(ray, sampler);
+    const std::uint32_t lampPaths = seenLamps.paths(cell.x, cell.y);
+    SampleRadiance result = PhotonIntegrator(*scene, lights, photons.maps(pass))
+                                .sample({static_cast<float>(place.x), static_cast<float>(place.y)},
+                                        ray, sampler, scratch, lampPaths == 0);
+    // By a sequence of their own in the pixel.
+    for (std::uint32_t i = 0; i < lampPaths; ++i) {
+        Sampler lampSampler(settings.seed, stream + 8, pixelKey(cell.x, cell.y),
+                            index * lampPaths + i);
+        const Place seen = placeInCell(cell, lampSampler.next2D());
+        result.emission += seenLamps.along(camera.ray(seen.x, seen.y), lampSampler, result.rays) /
+                           static_cast<float>(lampPaths);
+    }
+    return result;
+}
+
+void FrameRenderer::Impl::renderCell(std::uint32_t pass, const Cell& cell, SampleRun run,
+                                     float* pixel, NearestPhotons& scratch,
+                                     RenderCounters& local) const {
     PixelSums sums;
     for (std::uint32_t i = 0; i < run.count; ++i) {
-        const SampleRadiance s = sample(x, y, run.first + i, scratch);
+        const SampleRadiance s = sample(pass, cell, run.first + i, scratch);
         local.rays += s.rays;
         if (!isFinite(s.emission) || !isFinite(s.direct) || !isFinite(s.caustic) ||
             !isFinite(s.indirect) || !isFinite(s.biasProbe)) {
@@ -149,6 +199,7 @@ void FrameRenderer::Impl::renderPixel(std::int32_t x, std::int32_t y, SampleRun 
         add(sums.indirect, s.indirect);
         add(sums.biasProbe, s.biasProbe);
         if (i < run.seen) addSeen(s.emission + s.direct + s.caustic + s.indirect, sums);
+        if (layout.contribution >= 0) pixel[layout.contribution] = contributionOf(s);
         sums.coverage += static_cast<double>(s.coverage);
         if (s.coverage == 0.0f) continue;
         add(sums.albedo, s.albedo);
@@ -201,14 +252,36 @@ ChannelLayout FrameRenderer::layout() const {
     return m_impl->layout;
 }
 
+void FrameRenderer::readPhotons(const PhotonSource& source) {
+    m_impl->photons.readFrom(source);
+}
+
+void FrameRenderer::tracePass(std::uint32_t pass, PhotonSink& sink,
+                              const std::atomic<bool>& cancelled,
+                              const std::function<void(double)>& progress) {
+    m_impl->photons.traceInto(sink, pass, cancelled, progress);
+}
+
 void FrameRenderer::beginPass(std::uint32_t pass, const std::atomic<bool>& cancelled,
                               const std::function<void(double)>& progress) {
-    m_impl->pass = pass;
+    m_impl->lastPass = pass;
     m_impl->photons.begin(pass, cancelled, progress);
+}
+
+void FrameRenderer::addPass(std::uint32_t pass, const std::atomic<bool>& cancelled,
+                            const std::function<void(double)>& progress) {
+    m_impl->lastPass = pass;
+    m_impl->photons.add(pass, cancelled, progress);
 }
 
 void FrameRenderer::renderRegion(const Rect& region, std::span<const SampleRun> runs,
                                  std::span<float> pixels,
+                                 const std::atomic<bool>& cancelled) const {
+    renderRegion(m_impl->lastPass, region, runs, pixels, cancelled);
+}
+
+void FrameRenderer::renderRegion(std::uint32_t pass, const Rect& region,
+                                 std::span<const SampleRun> runs, std::span<float> pixels,
                                  const std::atomic<bool>& cancelled) const {
     std::fill(pixels.begin(), pixels.end(), 0.0f);
     NearestPhotons scratch;
@@ -219,7 +292,20 @@ void FrameRenderer::renderRegion(const Rect& region, std::span<const SampleRun> 
         if (cancelled.load(std::memory_order_relaxed)) break;
         for (std::int32_t x = region.x0; x < region.x1; ++x, ++i) {
             if (runs[i].count == 0) continue;
-            m_impl->renderPixel(x, y, runs[i], pixels.data() + i * channels, scratch, local);
+            float* const pixel = pixels.data() + i * channels;
+            Cell cell{x, y, runs[i].isOfGroup};
+            if (cell.isGroup) {
+                cell.x = firstOfGroup(x);
+                cell.y = firstOfGroup(y);
+                const auto before = static_cast<std::size_t>(x - std::max(cell.x, region.x0)) +
+                                    static_cast<std::size_t>(y - std::max(cell.y, region.y0)) *
+                                        static_cast<std::size_t>(region.width());
+                if (before > 0) {
+                    std::copy_n(pixel - before * channels, channels, pixel);
+                    continue;
+                }
+            }
+            m_impl->renderCell(pass, cell, runs[i], pixel, scratch, local);
         }
     }
     const std::lock_guard lock(m_impl->mutex);
@@ -235,10 +321,9 @@ void FrameRenderer::renderRegion(const Rect& region, std::span<float> pixels,
     runs.reserve(weights.size());
     for (std::int32_t y = region.y0; y < region.y1; ++y)
         for (std::int32_t x = region.x0; x < region.x1; ++x)
-            runs.push_back(fixedSamples(m_impl->settings, x, y, m_impl->pass));
+            runs.push_back(fixedSamples(m_impl->settings, x, y, m_impl->lastPass));
     renderRegion(region, runs, pixels, cancelled);
-    std::ranges::transform(runs, weights.begin(),
-                           [](SampleRun run) { return static_cast<float>(run.count); });
+    std::ranges::transform(runs, weights.begin(), [](SampleRun run) { return run.weight(); });
 }
 
 RenderCounters FrameRenderer::counters() const {

@@ -17,6 +17,8 @@
 
 namespace pm {
 
+class PhotonSink;
+class PhotonSource;
 class Scene;
 
 // Where each layer stands in a pixel's floats. A layer that is not wanted has offset -1.
@@ -35,6 +37,9 @@ struct ChannelLayout {
     // 5, the last: of the samples that adaptive renders decide by (SampleRun::seen) the number, the
     // sums of the beauty's channels, and the sum over samples and channels of their squares.
     std::int32_t seen = -1;
+    // 1, after those and where groups may be divided (RenderSettings::hasGroups): what a group's
+    // sample shows, a whole number below 2^25 that is another for another object or material.
+    std::int32_t contribution = -1;
     std::int32_t count = 16;  // floats a pixel
 };
 
@@ -45,10 +50,16 @@ ChannelLayout channelLayout(const RenderSettings& settings);
 struct SampleRun {
     std::uint32_t first = 0, count = 0;
     std::uint32_t seen = 0;  // the first so many are told of in ChannelLayout::seen
+    // They are those of its group of 2 x 2 pixels, which is sampled as one pixel of twice the side
+    // is, by a sequence of its own. The group's other pixels have to have the same run.
+    bool isOfGroup = false;
+
+    // What the pixel counts as its own: of a group's samples a quarter.
+    float weight() const { return static_cast<float>(count) * (isOfGroup ? 0.25f : 1.0f); }
 };
 
-// What a render of a fixed level gives a pixel in a pass. At level 1, one sample in every four
-// passes, in turns an even and an odd one.
+// What a render of a fixed level gives a pixel in a pass. At levels 0 and 1, one sample of the
+// group or pixel in every four passes, in turns an even and an odd one.
 SampleRun fixedSamples(const RenderSettings& settings, std::int32_t x, std::int32_t y,
                        std::uint32_t pass);
 
@@ -81,19 +92,36 @@ class FrameRenderer {
     const Plan& plan() const;
     ChannelLayout layout() const;
 
+    // Before the first pass: from now on photons are read from `source` in place of being traced.
+    // It must outlive this, and hold what tracePass() wrote of the same lights, surfaces and plan.
+    void readPhotons(const PhotonSource& source);
+    // Traces the photons of pass `pass` into the sink, before those of the first call the pilots'.
+    // No map is built, no pixel can be rendered. The rest as beginPass.
+    void tracePass(std::uint32_t pass, PhotonSink& sink, const std::atomic<bool>& cancelled,
+                   const std::function<void(double)>& progress);
+
     // Traces the photons of pass `pass` and builds its maps, in parallel in the calling TBB arena;
     // the maps of the pass before are dropped. progress gets a fraction in [0,1], from any thread
     // but one call at a time; may be empty. Throws Error(kCancelled) soon after `cancelled` is set.
     void beginPass(std::uint32_t pass, const std::atomic<bool>& cancelled,
                    const std::function<void(double)>& progress);
 
-    // Renders the pixels of `region` for the pass that was begun. runs: the samples of each pixel,
+    // The same, but the maps of the passes that were begun or added before stay as well, so that
+    // their pixels may be rendered in any order. Not while anything is rendered.
+    void addPass(std::uint32_t pass, const std::atomic<bool>& cancelled,
+                 const std::function<void(double)>& progress);
+
+    // Renders the pixels of `region` for a pass that was begun or added and whose maps were not
+    // dropped; without a number for the one that came last. runs: the samples of each pixel,
     // row by row, may be none; those of a pixel's later passes have to follow on. pixels:
     // layout().count floats a pixel: the mean over its samples of this pass, 0 where it has none.
+    // A group is rendered once, by its pixels in the region.
     // Threads: any, at once. Returns early, with the rest 0, soon after `cancelled` is set.
+    void renderRegion(std::uint32_t pass, const Rect& region, std::span<const SampleRun> runs,
+                      std::span<float> pixels, const std::atomic<bool>& cancelled) const;
     void renderRegion(const Rect& region, std::span<const SampleRun> runs, std::span<float> pixels,
                       const std::atomic<bool>& cancelled) const;
-    // The same with fixedSamples(); weights: the number of each pixel's samples.
+    // The same with fixedSamples(); weights: of each pixel's run.
     void renderRegion(const Rect& region, std::span<float> pixels, std::span<float> weights,
                       const std::atomic<bool>& cancelled) const;
 

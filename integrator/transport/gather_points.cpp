@@ -29,7 +29,8 @@ constexpr float kNormalCosine = 0.9f;
 // Height of a point over the plane through the place, relative to its distance: more is another
 // surface.
 constexpr float kFlatness = 0.1f;
-// Cells beyond each side of the frame that hold points too.
+// Cells beyond each side of the frame that hold points too: for samples at the frame's edge and
+// those up to 3 pixels beyond, of a group of pixels with a wide filter.
 constexpr std::int32_t kMargin = 3;
 static_assert(static_cast<float>(kMargin) > kScreenRadius);
 // So many cells to a side share one sequence of gather directions, in parts: together their rays
@@ -121,7 +122,10 @@ GatherPoints::Value GatherPoints::compute(std::size_t index, std::uint64_t& rays
         if (dot(direction, geometricNormal) <= 0.0f) continue;
         const Gathered found = finalGather(m_scene, m_sites, {start, direction}, sampler);
         rays += found.rays;
-        if (!found.hitAny) continue;
+        if (!found.hitAny) {
+            lamps += m_scene.seesFarLight(direction);
+            continue;
+        }
         lamps += found.first.light != kNoLight && dot(direction, found.first.geometricNormal) < 0;
         const float distance = length(found.first.position - point.position);
         clearance = std::min(clearance, std::max(distance, m_planeTolerance));

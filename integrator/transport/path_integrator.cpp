@@ -15,7 +15,11 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
     while (true) {
         Surface surface;
         ++result.rays;
-        if (!m_scene.intersect(path.ray, surface)) return result;
+        if (!m_scene.intersect(path.ray, surface)) {
+            result.of(state.classify()) +=
+                path.throughput * weightedFarLight(m_scene, m_lights, last);
+            return result;
+        }
         result.of(state.classify()) += path.throughput * weightedEmission(m_lights, surface, last);
         const Bsdf bsdf(m_scene, surface, -path.ray.direction, Transport::kRadiance,
                         path.throughput);

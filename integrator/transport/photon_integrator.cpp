@@ -21,7 +21,7 @@ constexpr std::uint32_t kOwnGatherRays = 4;
 }  // namespace
 
 SampleRadiance PhotonIntegrator::sample(Vec2f screen, const Ray& ray, Sampler& sampler,
-                                        NearestPhotons& scratch) const {
+                                        NearestPhotons& scratch, bool withSeenLamps) const {
     SampleRadiance result;
     PathState state;
     PathWalk path(ray);
@@ -30,8 +30,14 @@ SampleRadiance PhotonIntegrator::sample(Vec2f screen, const Ray& ray, Sampler& s
     for (bool first = true;; first = false) {
         Surface surface;
         ++result.rays;
-        if (!m_scene.intersect(path.ray, surface)) return result;
-        result.of(state.classify()) += path.throughput * weightedEmission(m_lights, surface, last);
+        if (!m_scene.intersect(path.ray, surface)) {
+            result.of(state.classify()) +=
+                path.throughput * weightedFarLight(m_scene, m_lights, last);
+            return result;
+        }
+        const PathClass found = state.classify();
+        if (withSeenLamps || found != PathClass::kEmission)
+            result.of(found) += path.throughput * weightedEmission(m_lights, surface, last);
         const Bsdf bsdf(m_scene, surface, -path.ray.direction, Transport::kRadiance,
                         path.throughput);
         if (first) recordFirstHit(surface, bsdf, result);
@@ -116,10 +122,10 @@ void PhotonIntegrator::followDiffuse(const Surface& surface, const BsdfSample& s
         ++result.rays;
         found.hitAny = m_scene.intersect(ray, found.first);
     }
-    if (found.hitAny && still.lamps == LampStrategy::kBoth)
-        result.direct += weight * weightedEmission(m_lights, found.first,
-                                                   {surface, sample.direction, sample.lobe,
-                                                    sample.pdfSolidAngle});
+    if (still.lamps != LampStrategy::kBoth) return;
+    const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle};
+    result.direct += weight * (found.hitAny ? weightedEmission(m_lights, found.first, last)
+                                            : weightedFarLight(m_scene, m_lights, last));
 }
 
 }  // namespace pm

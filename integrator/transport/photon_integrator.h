@@ -32,9 +32,10 @@ class PhotonIntegrator {
     PhotonIntegrator(const Scene& scene, const LightSampler& lights, const PhotonMaps& maps)
         : m_scene(scene), m_lights(lights), m_maps(maps) {}
 
-    // screen: where the ray leaves the camera, pixels.
-    SampleRadiance sample(Vec2f screen, const Ray& ray, Sampler& sampler,
-                          NearestPhotons& scratch) const;
+    // screen: where the ray leaves the camera, pixels. withSeenLamps: false where emission is left
+    // to paths of SeenLamps.
+    SampleRadiance sample(Vec2f screen, const Ray& ray, Sampler& sampler, NearestPhotons& scratch,
+                          bool withSeenLamps = true) const;
 
   private:
     // Which part of a diffuse reflection a ray along the lobe still has to find.

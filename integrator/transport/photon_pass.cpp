@@ -36,6 +36,11 @@ PhotonPass::PhotonPass(const Scene& scene, const Camera& camera, const LightSamp
 void PhotonPass::begin(std::uint32_t pass, const std::atomic<bool>& cancelled,
                        const std::function<void(double)>& progress) {
     dropMaps();
+    add(pass, cancelled, progress);
+}
+
+void PhotonPass::add(std::uint32_t pass, const std::atomic<bool>& cancelled,
+                     const std::function<void(double)>& progress) {
     if (!m_plan.tracePhotons) return;
     Control control{cancelled, progress};
     if (!m_haveRadii) findRadii(control);
@@ -43,15 +48,42 @@ void PhotonPass::begin(std::uint32_t pass, const std::atomic<bool>& cancelled,
     buildMaps(pass, control);
 }
 
+void PhotonPass::traceInto(PhotonSink& sink, std::uint32_t pass, const std::atomic<bool>& cancelled,
+                           const std::function<void(double)>& progress) {
+    Control control{cancelled, progress};
+    const auto keep = [&](PhotonKind kind, std::uint64_t count, std::uint32_t ofPass) {
+        sink.write(kind, ofPass, trace(kind, count, ofPass, control), cancelled);
+    };
+    if (!m_pilotsAreKept) {
+        if (m_plan.globalMap) keep(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0);
+        if (m_plan.causticMap) {
+            aim(control);
+            keep(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), 0);
+        }
+        m_pilotsAreKept = true;
+        control.photonsBefore = 0;
+    }
+    if (m_plan.causticMap) keep(PhotonKind::kCaustic, m_plan.causticPhotons, pass);
+    if (m_plan.globalMap) keep(PhotonKind::kGlobal, m_plan.globalPhotons, pass);
+}
+
+PhotonMaps PhotonPass::maps(std::uint32_t pass) const {
+    for (const PassMaps& held : m_held)
+        if (held.pass == pass) return held.view();
+    return {};
+}
+
+std::uint64_t PhotonPass::PassMaps::memoryBytes() const {
+    const auto bytesOf = [](const auto& part) { return part ? part->memoryBytes() : 0; };
+    return bytesOf(global) + bytesOf(sites) + bytesOf(points) + bytesOf(descendedPhotons) +
+           bytesOf(caustic);
+}
+
 void PhotonPass::dropMaps() {
     const std::lock_guard lock(m_mutex);
-    if (m_points) m_gatherRays += m_points->raysTraced();
-    m_points.reset();
-    m_descended.reset();
-    m_descendedMap.reset();
-    m_sites.reset();
-    m_globalMap.reset();
-    m_causticMap.reset();
+    for (const PassMaps& held : m_held)
+        if (held.points) m_gatherRays += held.points->raysTraced();
+    m_held.clear();
 }
 
 PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
@@ -69,7 +101,10 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
         request.descent = m_plan.descent;
     }
     request.withoutCaustics = m_plan.descent > 0.0f;
-    PhotonTraceResult result = tracePhotons(m_scene, m_lights, request, control.cancelled, part);
+    PhotonTraceResult result =
+        m_source ? m_source->read(kind, pass, control.cancelled)
+                 : tracePhotons(m_scene, m_lights, request, control.cancelled, part);
+    if (m_source) part(1.0);
     control.photonsBefore += count;
     this->count(kind, result.balance);
     const std::lock_guard lock(m_mutex);
@@ -94,73 +129,72 @@ void PhotonPass::findRadii(Control& control) {
     // Where a pilot finds next to nothing, estimates reach a hundredth of the scene.
     const auto fallback = static_cast<float>(0.01 * m_scene.radius());
     const std::uint32_t estimatePhotons = m_settings.estimatePhotons;
+    const CancelCheck check(control.cancelled);
     if (m_plan.globalMap)
         m_globalRadius =
             PilotRadius(
                 trace(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0, control).photons,
-                estimatePhotons, fallback)
+                estimatePhotons, fallback, check)
                 .typical();
     if (m_plan.causticMap) {
-        aim(control);
+        if (!m_source) aim(control);
         PhotonTraceResult pilot =
             trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), 0, control);
-        m_causticRadius =
-            std::make_unique<CausticRadius>(std::move(pilot.photons), estimatePhotons, fallback);
+        m_causticRadius = std::make_unique<CausticRadius>(std::move(pilot.photons), estimatePhotons,
+                                                          fallback, check);
         m_patches = std::make_unique<SurfacePatches>(m_scene, m_causticRadius->typical());
         if (m_plan.descent > 0.0f)
             m_descendedRadius = PilotRadius(std::move(pilot.descended),
-                                            kDescendedPhotons * estimatePhotons, fallback)
+                                            kDescendedPhotons * estimatePhotons, fallback, check)
                                     .typical();
     }
     m_haveRadii = true;
 }
 
-void PhotonPass::buildCaustics(std::uint32_t pass, Control& control) {
-    PhotonTraceResult traced = trace(PhotonKind::kCaustic, m_plan.causticPhotons, pass, control);
+void PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
+    PhotonTraceResult traced =
+        trace(PhotonKind::kCaustic, m_plan.causticPhotons, maps.pass, control);
     const Stopwatch watch;
-    const float factor = radiusFactor(pass);
+    const CancelCheck check(control.cancelled);
+    const float factor = radiusFactor(maps.pass);
     m_patches->makeRoom();
-    m_causticMap = std::make_unique<CausticMap>(std::move(traced.photons), *m_causticRadius, factor,
-                                                m_patches.get());
+    maps.caustic = std::make_unique<CausticMap>(std::move(traced.photons), *m_causticRadius, factor,
+                                                m_patches.get(), check);
     if (m_plan.descent > 0.0f) {
-        m_descendedMap = std::make_unique<PhotonMap>(std::move(traced.descended));
-        m_descended =
-            std::make_unique<SurfaceEstimate>(m_scene, *m_descendedMap, m_descendedRadius * factor);
+        maps.descendedPhotons = std::make_unique<PhotonMap>(std::move(traced.descended), check);
+        maps.descended = std::make_unique<SurfaceEstimate>(m_scene, *maps.descendedPhotons,
+                                                           m_descendedRadius * factor);
     }
     const std::lock_guard lock(m_mutex);
     m_mapSeconds += watch.seconds();
 }
 
-void PhotonPass::buildIndirect(std::uint32_t pass, Control& control) {
-    PhotonTraceResult traced = trace(PhotonKind::kGlobal, m_plan.globalPhotons, pass, control);
+void PhotonPass::buildIndirect(PassMaps& maps, Control& control) {
+    PhotonTraceResult traced = trace(PhotonKind::kGlobal, m_plan.globalPhotons, maps.pass, control);
     const Stopwatch watch;
-    const float factor = radiusFactor(pass);
-    m_globalMap = std::make_unique<PhotonMap>(std::move(traced.photons));
-    m_sites = std::make_unique<IrradianceSites>(m_scene, *m_globalMap, m_globalRadius * factor);
-    const GatherPoints::Request request{m_settings.width,
-                                        m_settings.height,
-                                        m_plan.gatherSpacing,
-                                        m_plan.gatherRays,
-                                        factor,
-                                        m_settings.seed,
-                                        pass,
-                                        m_descended.get()};
-    auto points =
-        std::make_unique<GatherPoints>(m_scene, m_camera, *m_sites, request, control.cancelled);
+    const float factor = radiusFactor(maps.pass);
+    maps.global =
+        std::make_unique<PhotonMap>(std::move(traced.photons), CancelCheck(control.cancelled));
+    maps.sites = std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor);
+    const GatherPoints::Request request{
+        m_settings.width, m_settings.height, m_plan.gatherSpacing, m_plan.gatherRays, factor,
+        m_settings.seed,  maps.pass,         maps.descended.get()};
+    maps.points =
+        std::make_unique<GatherPoints>(m_scene, m_camera, *maps.sites, request, control.cancelled);
     if (control.cancelled.load()) throw Error(Status::kCancelled, "cancelled while gathering");
     const std::lock_guard lock(m_mutex);
-    m_points = std::move(points);
     m_mapSeconds += watch.seconds();
 }
 
 void PhotonPass::buildMaps(std::uint32_t pass, Control& control) {
-    if (m_plan.causticMap) buildCaustics(pass, control);
-    if (m_plan.globalMap) buildIndirect(pass, control);
-    const auto bytesOf = [](const auto& part) { return part ? part->memoryBytes() : 0; };
-    const std::uint64_t bytes = bytesOf(m_globalMap) + bytesOf(m_sites) + bytesOf(m_points) +
-                                bytesOf(m_descendedMap) + bytesOf(m_causticMap) +
-                                bytesOf(m_causticRadius);
+    PassMaps maps;
+    maps.pass = pass;
+    if (m_plan.causticMap) buildCaustics(maps, control);
+    if (m_plan.globalMap) buildIndirect(maps, control);
     const std::lock_guard lock(m_mutex);
+    m_held.push_back(std::move(maps));
+    std::uint64_t bytes = m_causticRadius ? m_causticRadius->memoryBytes() : 0;
+    for (const PassMaps& held : m_held) bytes += held.memoryBytes();
     m_peakMapBytes = std::max(m_peakMapBytes, bytes);
 }
 
@@ -188,7 +222,9 @@ void PhotonPass::count(PhotonKind kind, const PhotonBalance& balance) {
 
 void PhotonPass::addTo(RenderCounters& counters) const {
     const std::lock_guard lock(m_mutex);
-    counters.rays += m_allKinds.rays + m_gatherRays + (m_points ? m_points->raysTraced() : 0);
+    counters.rays += m_allKinds.rays + m_gatherRays;
+    for (const PassMaps& held : m_held)
+        if (held.points) counters.rays += held.points->raysTraced();
     counters.photonsEmitted += m_allKinds.emitted;
     counters.photonsLost += m_allKinds.lost;
     counters.fluxEmitted += m_global.fluxEmitted;

@@ -13,6 +13,7 @@
 #include "integrator/photons/caustic_map.h"
 #include "integrator/photons/irradiance_sites.h"
 #include "integrator/photons/photon_map.h"
+#include "integrator/photons/photon_store.h"
 #include "integrator/photons/photon_tracer.h"
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
@@ -35,14 +36,21 @@ class PhotonPass {
     PhotonPass(const Scene& scene, const Camera& camera, const LightSampler& lights,
                const Plan& plan, const RenderSettings& settings);
 
-    // As FrameRenderer::beginPass.
+    // As FrameRenderer::readPhotons and tracePass.
+    void readFrom(const PhotonSource& source) { m_source = &source; }
+    void traceInto(PhotonSink& sink, std::uint32_t pass, const std::atomic<bool>& cancelled,
+                   const std::function<void(double)>& progress);
+
+    // As FrameRenderer::beginPass and addPass.
     void begin(std::uint32_t pass, const std::atomic<bool>& cancelled,
                const std::function<void(double)>& progress);
+    void add(std::uint32_t pass, const std::atomic<bool>& cancelled,
+             const std::function<void(double)>& progress);
 
-    // Of the pass that was begun; valid until the next begin.
-    PhotonMaps maps() const {
-        return {m_sites.get(), m_points.get(), m_descended.get(), m_causticMap.get()};
-    }
+    // Of a pass that was begun or added, the one that came last where none is named; none for
+    // another. Valid until the next begin.
+    PhotonMaps maps(std::uint32_t pass) const;
+    PhotonMaps maps() const { return m_held.empty() ? PhotonMaps{} : m_held.back().view(); }
 
     // Threads: any time.
     void addTo(RenderCounters& counters) const;
@@ -55,10 +63,26 @@ class PhotonPass {
         const std::function<void(double)>& progress;
         std::uint64_t photonsBefore = 0;
     };
+    // The maps of one pass; null where the plan has none.
+    struct PassMaps {
+        std::uint32_t pass = 0;
+        std::unique_ptr<PhotonMap> global;
+        std::unique_ptr<IrradianceSites> sites;  // refers to global
+        std::unique_ptr<PhotonMap> descendedPhotons;
+        std::unique_ptr<SurfaceEstimate> descended;  // refers to descendedPhotons
+        std::unique_ptr<GatherPoints> points;        // refers to sites and descended
+        std::unique_ptr<CausticMap> caustic;         // refers to m_causticRadius and m_patches
+
+        PhotonMaps view() const {
+            return {sites.get(), points.get(), descended.get(), caustic.get()};
+        }
+        std::uint64_t memoryBytes() const;
+    };
+    // Photons of one kind, traced, or read where there is a source of them.
     PhotonTraceResult trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
                             Control& control);
-    void buildCaustics(std::uint32_t pass, Control& control);
-    void buildIndirect(std::uint32_t pass, Control& control);
+    void buildCaustics(PassMaps& maps, Control& control);
+    void buildIndirect(PassMaps& maps, Control& control);
     void aim(Control& control);
     void findRadii(Control& control);
     void buildMaps(std::uint32_t pass, Control& control);
@@ -71,24 +95,20 @@ class PhotonPass {
     const LightSampler& m_lights;
     const Plan& m_plan;
     const RenderSettings& m_settings;
+    const PhotonSource* m_source = nullptr;  // null: photons are traced
+    bool m_pilotsAreKept = false;            // by the sink
     // Of the first pass, scene units.
     bool m_haveRadii = false;
     float m_globalRadius = 0.0f, m_descendedRadius = 0.0f;
     std::unique_ptr<AimedEmission> m_aim;  // of caustic photons
     std::unique_ptr<CausticRadius> m_causticRadius;
     std::unique_ptr<SurfacePatches> m_patches;  // of caustic estimates; filled as the passes go on
-    // Of this pass.
-    std::unique_ptr<PhotonMap> m_globalMap;
-    std::unique_ptr<IrradianceSites> m_sites;  // refers to m_globalMap
-    std::unique_ptr<PhotonMap> m_descendedMap;
-    std::unique_ptr<SurfaceEstimate> m_descended;  // refers to m_descendedMap
-    std::unique_ptr<GatherPoints> m_points;        // refers to m_sites and m_descended
-    std::unique_ptr<CausticMap> m_causticMap;      // refers to m_causticRadius and m_patches
 
-    mutable std::mutex m_mutex;  // of what follows
+    mutable std::mutex m_mutex;    // of what follows
+    std::vector<PassMaps> m_held;  // of the pass begun last and of those added since
     PhotonBalance m_allKinds, m_global;
     std::uint64_t m_storedCaustic = 0, m_peakMapBytes = 0;
-    std::uint64_t m_gatherRays = 0;  // of the passes before this one
+    std::uint64_t m_gatherRays = 0;  // of the passes whose maps were dropped
     double m_photonSeconds = 0, m_mapSeconds = 0;
     std::vector<Notice> m_notices;
 };

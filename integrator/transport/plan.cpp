@@ -34,8 +34,9 @@ struct SceneTraits {
     bool specular = false;  // some surface has another lobe
     bool glossy = false;
     bool lights = false;
-    bool pointLights = false;
-    bool flat = false;  // all in one plane: no light from surface to surface
+    bool pointLights = false;  // of those that no ray meets: point lights, spots, parallel light
+    bool farLights = false;    // of those that rays meet
+    bool flat = false;         // all in one plane: no light from surface to surface
 };
 
 SceneTraits findTraits(const Scene& scene) {
@@ -53,7 +54,8 @@ SceneTraits findTraits(const Scene& scene) {
         }
     traits.lights = !scene.lights().empty();
     for (const Light& light : scene.lights())
-        traits.pointLights |= light.kind == Light::Kind::kPoint;
+        (scene.isMet(light) ? traits.farLights : traits.pointLights) |=
+            light.isAtPoint() || light.isFar();
     traits.flat = scene.isFlat();
     return traits;
 }
@@ -70,11 +72,9 @@ std::uint64_t photonsOf(const RenderSettings& settings, std::uint64_t ofSmallFra
 void estimateCosts(const RenderSettings& settings, Plan& plan) {
     constexpr double kPerSample = 0.6e-6, kPerSampleOfCaustics = 0.9e-6, kPerGatherRay = 0.5e-6;
     constexpr double kPerGlobalPhoton = 3e-6, kPerCausticPhoton = 4e-6;
-    const double descended = static_cast<double>(plan.descent) * kExpectedArrivals;
     const auto global = static_cast<double>(plan.globalPhotons);
     const auto caustic = static_cast<double>(plan.causticPhotons);
-    plan.mapBytes = static_cast<std::uint64_t>(
-        (global * kExpectedArrivals + caustic * (1.0 + descended)) * PhotonMap::kBytesPerPhoton);
+    plan.mapBytes = plan.landingsPerPass() * PhotonMap::kBytesPerPhoton;
     const double samples = static_cast<double>(settings.window.area()) *
                            std::pow(4.0, static_cast<double>(settings.aaLevel) - 2.0);
     plan.processorSecondsPerPass =
@@ -94,13 +94,20 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     const SceneTraits traits = findTraits(scene);
     if (traits.glossy && traits.pointLights)
         plan.notices.push_back({NoticeCode::kNotCovered,
-                                "light of point lights that reaches a glossy lobe by way of a "
-                                "mirror, glass or another glossy surface is not rendered"});
+                                "light of point lights, spots and suns without a disc that reaches "
+                                "a glossy lobe by way of a mirror, glass or another glossy surface "
+                                "is not rendered"});
+    if (settings.hasGroups())
+        plan.notices.push_back({NoticeCode::kNotCovered,
+                                "anti-aliasing begins at level 0: where 2 x 2 pixels share their "
+                                "samples, the estimated error covers neither the blur nor what "
+                                "few samples miss"});
     if (settings.integrator == IntegratorKind::kPath) {
         plan.reasons.push_back("path tracing: asked for by --integrator path; no photons");
         if (traits.specular && traits.diffuse && traits.pointLights)
             plan.notices.push_back({NoticeCode::kNotCovered,
-                                    "caustics of point lights can't be found by path tracing"});
+                                    "caustics of point lights, spots and suns without a disc can't "
+                                    "be found by path tracing"});
         return plan;
     }
     const bool everything = settings.plan == PlanKind::kEverything;
@@ -116,6 +123,10 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     plan.reasons.push_back(
         "direct light: next-event estimation, weighted against rays along the diffuse lobe where "
         "lamps fill much of the view");
+    if (traits.farLights)
+        plan.reasons.push_back(
+            "light from afar: seen by rays that meet nothing; its photons enter by the scene's "
+            "box");
     if (scene.lights().size() > LightSampler::kFewLights)
         plan.reasons.push_back(fmt::format(
             "lamps: {}, so each place has its own choice of them, by a tree and by which of them "
@@ -159,6 +170,12 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     }
     estimateCosts(settings, plan);
     return plan;
+}
+
+std::uint64_t Plan::landingsPerPass() const {
+    const double ofCaustic = 1.0 + static_cast<double>(descent) * kExpectedArrivals;
+    return globalPhotons * kExpectedArrivals +
+           static_cast<std::uint64_t>(static_cast<double>(causticPhotons) * ofCaustic);
 }
 
 std::uint64_t Plan::globalPilotPhotons() const {

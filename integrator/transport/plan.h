@@ -32,6 +32,8 @@ struct Plan {
     std::vector<Notice> notices;
 
     std::uint64_t photonsPerPass() const { return globalPhotons + causticPhotons; }
+    // That those leave where they land, at most as a rule.
+    std::uint64_t landingsPerPass() const;
 
     // Emitted once a render, to find the radii of the estimates.
     std::uint64_t globalPilotPhotons() const;

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 
+#include "integrator/sampling/pixel_filter.h"
 #include "integrator/values/rect.h"
 
 namespace pm {
@@ -24,7 +25,10 @@ struct RenderSettings {
     std::uint32_t estimatePhotons = 50;  // k of the k-nearest estimates, >= 2
     std::uint32_t gatherRays = 0;        // of each gather point; 0 = chosen by the plan
     std::uint32_t passes = 4;            // >= 1
-    std::uint32_t aaLevel = 3;      // 1..6: 4^(level-1) samples a pixel in four passes, at least
+    PixelFilter filter = PixelFilter::kBox;
+    // 0..6: 4^(level-1) samples a pixel in four passes, at least; at level 0 the four pixels of a
+    // group share them.
+    std::uint32_t aaLevel = 3;
     std::uint32_t aaLevelMost = 0;  // as well, at most, where they differ; 0 = aaLevel, everywhere
     double aaThreshold = 0.01;      // SampleRule::threshold, > 0
     std::uint64_t seed = 1;
@@ -34,6 +38,8 @@ struct RenderSettings {
 
     // Whether pixels get unlike numbers of samples, by what they show.
     bool isAdaptive() const { return aaLevelMost > aaLevel; }
+    // Whether groups of 2 x 2 pixels, on even coordinates of the frame, begin as one pixel each.
+    bool hasGroups() const { return aaLevel == 0; }
 };
 
 }  // namespace pm

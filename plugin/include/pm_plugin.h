@@ -45,6 +45,7 @@
  * Slow hosts
  *   What waits to be delivered is bounded: progress and what comes again for one bucket are merged
  *   into the latest, and a bucketStarted is left out while an earlier event of its bucket waits.
+ *   Pixels don't queue but by buckets (PMR_DELIVERY_BUCKETS), where workers wait for the host.
  */
 #ifndef PM_PLUGIN_H
 #define PM_PLUGIN_H
@@ -95,8 +96,8 @@ typedef int32_t PmrStatus;
 #define PMR_ERROR_TIMEOUT (-11)     /* waitRender or pollRender: nothing yet */
 #define PMR_ERROR_ABI (-12)         /* this ABI version is not offered */
 #define PMR_ERROR_NAME (-13)        /* no setting or layer of that name */
-#define PMR_ERROR_FILE (-14)        /* a checkpoint or part is damaged, or is none */
-#define PMR_ERROR_MISMATCH (-15)    /* a checkpoint or part is of another picture */
+#define PMR_ERROR_FILE (-14)        /* a checkpoint, part or photon map is damaged, or is none */
+#define PMR_ERROR_MISMATCH (-15)    /* one of these is of another picture or of other photons */
 
 /* ---- Handles: opaque; never dereferenced by the host -------------------------------------- */
 
@@ -270,7 +271,13 @@ typedef struct PmrInstanceDesc {
 #define PMR_LIGHT_DIRECTIONAL \
     2 /* irradiance, W/m^2, on a surface that faces it; travels along -z */
 
-/* Lights without area. Area lights are instances whose material emits. */
+/* Lights without area. Area lights are instances whose material emits. The transform of a spot or
+ * directional light is a rotation and a translation; of a point light only the translation counts.
+ *
+ * A spot has its whole intensity up to coneAngle - coneFalloff from its axis and none beyond
+ * coneAngle; between them it fades as 3 t^2 - 2 t^3, t going from 0 to 1 with the cosine.
+ * A directional light with an angularRadius is an even disc in the sky that rays see where they
+ * meet nothing; below 1e-4 rad it shines along one direction and isn't seen. */
 typedef struct PmrLightDesc {
     uint64_t size;
     int32_t kind;
@@ -278,18 +285,21 @@ typedef struct PmrLightDesc {
     const double* transforms; /* 12 x transformCount; null = identity */
     uint64_t transformCount;
     float emission[3];
-    float coneAngle;     /* spot: half angle of the whole cone */
-    float coneFalloff;   /* spot: angle inside it over which the light fades */
-    float angularRadius; /* directional: half angle of the disc */
+    float coneAngle;     /* spot: half angle of the whole cone, radians, in (0, pi] */
+    float coneFalloff;   /* spot: angle inside it over which the light fades, in [0, coneAngle] */
+    float angularRadius; /* directional: half angle of the disc, radians, in [0, pi/2] */
     const char* name;
 } PmrLightDesc;
 
+/* Light from infinitely far all around, seen by rays that meet nothing; it has no coverage. Set
+ * again, the last counts. Of the texture the middle lies towards -z, the right half towards +x, the
+ * upper edge towards +y. */
 typedef struct PmrEnvironmentDesc {
     uint64_t size;
-    float radiance[3];
+    float radiance[3]; /* W m^-2 sr^-1, times the texture where there is one */
     float reserved;
     PmrTexture texture;       /* latitude-longitude, may be null */
-    const double* transforms; /* rotation */
+    const double* transforms; /* 12 x transformCount, a rotation; null = identity */
     uint64_t transformCount;
 } PmrEnvironmentDesc;
 
@@ -371,6 +381,19 @@ typedef struct PmrBucketInfo {
 #define PMR_RENDER_CREATED 0
 #define PMR_RENDER_RUNNING 1
 #define PMR_RENDER_FINISHED 2
+
+/* What becomes of the pixels; follows from the setting delivery, the memory limit and what the
+ * render needs, never from time. The picture is the same.
+ *   FRAME: all of them are kept until destroyRender, and can be read at any time.
+ *   BUCKETS: a bucket is rendered with all its passes; its bucketStarted and bucketFinished come
+ *   once, in the bucket order. readPixels works inside bucketFinished only, from any thread until
+ *   that returns, and knows that bucket's pixels: others are 0. Then they are forgotten. Some
+ *   buckets (a few for each thread) may wait for the host; when it takes none the workers wait,
+ *   and so a host that is slow slows the render down. In the poll mode waitRender is refused while
+ *   the render runs (PMR_ERROR_STATE). What was finished before a cancel is still delivered.
+ *   sampleCount is that of all passes, passIndex that of the last. */
+#define PMR_DELIVERY_FRAME 0
+#define PMR_DELIVERY_BUCKETS 1
 
 /* Why a render ended. */
 #define PMR_STOP_NONE 0         /* it has not */
@@ -496,7 +519,9 @@ typedef struct PmrApi {
     PmrStatus(PMR_CALL* renderStopReason)(PmrRender render, int32_t* reason);
 
     /* Pieces of a picture: docs/farm.md. A render makes a part, keeps a checkpoint and goes on from
-     * one by its settings buckets, part, checkpoint, resume and hostIdentity. What follows puts
+     * one by its settings buckets, part, checkpoint, resume and hostIdentity; by photonMap it reads
+     * photons in place of tracing them. With photonsOnly it traces them into that file and makes no
+     * picture: no bucket events, no layers, PMR_ERROR_NAME from readPixels. What follows puts
      * parts together without the scene; one call on a merge at a time. These functions came after
      * renderStopReason. */
     PmrStatus(PMR_CALL* createMerge)(PmrContext context, PmrMerge* merge);
@@ -520,6 +545,18 @@ typedef struct PmrApi {
     PmrStatus(PMR_CALL* mergeStatistics)(PmrMerge merge, char* buffer, uint64_t capacity,
                                          uint64_t* needed);
     PmrStatus(PMR_CALL* releaseMerge)(PmrMerge merge);
+
+    /* PMR_DELIVERY_*: of a render that was started, or as it would be with the settings as they
+     * are; so a host that sets delivery to "fit" learns before startRender whether it has to take
+     * pixels inside bucketFinished. Errors: PMR_ERROR_ARGUMENT as startRender gives it. It came
+     * after releaseMerge. */
+    PmrStatus(PMR_CALL* renderDelivery)(PmrRender render, int32_t* delivery);
+
+    /* With 1, createMesh, createCage and commitScene of this context, whether they run now or are
+     * called later, return PMR_ERROR_CANCELLED soon and make nothing, until it is called with 0; a
+     * scene then stays open and may be committed again. Any thread, any time, any number. Came
+     * after renderDelivery. */
+    PmrStatus(PMR_CALL* cancelBuilds)(PmrContext context, int32_t on);
 } PmrApi;
 
 /* The one symbol. Returns PMR_ERROR_ABI when that version is not offered. Any thread. */

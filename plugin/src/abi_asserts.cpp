@@ -181,7 +181,7 @@ static_assert(offsetof(PmrRenderDesc, bucketStarted) == 40);
 static_assert(offsetof(PmrRenderDesc, bucketFinished) == 48);
 static_assert(offsetof(PmrRenderDesc, finished) == 56);
 
-static_assert(sizeof(PmrApi) == 456);
+static_assert(sizeof(PmrApi) == 472);
 static_assert(offsetof(PmrApi, versionText) == 16);
 static_assert(offsetof(PmrApi, statusText) == 24);
 static_assert(offsetof(PmrApi, settingCount) == 32);
@@ -237,3 +237,5 @@ static_assert(offsetof(PmrApi, mergeLayerInfo) == 424);
 static_assert(offsetof(PmrApi, readMergedPixels) == 432);
 static_assert(offsetof(PmrApi, mergeStatistics) == 440);
 static_assert(offsetof(PmrApi, releaseMerge) == 448);
+static_assert(offsetof(PmrApi, renderDelivery) == 456);
+static_assert(offsetof(PmrApi, cancelBuilds) == 464);

@@ -65,6 +65,8 @@ constexpr PmrApi kApi = {
     .readMergedPixels = api::readMergedPixels,
     .mergeStatistics = api::mergeStatistics,
     .releaseMerge = api::releaseMerge,
+    .renderDelivery = api::renderDelivery,
+    .cancelBuilds = api::cancelBuilds,
 };
 
 }  // namespace

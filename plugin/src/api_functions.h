@@ -66,6 +66,7 @@ PmrStatus PMR_CALL readPixels(PmrRender render, const PmrRectangle* rectangle, c
 PmrStatus PMR_CALL renderStatistics(PmrRender render, char* buffer, uint64_t capacity,
                                     uint64_t* needed) noexcept;
 PmrStatus PMR_CALL renderStopReason(PmrRender render, int32_t* reason) noexcept;
+PmrStatus PMR_CALL renderDelivery(PmrRender render, int32_t* delivery) noexcept;
 PmrStatus PMR_CALL createMerge(PmrContext context, PmrMerge* merge) noexcept;
 PmrStatus PMR_CALL addPart(PmrMerge merge, const char* file) noexcept;
 PmrStatus PMR_CALL mergeMissing(PmrMerge merge, char* buffer, uint64_t capacity,
@@ -80,5 +81,6 @@ PmrStatus PMR_CALL readMergedPixels(PmrMerge merge, const PmrRectangle* rectangl
 PmrStatus PMR_CALL mergeStatistics(PmrMerge merge, char* buffer, uint64_t capacity,
                                    uint64_t* needed) noexcept;
 PmrStatus PMR_CALL releaseMerge(PmrMerge merge) noexcept;
+PmrStatus PMR_CALL cancelBuilds(PmrContext context, int32_t on) noexcept;
 
 }  // namespace pm::plugin::api

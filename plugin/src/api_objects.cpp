@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Contexts, reusable objects and scenes.
+#include <fmt/format.h>
+
 #include "plugin/src/api_functions.h"
 #include "plugin/src/callback_scope.h"
 #include "plugin/src/context.h"
@@ -49,6 +51,13 @@ PmrStatus PMR_CALL lastError(PmrContext context, char* buffer, uint64_t capacity
     const std::shared_ptr<Context> owner = findObject<Context>(context);
     if (!owner) return PMR_ERROR_HANDLE;
     return onNothing([&] { writeText(owner->lastError(), buffer, capacity, needed); });
+}
+
+PmrStatus PMR_CALL cancelBuilds(PmrContext context, int32_t on) noexcept {
+    return onObject<Context>(context, [&](const std::shared_ptr<Context>& owner) {
+        if (on != 0 && on != 1) throw argumentError(fmt::format("on is {}; it must be 0 or 1", on));
+        owner->cancelBuilds(on == 1);
+    });
 }
 
 PmrStatus PMR_CALL createMesh(PmrContext context, const PmrMeshDesc* desc, PmrMesh* mesh) noexcept {

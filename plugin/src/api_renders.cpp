@@ -215,4 +215,11 @@ PmrStatus PMR_CALL renderStopReason(PmrRender render, int32_t* reason) noexcept 
     });
 }
 
+PmrStatus PMR_CALL renderDelivery(PmrRender render, int32_t* delivery) noexcept {
+    return onObject<Render>(render, [&](const RenderPointer& object) {
+        if (delivery == nullptr) throw argumentError("delivery is null");
+        *delivery = object->delivery();
+    });
+}
+
 }  // namespace pm::plugin::api

@@ -51,15 +51,33 @@ std::vector<Rect> bandsOf(const FrameStore& frame) {
     return bands;
 }
 
+// Returns the size; less than all is there once `cancelled` is set.
+std::uint64_t writeBands(const FrameStore& frame, const PieceHead& head, const OwnedFile& file,
+                         const std::atomic<bool>& cancelled) {
+    std::vector<std::byte> payload, bytes = beginningOfPiece(head.toJson());
+    std::uint64_t end = 0;
+    for (const Rect& band : bandsOf(frame)) {
+        if (cancelled) break;
+        payload.clear();
+        appendArea({0, band}, payload);
+        FrameStoreBytes::append(frame, band, payload);
+        appendRecord(PieceRecord::kSums, payload, bytes);
+        file.writeAt(end, bytes);
+        end += bytes.size();
+        bytes.clear();
+    }
+    return end;
+}
+
 }  // namespace
 
 Checkpoint::Checkpoint(const std::string& file, bool resume, PieceHead head, const Rect& window)
     : m_head(std::move(head)), m_done(window) {
     open(withoutLinks(file));
-    const PieceReader reader(m_file);
-    m_isNew = m_file.size() == 0;
+    const PieceReader reader(*m_file);
+    m_isNew = m_file->size() == 0;
     if (!m_isNew && !reader.isPiece())
-        throw unusable(m_file.name(), "is there and no checkpoint; it would be overwritten");
+        throw unusable(m_file->name(), "is there and no checkpoint; it would be overwritten");
     if (resume && !m_isNew)
         readHead();
     else
@@ -68,8 +86,8 @@ Checkpoint::Checkpoint(const std::string& file, bool resume, PieceHead head, con
 
 Checkpoint::~Checkpoint() {
     const bool isEmpty = m_isNew && m_file && m_end == m_sumsEnd;
-    const std::string name = m_file.name();
-    close(false);
+    const std::string name = m_file ? m_file->name() : std::string();
+    close(std::atomic<bool>(true));
     std::error_code ignored;
     if (isEmpty) fs::remove(name, ignored);
 }
@@ -77,49 +95,50 @@ Checkpoint::~Checkpoint() {
 void Checkpoint::open(const std::string& file) {
     constexpr int kTries = 10;  // of taking it over from a render that replaces it meanwhile
     for (int i = 0; i < kTries; ++i) {
-        m_file = OwnedFile(file, O_RDWR | O_CREAT);
-        if (!m_file.lock()) break;
-        if (m_file.isAtItsName()) return;
+        m_file = std::make_shared<OwnedFile>(file, O_RDWR | O_CREAT);
+        if (!m_file->lock()) break;
+        if (m_file->isAtItsName()) return;
     }
-    m_file = {};
+    m_file = nullptr;
     throw CallError(PMR_ERROR_IO, fmt::format("{}: another render uses this checkpoint", file));
 }
 
 void Checkpoint::readHead() {
-    PieceReader reader(m_file);
+    PieceReader reader(*m_file);
     if (!reader.next() || reader.kind() != PieceRecord::kHead)
-        throw unusable(m_file.name(), "the checkpoint is damaged: its head is broken");
+        throw unusable(m_file->name(), "the checkpoint is damaged: its head is broken");
     PieceHead found;
     try {
         found = PieceHead::fromJson(reader.payload());
     } catch (const CallError& error) {
-        throw unusable(m_file.name(), error.what());
+        throw unusable(m_file->name(), error.what());
     }
     if (found.kind != PieceKind::kCheckpoint)
-        throw unusable(m_file.name(), "is a part of a picture, no checkpoint");
+        throw unusable(m_file->name(), fmt::format("is {}, no checkpoint", kindName(found.kind)));
     if (const std::string text = differences(found.identity, m_head.identity); !text.empty())
         throw CallError(PMR_ERROR_MISMATCH,
                         fmt::format("{}: the checkpoint is of another render; it differs in: {}",
-                                    m_file.name(), text));
+                                    m_file->name(), text));
     m_head.passes = found.passes;
 }
 
 void Checkpoint::beginAnew() {
     m_isNew = true;
-    OwnedFile next(m_file.name() + kTemporary, O_RDWR | O_CREAT | O_TRUNC);
-    next.lock();
+    const auto next =
+        std::make_shared<OwnedFile>(m_file->name() + kTemporary, O_RDWR | O_CREAT | O_TRUNC);
+    next->lock();
     const std::vector<std::byte> bytes = beginningOfPiece(m_head.toJson());
-    next.writeAt(0, bytes);
-    next.sync();
-    next.rename(m_file.name());
-    m_file = std::move(next);
+    next->writeAt(0, bytes);
+    next->sync();
+    next->rename(m_file->name());
+    m_file = next;
     m_end = m_sumsEnd = bytes.size();
 }
 
 std::uint32_t Checkpoint::load(FrameStore& frame, std::size_t channels, std::uint64_t pixels,
                                const std::atomic<bool>& cancelled) {
     m_channels = channels;
-    PieceReader reader(m_file);
+    PieceReader reader(*m_file);
     reader.next();
     m_sumsEnd = reader.wholeBytes();
     m_passes = m_head.passes;
@@ -138,15 +157,15 @@ std::uint32_t Checkpoint::load(FrameStore& frame, std::size_t channels, std::uin
             }
         }
     } catch (const CallError& error) {
-        throw unusable(m_file.name(), fmt::format("the checkpoint is damaged: {}", error.what()));
+        throw unusable(m_file->name(), fmt::format("the checkpoint is damaged: {}", error.what()));
     }
     // The sums came in one step, so what is missing of them was not lost by a torn write.
     const auto all = static_cast<std::uint64_t>(FrameStoreBytes::area(frame).area());
     if (m_sumPixels != (m_head.passes > 0 ? all : 0))
-        throw unusable(m_file.name(), "the checkpoint is damaged: its sums are broken");
+        throw unusable(m_file->name(), "the checkpoint is damaged: its sums are broken");
     m_droppedBytes = reader.brokenBytes();
     m_end = reader.wholeBytes();
-    m_file.truncate(m_end);
+    m_file->truncate(m_end);
     return m_passes;
 }
 
@@ -194,7 +213,7 @@ void Checkpoint::addBucket(std::uint32_t pass, const Rect& rect,
         {
             const std::lock_guard lock(m_mutex);
             if (m_off) return;
-            m_file.writeAt(m_end, record);
+            m_file->writeAt(m_end, record);
             m_end += record.size();
         }
         syncNowAndThen();
@@ -203,17 +222,19 @@ void Checkpoint::addBucket(std::uint32_t pass, const Rect& rect,
     }
 }
 
-// By the worker that finds it due, while the others go on.
+// A disk that has not done with the last one yet gets no other.
 void Checkpoint::syncNowAndThen() {
-    {
-        const std::lock_guard lock(m_mutex);
-        if (std::chrono::steady_clock::now() - m_synced < kBetweenSyncs) return;
-        if (m_syncing.exchange(true)) return;
-    }
-    m_file.sync();
+    throwTroubleOfDisk();
     const std::lock_guard lock(m_mutex);
-    m_synced = std::chrono::steady_clock::now();
-    m_syncing = false;
+    const auto now = std::chrono::steady_clock::now();
+    if (m_off || now - m_synced < kBetweenSyncs || !m_disk.isIdle()) return;
+    m_synced = now;
+    m_disk.give([file = m_file] { file->sync(); });
+}
+
+void Checkpoint::throwTroubleOfDisk() {
+    if (const std::string text = m_disk.takeTrouble(); !text.empty())
+        throw CallError(PMR_ERROR_IO, text);
 }
 
 void Checkpoint::giveUp() noexcept {
@@ -225,7 +246,7 @@ void Checkpoint::giveUp() noexcept {
         } catch (const std::exception& error) {
             m_trouble = error.what();
         }
-        m_file.truncate(m_end);
+        m_file->truncate(m_end);
     } catch (...) {
         // What is torn at the end will be dropped by whoever resumes.
     }
@@ -235,6 +256,7 @@ void Checkpoint::endPass(const FrameStore& frame, std::uint32_t passesDone,
                          const std::atomic<bool>& cancelled) noexcept {
     if (m_off) return;
     try {
+        throwTroubleOfDisk();
         m_done.clear();
         const std::uint64_t sums = static_cast<std::uint64_t>(FrameStoreBytes::area(frame).area()) *
                                    FrameStoreBytes::bytesPerPixel(frame);
@@ -248,54 +270,47 @@ void Checkpoint::writeSums(const FrameStore& frame, std::uint32_t passesDone,
                            const std::atomic<bool>& cancelled) {
     PieceHead head = m_head;
     head.passes = passesDone;
-    const std::string name = m_file.name();
-    OwnedFile next(name + kTemporary, O_RDWR | O_CREAT | O_TRUNC);
-    std::vector<std::byte> payload, bytes = beginningOfPiece(head.toJson());
+    const std::string name = m_file->name();
+    const auto next = std::make_shared<OwnedFile>(name + kTemporary, O_RDWR | O_CREAT | O_TRUNC);
+    const auto remove = [&name] {
+        std::error_code ignored;
+        fs::remove(name + kTemporary, ignored);
+    };
     std::uint64_t end = 0;
     try {
-        next.lock();
-        for (const Rect& band : bandsOf(frame)) {
-            payload.clear();
-            appendArea({0, band}, payload);
-            FrameStoreBytes::append(frame, band, payload);
-            appendRecord(PieceRecord::kSums, payload, bytes);
-            next.writeAt(end, bytes);
-            end += bytes.size();
-            bytes.clear();
-            if (cancelled) break;
-        }
-        if (!cancelled) {
-            next.sync();
-            next.rename(name);
-        }
+        next->lock();
+        end = writeBands(frame, head, *next, cancelled);
+        if (cancelled) return remove();
+        m_disk.give([next] { next->sync(); });
+        if (!m_disk.waitUntilIdle(cancelled)) return remove();
+        throwTroubleOfDisk();
+        next->rename(name);
     } catch (...) {
-        std::error_code ignored;
-        fs::remove(name + kTemporary, ignored);
+        remove();
         throw;
     }
-    if (cancelled) {
-        std::error_code ignored;
-        fs::remove(name + kTemporary, ignored);
-        return;
-    }
-    syncFolderOf(name);
+    m_disk.give([name] { syncFolderOf(name); });
     m_head = std::move(head);
-    m_file = std::move(next);
+    m_file = next;
     m_end = m_sumsEnd = end;
     m_isNew = false;
     m_synced = std::chrono::steady_clock::now();
 }
 
-void Checkpoint::close(bool sync) noexcept {
+void Checkpoint::close(const std::atomic<bool>& cancelled) noexcept {
     const std::lock_guard lock(m_mutex);
     m_off = true;
     if (!m_file) return;
     try {
-        if (sync) m_file.sync();
+        if (!cancelled) m_disk.give([file = m_file] { file->sync(); });
+        m_disk.waitUntilIdle(cancelled);
+        throwTroubleOfDisk();
     } catch (const std::exception& error) {
         m_trouble = error.what();
     }
-    m_file = {};
+    // A sync that is on its way keeps the file open, but not from others.
+    m_file->unlock();
+    m_file = nullptr;
 }
 
 std::string Checkpoint::takeTrouble() {

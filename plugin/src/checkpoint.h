@@ -5,10 +5,12 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <mutex>
 #include <span>
 #include <string>
 
+#include "plugin/src/disk_thread.h"
 #include "plugin/src/done_pixels.h"
 #include "plugin/src/owned_file.h"
 #include "plugin/src/piece_head.h"
@@ -24,7 +26,8 @@ namespace pm::plugin {
 // fails its checksum; it and what follows it are dropped and rendered again. When the records
 // outgrow the sums, the file is replaced between two passes by one of sums only, in one step.
 // Records are with the system at once, so they outlive the process, and are synced about once a
-// second, so a power cut costs little more than that. The file is locked while it is in use.
+// second, so a power cut costs little more than that. Syncs have a thread of their own: no worker
+// waits for a disk. The file is locked while it is in use.
 class Checkpoint {
   public:
     // Opens or makes the file; head: this render's, passes and range left alone. With resume it
@@ -33,7 +36,7 @@ class Checkpoint {
     // CallError(FILE) for what is no checkpoint; CallError(IO) when it can't be written or another
     // render uses it.
     Checkpoint(const std::string& file, bool resume, PieceHead head, const Rect& window);
-    // Removes a file that it made and that nothing came into.
+    // Removes a file that it made and that nothing came into. Waits for a sync that is on its way.
     ~Checkpoint();
     Checkpoint(const Checkpoint&) = delete;
     Checkpoint& operator=(const Checkpoint&) = delete;
@@ -54,9 +57,9 @@ class Checkpoint {
     // Between two passes; so many are whole now. Never throws.
     void endPass(const FrameStore& frame, std::uint32_t passesDone,
                  const std::atomic<bool>& cancelled) noexcept;
-    // Lets others have the file; synced before, unless there is no time for it: the system has
-    // everything anyway, and writes it within half a minute or so.
-    void close(bool sync) noexcept;
+    // Lets others have the file; synced before, unless `cancelled` is set, which ends the waiting:
+    // the system has everything anyway, and writes it within half a minute or so.
+    void close(const std::atomic<bool>& cancelled) noexcept;
 
     // Why nothing is saved any more, once; empty while all is well. The render can go on without.
     std::string takeTrouble();
@@ -70,6 +73,7 @@ class Checkpoint {
     void writeSums(const FrameStore& frame, std::uint32_t passesDone,
                    const std::atomic<bool>& cancelled);
     void syncNowAndThen();
+    void throwTroubleOfDisk();
     // Called while an exception is handled.
     void giveUp() noexcept;
 
@@ -81,14 +85,14 @@ class Checkpoint {
     std::uint64_t m_droppedBytes = 0;
     bool m_isNew = false;  // made by this
 
-    std::atomic<bool> m_off{false};  // nothing is written any more
-    std::atomic<bool> m_syncing{false};
-    std::mutex m_mutex;  // of what follows
-    OwnedFile m_file;
-    std::uint64_t m_end = 0;      // where the next record goes
-    std::uint64_t m_sumsEnd = 0;  // where the records of passes begin
+    std::atomic<bool> m_off{false};     // nothing is written any more
+    std::mutex m_mutex;                 // of what follows
+    std::shared_ptr<OwnedFile> m_file;  // kept open by a sync that is on its way
+    std::uint64_t m_end = 0;            // where the next record goes
+    std::uint64_t m_sumsEnd = 0;        // where the records of passes begin
     std::chrono::steady_clock::time_point m_synced;
     std::string m_trouble;
+    DiskThread m_disk;  // last: it ends first
 };
 
 }  // namespace pm::plugin

@@ -2,11 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
 
+#include "integrator/values/cancel_check.h"
 #include "integrator/values/notice.h"
 #include "plugin/include/pm_plugin.h"
 #include "plugin/src/handle_table.h"
@@ -27,6 +29,10 @@ class Context {
     int threads() const { return m_threads; }
     TextureSystem& textures() { return m_textures; }
 
+    // Whether meshes and scenes that are being built are to be given up. Threads: any.
+    void cancelBuilds(bool on) { m_cancelBuilds = on; }
+    CancelCheck buildCheck() const { return CancelCheck(m_cancelBuilds); }
+
     // Passes a message to the host, on the calling thread. Threads: any.
     void sendMessage(std::int32_t level, std::int32_t code, const std::string& text) const;
     void sendNotice(const Notice& notice) const;
@@ -42,6 +48,7 @@ class Context {
     int m_threads;
     TextureSystem m_textures;
 
+    std::atomic<bool> m_cancelBuilds{false};
     mutable std::mutex m_errorMutex;
     std::string m_lastError;
 };

@@ -17,11 +17,10 @@ Deadline deadlineAfter(double seconds) {
                std::chrono::duration<double>(seconds));
 }
 
-void EventQueue::open(PmrRender render, std::uint32_t bucketCount) {
+void EventQueue::open(PmrRender render, DeliveryHooks hooks) {
     const std::lock_guard lock(m_mutex);
     m_render = render;
-    if (m_sinks.bucketStarted != nullptr || m_sinks.bucketFinished != nullptr)
-        m_buckets.resize(bucketCount);
+    m_hooks = std::move(hooks);
 }
 
 void EventQueue::push(Kind kind, std::uint32_t bucket) {
@@ -89,10 +88,12 @@ EventQueue::Parcel EventQueue::take() {
         case Kind::kStarted:
             parcel.bucket = m_buckets[event.bucket].started;
             m_buckets[event.bucket].startedWaits = false;
+            if (!m_buckets[event.bucket].finishedWaits) m_buckets.erase(event.bucket);
             break;
         case Kind::kFinishedBucket:
             parcel.bucket = m_buckets[event.bucket].finished;
-            m_buckets[event.bucket].finishedWaits = false;
+            // A start that was told before the end has gone out before it.
+            m_buckets.erase(event.bucket);
             break;
         case Kind::kFinished:
             parcel.status = m_status;
@@ -116,6 +117,7 @@ void EventQueue::call(const Parcel& parcel) const {
             m_sinks.bucketStarted(m_sinks.user, m_render, &parcel.bucket);
             break;
         case Kind::kFinishedBucket:
+            if (m_hooks.before) m_hooks.before(parcel.bucket.bucketIndex);
             m_sinks.bucketFinished(m_sinks.user, m_render, &parcel.bucket);
             break;
         case Kind::kFinished:
@@ -148,6 +150,8 @@ EventQueue::Delivery EventQueue::deliverOne(const Deadline& deadline) {
     } catch (...) {
         // A host in C++ must not throw through a C interface; its exception ends here.
     }
+    if (parcel.kind == Kind::kFinishedBucket && m_hooks.after)
+        m_hooks.after(parcel.bucket.bucketIndex);
     lock.lock();
     m_delivering = false;
     if (parcel.kind == Kind::kFinished) m_over = true;
@@ -161,6 +165,7 @@ void EventQueue::dropAllButFinished() {
     if (m_over) return;
     m_events.clear();
     m_messages.clear();
+    m_buckets.clear();
     if (m_finishedWaits) push(Kind::kFinished);
 }
 

@@ -7,10 +7,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
+#include <unordered_map>
 
 #include "plugin/include/pm_plugin.h"
 
@@ -34,8 +35,12 @@ class EventQueue {
 
     explicit EventQueue(const PmrRenderDesc& sinks) : m_sinks(sinks) {}
 
-    // Before the first event: the handle that callbacks get, and the buckets of one pass.
-    void open(PmrRender render, std::uint32_t bucketCount);
+    // Called with a bucket's index before and after bucketFinished, on the thread that delivers.
+    struct DeliveryHooks {
+        std::function<void(std::uint32_t bucketIndex)> before, after;
+    };
+    // Before the first event: the handle that callbacks get.
+    void open(PmrRender render, DeliveryHooks hooks = {});
 
     void message(std::int32_t level, std::int32_t code, std::string text);
     void progress(double fraction, double remainingSeconds);
@@ -91,7 +96,8 @@ class EventQueue {
     PmrRender m_render = nullptr;
     std::deque<Event> m_events;
     std::deque<Message> m_messages;
-    std::vector<Bucket> m_buckets;
+    std::unordered_map<std::uint32_t, Bucket> m_buckets;  // that an event waits of
+    DeliveryHooks m_hooks;
     double m_fraction = 0, m_remainingSeconds = 0;
     bool m_progressWaits = false;
     PmrStatus m_status = PMR_OK;

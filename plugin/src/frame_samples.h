@@ -15,6 +15,9 @@ namespace pm::plugin {
 // The empty frame of a render with these settings. Errors: those of FrameStore.
 FrameStore makeFrame(const RenderSettings& settings);
 
+// What it takes, in bytes.
+std::uint64_t frameMemoryBytes(const RenderSettings& settings);
+
 // The samples of the pixels of rect, row by row, in a pass: of a fixed level, or what the frame
 // allots. rect within the window's atoms.
 void findSamples(const RenderSettings& settings, const FrameStore& frame, std::uint32_t pass,

@@ -190,7 +190,8 @@ void refuseTooLarge(const SubdivisionCage& cage, int rate) {
 
 std::shared_ptr<MeshObject> makeMesh(std::shared_ptr<Context> context, const PmrMeshDesc& desc) {
     const std::uint64_t slotCount = slotCountOf(desc);
-    return finishMesh(std::move(context), triangulate(toPolygonMesh(desc)), slotCount);
+    BuiltMesh built = triangulate(toPolygonMesh(desc), context->buildCheck());
+    return finishMesh(std::move(context), std::move(built), slotCount);
 }
 
 std::shared_ptr<MeshObject> makeCage(std::shared_ptr<Context> context, const PmrCageDesc& desc) {
@@ -204,7 +205,7 @@ std::shared_ptr<MeshObject> makeCage(std::shared_ptr<Context> context, const Pmr
     const SubdivisionCage cage = toCage(desc, meshDesc);
     refuseTooLarge(cage, rate);
     WorkerArena arena(context->threads());
-    BuiltMesh built = arena.execute([&] { return tessellate(cage, rate); });
+    BuiltMesh built = arena.execute([&] { return tessellate(cage, rate, context->buildCheck()); });
     return finishMesh(std::move(context), std::move(built), slotCount);
 }
 

@@ -6,6 +6,7 @@
 #include <xxhash.h>
 
 #include <algorithm>
+#include <iterator>
 #include <memory>
 #include <span>
 #include <string_view>
@@ -21,6 +22,7 @@ namespace pm::plugin {
 namespace {
 
 constexpr std::uint32_t kPassesOfLevel1 = 4;
+constexpr const char* kCameraPart = "camera";
 
 // Feeds values to one checksum. Only types without padding are taken as bytes, and every array goes
 // in with its length, so that no two different inputs feed the same bytes.
@@ -101,6 +103,29 @@ void addInstance(Hasher& hasher, const InstanceDescription& instance) {
     hasher.addArray<std::uint32_t>(instance.materials);
 }
 
+// Only what is there: scenes without keep the checksums that they have had.
+void addLightsOfDirection(Hasher& hasher, const SceneDescription& d) {
+    for (const SpotLightDescription& spot : d.spotLights) {
+        hasher.add("spot");
+        hasher.add(spot.position);
+        hasher.add(spot.direction);
+        hasher.add(spot.intensity);
+        hasher.add(spot.coneAngle);
+        hasher.add(spot.coneFalloff);
+    }
+    for (const DirectionalLightDescription& light : d.directionalLights) {
+        hasher.add("directional");
+        hasher.add(light.direction);
+        hasher.add(light.irradiance);
+        hasher.add(light.angularRadius);
+    }
+    if (!d.environment) return;
+    hasher.add("environment");
+    hasher.add(d.environment->radiance);
+    hasher.add(d.environment->texture);
+    hasher.addArray<double>(d.environment->toWorld);
+}
+
 template <typename Feed>
 std::string checksumOf(Feed feed) {
     Hasher hasher;
@@ -160,8 +185,9 @@ Identity sceneIdentity(const Scene& scene, const SceneTextures& textures) {
             hasher.add(light.position);
             hasher.add(light.intensity);
         }
+        addLightsOfDirection(hasher, d);
     });
-    part("camera", [&](Hasher& hasher) {
+    part(kCameraPart, [&](Hasher& hasher) {
         hasher.add(d.camera.has_value());
         if (!d.camera) return;
         hasher.addArray<double>(d.camera->cameraToWorld);
@@ -180,10 +206,23 @@ Identity settingsIdentity(const SettingValues& settings) {
         if (!spec.changesPixels || spec.id == Setting::kPasses) continue;
         identity.push_back({fmt::format("setting {}", spec.name), settings.text(spec.id)});
     }
-    // Of level 1's one sample a pixel, the number of passes says in which of them it comes.
+    // Of the one sample of levels 0 and 1, the number of passes says in which of them it comes.
     const RenderSettings render = settings.toRenderSettings();
-    if (render.aaLevel == 1 && render.passes < kPassesOfLevel1)
-        identity.push_back({"passes at level 1", fmt::format("{}", render.passes)});
+    const bool beginsWithGroups = render.hasGroups() && render.isAdaptive();
+    if (render.aaLevel <= 1 && !beginsWithGroups && render.passes < kPassesOfLevel1)
+        identity.push_back({"passes below level 2", fmt::format("{}", render.passes)});
+    return identity;
+}
+
+Identity photonIdentity(const Identity& scene, const SettingValues& settings, const Plan& plan) {
+    Identity identity = {{"version", versionText()}};
+    std::ranges::copy_if(scene, std::back_inserter(identity),
+                         [](const IdentityPart& part) { return part.name != kCameraPart; });
+    identity.push_back({"setting seed", settings.text(Setting::kSeed)});
+    // Not the setting, which may be left to the plan, and the plan to the size of the frame.
+    identity.push_back({"photons a pass", fmt::format("{} global, {} caustic", plan.globalPhotons,
+                                                      plan.causticPhotons)});
+    identity.push_back({"share of caustic photons followed on", fmt::format("{}", plan.descent)});
     return identity;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "integrator/scene/scene.h"
+#include "integrator/transport/plan.h"
 #include "plugin/src/scene_textures.h"
 #include "plugin/src/setting_values.h"
 
@@ -30,6 +31,10 @@ Identity sceneIdentity(const Scene& scene, const SceneTextures& textures);
 // Version and build, and every setting that changes pixels, but for the number of passes: a
 // finished render may go on with more of them.
 Identity settingsIdentity(const SettingValues& settings);
+
+// Version, and all that the photons of a pass depend on: of the scene all but the camera, the seed,
+// and of the plan how many photons there are. scene: sceneIdentity().
+Identity photonIdentity(const Identity& scene, const SettingValues& settings, const Plan& plan);
 
 // The very library: of one version there are as many as there are compilers.
 Identity buildIdentity();

@@ -29,10 +29,10 @@ constexpr std::array<LayerSpec, kLayerCount> kLayers = {{
     {Layer::kStandardError, "stderr", "stderr.X,stderr.Y,stderr.Z", 3, PMR_LAYER_DATA, false,
      "Standard error of the beauty's mean, from the spread between passes; 0 with one pass."},
     {Layer::kSamples, "samples", "samples.X", 1, PMR_LAYER_DATA, false,
-     "Camera samples of the pixel."},
+     "Camera samples of the pixel; a quarter for each that it shares with its group at level 0."},
     {Layer::kAaLevel, "aalevel", "aalevel.X", 1, PMR_LAYER_DATA, false,
      "Level of anti-aliasing that the pixel's samples amount to: 1 + log4(samples in four "
-     "passes)."},
+     "passes); 0 where it is still one of a group."},
 }};
 
 constexpr bool inOrder() {

@@ -54,6 +54,17 @@ void MergeObject::checkFits(const std::string& file, const PieceHead& head) cons
                                   m_picture->firstFile, text));
 }
 
+// Photon maps that fit the same scene and settings are the same, unless one of them is wrong.
+void MergeObject::checkPhotons(const std::string& file, const PieceHead& head) {
+    std::string& known = m_picture->head.photonHash;
+    if (known.empty()) known = head.photonHash;
+    if (!head.photonHash.empty() && head.photonHash != known)
+        throw refusal(
+            PMR_ERROR_MISMATCH, file,
+            fmt::format("the part is of another picture than {}; it differs in: photon map",
+                        m_picture->firstFile));
+}
+
 void MergeObject::addPart(const std::string& file) {
     const std::lock_guard lock(m_mutex);
     std::uint32_t index = 0;
@@ -70,6 +81,7 @@ void MergeObject::addPart(const std::string& file) {
                 checkFits(file, head);
             else
                 m_picture = std::make_unique<Picture>(head, file);
+            checkPhotons(file, head);
         },
         [&](const Rect& rect, std::span<const std::byte> sums) {
             addBucket(file, index++, rect, sums);
@@ -135,6 +147,7 @@ std::string MergeObject::statisticsJson() const {
     json["schema"] = "pm-stats/1";
     json["versions"] = versionsJson();
     json["hashes"] = {{"scene", head.sceneHash}, {"settings", head.settingsHash}};
+    if (!head.photonHash.empty()) json["photonMap"] = {{"use", "read"}, {"hash", head.photonHash}};
     json["isa"] = head.isa;
     json["stopReason"] = "passes done";
     json["status"] = PMR_OK;

@@ -56,6 +56,7 @@ class MergeObject {
         std::vector<std::string> files;  // of which part each bucket is, in order; empty: missing
     };
     const Picture& picture() const;
+    void checkPhotons(const std::string& file, const PieceHead& head);
     void checkFits(const std::string& file, const PieceHead& head) const;
     void addBucket(const std::string& file, std::uint32_t index, const Rect& rect,
                    std::span<const std::byte> sums);

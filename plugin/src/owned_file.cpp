@@ -93,6 +93,10 @@ bool OwnedFile::lock() const {
     fail("can't be locked");
 }
 
+void OwnedFile::unlock() const noexcept {
+    ::flock(m_file, LOCK_UN);
+}
+
 bool OwnedFile::isAtItsName() const {
     struct stat own {
     }, named{};

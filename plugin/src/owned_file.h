@@ -33,6 +33,7 @@ class OwnedFile {
     // False when another process, or another open file of this one, has the lock. It ends with the
     // file or the process, however that ends.
     bool lock() const;
+    void unlock() const noexcept;
     // Whether the name still leads to this file.
     bool isAtItsName() const;
 

@@ -7,48 +7,17 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <filesystem>
 #include <utility>
 
 #include "plugin/src/call_error.h"
 #include "plugin/src/owned_file.h"
 #include "plugin/src/piece_file.h"
+#include "plugin/src/temporary_file.h"
 #include "scheduler/frame_store_bytes.h"
 
 namespace pm::plugin {
 
 namespace {
-
-// A file of a temporary name, removed unless it is renamed.
-class TemporaryFile {
-  public:
-    explicit TemporaryFile(const std::string& finalName)
-        : m_final(finalName),
-          m_file(temporaryNameOf(finalName), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW) {}
-    ~TemporaryFile() {
-        std::error_code ignored;
-        if (!m_committed) std::filesystem::remove(m_file.name(), ignored);
-    }
-    TemporaryFile(const TemporaryFile&) = delete;
-    TemporaryFile& operator=(const TemporaryFile&) = delete;
-
-    void append(std::span<const std::byte> bytes) {
-        m_file.writeAt(m_end, bytes);
-        m_end += bytes.size();
-    }
-    void commit() {
-        m_file.sync();
-        m_file.rename(m_final);
-        m_committed = true;
-        syncFolderOf(m_final);
-    }
-
-  private:
-    const std::string m_final;
-    OwnedFile m_file;
-    std::uint64_t m_end = 0;
-    bool m_committed = false;
-};
 
 CallError damaged(const std::string& file, const std::string& why) {
     return {PMR_ERROR_FILE, fmt::format("{}: {}", file, why)};
@@ -99,6 +68,7 @@ void writePart(const std::string& file, const PieceHead& head, const FrameStore&
     record.clear();
     appendRecord(PieceRecord::kEnd, std::as_bytes(std::span(&records, 1)), record);
     part.append(record);
+    part.sync();
     part.commit();
 }
 
@@ -121,7 +91,7 @@ void readPart(const std::string& name, const std::function<void(const PieceHead&
             throw damaged(name, error.what());
         }
         if (head.kind != PieceKind::kPart)
-            throw damaged(name, "is a checkpoint, no part of a picture");
+            throw damaged(name, fmt::format("is {}, no part of a picture", kindName(head.kind)));
     });
     if (buckets != head.range.count()) throw damaged(name, "the part has not all of its buckets");
     onHead(head);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "plugin/src/piece_head.h"
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "plugin/src/call_error.h"
@@ -13,6 +14,24 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "pm-piece/1";
+
+// In the order of PieceKind.
+struct KindText {
+    const char* inFile;
+    const char* forPeople;
+};
+constexpr std::array<KindText, 3> kKinds = {
+    {{"checkpoint", "a checkpoint"}, {"part", "a part of a picture"}, {"photons", "a photon map"}}};
+
+const KindText& textOf(PieceKind kind) {
+    return kKinds.at(static_cast<std::size_t>(kind));
+}
+
+PieceKind kindOf(const std::string& text) {
+    for (std::size_t i = 0; i < kKinds.size(); ++i)
+        if (text == kKinds[i].inFile) return static_cast<PieceKind>(i);
+    throw CallError(PMR_ERROR_FILE, "of a kind that is not known here");
+}
 
 bool isKept(const SettingSpec& spec) {
     switch (spec.id) {
@@ -35,18 +54,23 @@ Json pairsJson(const auto& pairs) {
 
 }  // namespace
 
+const char* kindName(PieceKind kind) {
+    return textOf(kind).forPeople;
+}
+
 std::string PieceHead::toJson() const {
-    const Json json = {{"schema", kSchema},
-                       {"kind", kind == PieceKind::kPart ? "part" : "checkpoint"},
-                       {"identity", pairsJson(identity)},
-                       {"sceneHash", sceneHash},
-                       {"settingsHash", settingsHash},
-                       {"isa", isa},
-                       {"settings", pairsJson(settings)},
-                       {"passes", passes},
-                       {"bucketCount", bucketCount},
-                       {"firstBucket", range.first},
-                       {"lastBucket", range.last}};
+    Json json = {{"schema", kSchema},
+                 {"kind", textOf(kind).inFile},
+                 {"identity", pairsJson(identity)},
+                 {"sceneHash", sceneHash},
+                 {"settingsHash", settingsHash},
+                 {"isa", isa},
+                 {"settings", pairsJson(settings)},
+                 {"passes", passes},
+                 {"bucketCount", bucketCount},
+                 {"firstBucket", range.first},
+                 {"lastBucket", range.last}};
+    if (!photonHash.empty()) json["photonHash"] = photonHash;
     return json.dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
@@ -57,7 +81,8 @@ PieceHead PieceHead::fromJson(std::span<const std::byte> text) {
         if (json.at("schema") != kSchema)
             throw CallError(PMR_ERROR_FILE, "of another version than " + std::string(kSchema));
         PieceHead head;
-        head.kind = json.at("kind") == "part" ? PieceKind::kPart : PieceKind::kCheckpoint;
+        head.kind = kindOf(json.at("kind").get<std::string>());
+        head.photonHash = json.value("photonHash", std::string());
         for (const Json& part : json.at("identity"))
             head.identity.push_back({part.at(0).get<std::string>(), part.at(1).get<std::string>()});
         json.at("sceneHash").get_to(head.sceneHash);

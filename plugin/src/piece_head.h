@@ -15,14 +15,19 @@
 
 namespace pm::plugin {
 
-enum class PieceKind : std::int32_t { kCheckpoint, kPart };
+enum class PieceKind : std::int32_t { kCheckpoint, kPart, kPhotonMap };
 
-// What a checkpoint or a part says of itself: of which render it is, and how much of it. It holds
-// nothing of when, where or how fast it was made, so that the same piece always has the same bytes.
+// For messages, as "a checkpoint".
+const char* kindName(PieceKind kind);
+
+// What a checkpoint, a part or a photon map says of itself: of which render it is, and how much of
+// it. It holds nothing of when, where or how fast it was made, so that the same piece always has
+// the same bytes.
 struct PieceHead {
     PieceKind kind = PieceKind::kCheckpoint;
     Identity identity;  // all that must be the same in two pieces of one picture
     std::string sceneHash, settingsHash, isa;
+    std::string photonHash;  // of a part: of the photon map that it was made with; empty: traced
     // By name, as setText takes them: those that change pixels, and what says which pixels and
     // channels there are.
     std::vector<std::pair<std::string, std::string>> settings;

@@ -122,8 +122,9 @@ void readLevels(const FrameStore& frame, std::uint32_t passes, const Rect& rect,
         for (std::size_t x = 0; x < width; ++x) {
             const double inFourPasses =
                 4.0 * static_cast<double>(samples[x]) / std::max(1u, passes);
-            const float level =
+            float level =
                 inFourPasses > 0 ? static_cast<float>(1 + 0.5 * std::log2(inFourPasses)) : 0.0f;
+            if (frame.showsGroup(rect.x0 + static_cast<std::int32_t>(x), y)) level = 0.0f;
             destination.put(static_cast<std::int64_t>(x), y - rect.y0, &level, layer.channelCount);
         }
     }
@@ -140,6 +141,7 @@ void clear(const Rect& rect, const LayerSpec& layer, const Destination& destinat
 
 std::vector<Layer> layersOf(const SettingValues& settings) {
     std::vector<Layer> layers;
+    if (settings.integer(Setting::kPhotonsOnly) != 0) return layers;
     for (const LayerSpec& spec : layerSpecs())
         if (spec.isDefault || settings.wantsLayer(spec.name)) layers.push_back(spec.id);
     return layers;
@@ -182,10 +184,16 @@ std::vector<Layer> Render::layers() const {
 void Render::readPixels(const PmrRectangle& rectangle, const char* layer, float* destination,
                         std::int64_t pixelStrideBytes, std::int64_t rowStrideBytes) const {
     const std::shared_ptr<RenderWork> running = work();
+    if (layers().empty())
+        throw CallError(PMR_ERROR_NAME, "this render traces photons only and has no layers");
+    const std::shared_ptr<const FrameStore> frame = running ? running->frame() : nullptr;
+    if (running && !frame)
+        throw CallError(PMR_ERROR_STATE,
+                        "the render delivers buckets: pixels can be read inside bucketFinished, "
+                        "and are gone after");
     readLayerPixels({rectangle, layer, destination, pixelStrideBytes, rowStrideBytes}, settings(),
-                    running ? &running->frame() : nullptr,
-                    running ? running->layout() : ChannelLayout{},
-                    running ? running->progress().passesDone : 0);
+                    frame.get(), running ? running->layout() : ChannelLayout{},
+                    running ? running->passesOfPixels() : 0);
 }
 
 }  // namespace pm::plugin

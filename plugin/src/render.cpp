@@ -44,6 +44,7 @@ Render::Render(std::shared_ptr<SceneObject> scene, const PmrRenderDesc& desc)
     : m_scene(std::move(scene)),
       m_built(m_scene->built()),
       m_callbackMode(checkedCallbackMode(desc)),
+      m_takesBuckets(desc.bucketFinished != nullptr),
       m_events(desc) {}
 
 void Render::changeSettings(const std::function<void(SettingValues&)>& change) {
@@ -63,9 +64,33 @@ std::shared_ptr<RenderWork> Render::work() const {
     return m_work;
 }
 
+void Render::checkDelivery(const SettingValues& values) const {
+    if (!m_takesBuckets && values.word(Setting::kDelivery) != "frame")
+        throw argumentError(fmt::format("setting delivery is {}, but bucketFinished is null",
+                                        values.word(Setting::kDelivery)));
+}
+
+MemoryPlan Render::memoryPlan(const Plan& plan) const {
+    const SettingValues values = settings();
+    checkDelivery(values);
+    return planMemory(*m_built, plan, values, bucketsOf(values));
+}
+
 std::string Render::explain() const {
-    if (const auto running = work()) return running->plan().explain();
-    return makePlan(*m_built, settings().toRenderSettings()).explain();
+    if (const auto running = work()) return explain(running->plan(), running->memory());
+    const Plan plan = makePlan(*m_built, settings().toRenderSettings());
+    return explain(plan, memoryPlan(plan));
+}
+
+std::string Render::explain(const Plan& plan, const MemoryPlan& memory) const {
+    return plan.explain() + explainPhotons(settings(), plan) + memory.explain();
+}
+
+std::int32_t Render::delivery() const {
+    const auto running = work();
+    const MemoryPlan memory =
+        running ? running->memory() : memoryPlan(makePlan(*m_built, settings().toRenderSettings()));
+    return memory.byBuckets ? PMR_DELIVERY_BUCKETS : PMR_DELIVERY_FRAME;
 }
 
 void Render::start(PmrRender handle) {
@@ -73,8 +98,10 @@ void Render::start(PmrRender handle) {
     if (m_state != PMR_RENDER_CREATED || m_shuttingDown)
         throw CallError(PMR_ERROR_STATE, "the render was started before");
     m_startTime = std::chrono::steady_clock::now();
+    checkDelivery(m_settings);
     auto made = std::make_shared<RenderWork>(m_built, m_scene->identity(), m_settings);
-    m_events.open(handle, made->bucketCount());
+    m_events.open(handle, {[made](std::uint32_t bucket) { made->beforeDelivery(bucket); },
+                           [made](std::uint32_t bucket) { made->afterDelivery(bucket); }});
     // The threads wait for m_mutex, so they see the state that is set last.
     if (m_callbackMode == PMR_CALLBACKS_THREAD && !m_delivery.joinable())
         m_delivery = std::thread([this] {
@@ -162,6 +189,9 @@ PmrStatus Render::wait(double timeoutSeconds) {
         return m_events.waitUntilOver(deadline) ? outcome() : PMR_ERROR_TIMEOUT;
     std::unique_lock lock(m_mutex);
     const auto ended = [this] { return m_state == PMR_RENDER_FINISHED; };
+    if (m_work->memory().byBuckets && !ended())
+        throw CallError(PMR_ERROR_STATE,
+                        "by buckets a render waits for pollRender; waitRender would wait for ever");
     if (!deadline)
         m_stateChanged.wait(lock, ended);
     else if (!m_stateChanged.wait_until(lock, *deadline, ended))

@@ -40,6 +40,8 @@ class Render {
     void changeSettings(const std::function<void(SettingValues&)>& change);
     SettingValues settings() const;
     std::string explain() const;
+    // PMR_DELIVERY_*: as it runs, or as it would with these settings.
+    std::int32_t delivery() const;
 
     // `handle` goes to the callbacks. A refusal (memory, no camera, ...) leaves the state CREATED.
     void start(PmrRender handle);
@@ -58,14 +60,18 @@ class Render {
     std::int32_t stopReason() const;  // PMR_STOP_*
 
   private:
+    std::string explain(const Plan& plan, const MemoryPlan& memory) const;
     void runJob();
     PmrStatus runWork();
     std::shared_ptr<RenderWork> work() const;
+    MemoryPlan memoryPlan(const Plan& plan) const;
+    void checkDelivery(const SettingValues& values) const;
     PmrStatus outcome() const;
 
     const std::shared_ptr<SceneObject> m_scene;
     const std::shared_ptr<const Scene> m_built;
     const std::int32_t m_callbackMode;
+    const bool m_takesBuckets;  // the host has a bucketFinished
     EventQueue m_events;
     Cancel m_cancel;
 

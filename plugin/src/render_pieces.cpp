@@ -126,16 +126,18 @@ std::string RenderPieces::takeTrouble() {
     return m_checkpoint ? m_checkpoint->takeTrouble() : std::string();
 }
 
-void RenderPieces::finish(const FrameStore& frame, std::uint32_t passesDone) const {
+void RenderPieces::finish(const FrameStore& frame, std::uint32_t passesDone,
+                          const std::string& photonHash) const {
     if (m_part.empty()) return;
     PieceHead head = m_partHead;
     head.passes = passesDone;
+    head.photonHash = photonHash;
     head.identity.push_back({"passes", fmt::format("{}", passesDone)});
     writePart(m_part, head, frame, m_buckets);
 }
 
-void RenderPieces::close(bool sync) noexcept {
-    if (m_checkpoint) m_checkpoint->close(sync);
+void RenderPieces::close(const std::atomic<bool>& cancelled) noexcept {
+    if (m_checkpoint) m_checkpoint->close(cancelled);
 }
 
 }  // namespace pm::plugin

@@ -54,10 +54,11 @@ class RenderPieces {
     // Why the checkpoint is not written any more, once; else empty.
     std::string takeTrouble();
 
-    // The render has ended: writes the part. Errors: those of writePart.
-    void finish(const FrameStore& frame, std::uint32_t passesDone) const;
+    // The render has ended: writes the part. photonHash: PieceHead's. Errors: those of writePart.
+    void finish(const FrameStore& frame, std::uint32_t passesDone,
+                const std::string& photonHash) const;
     // The checkpoint stays, but is in use no more; see Checkpoint::close.
-    void close(bool sync) noexcept;
+    void close(const std::atomic<bool>& cancelled) noexcept;
 
   private:
     const BucketGrid& m_grid;

@@ -14,6 +14,7 @@
 #include "plugin/src/call_error.h"
 #include "plugin/src/frame_samples.h"
 #include "plugin/src/memory_limit.h"
+#include "plugin/src/pass_samples.h"
 #include "scheduler/bucket_order.h"
 #include "scheduler/correlated_choice.h"
 
@@ -28,11 +29,6 @@ const BucketOrder& orderNamed(const std::string& name) {
     return *order;
 }
 
-std::int32_t bucketSizeOf(const SettingValues& values, const Rect& window) {
-    const auto size = static_cast<std::int32_t>(values.integer(Setting::kBucketSize));
-    return size == 0 ? autoBucketSize(window) : size;
-}
-
 void throwIfCancelled(const Cancel& cancel) {
     if (cancel.isSet()) throw Error(Status::kCancelled, "the render was cancelled");
 }
@@ -43,8 +39,12 @@ double processorSeconds() {
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-ProgressClock::Ends endsOf(const StopRule& rule) {
+// Buckets of adaptive passes over those of the first two, which know nothing yet.
+constexpr double kAdaptiveGrowth = 1.25;
+
+ProgressClock::Ends endsOf(const StopRule& rule, bool isAdaptive) {
     ProgressClock::Ends ends;
+    if (isAdaptive) ends.growth = kAdaptiveGrowth;
     if (rule.passes()) ends.passes = *rule.passes();
     if (rule.timeLimitSeconds() > 0) ends.seconds = rule.timeLimitSeconds();
     return ends;
@@ -60,43 +60,42 @@ RenderWork::RenderWork(std::shared_ptr<const Scene> scene, const Identity& scene
       m_stopRule(values),
       m_plan(makePlan(*m_scene, m_settings)),
       m_arena(static_cast<int>(values.integer(Setting::kThreads))),
-      m_grid(wholeAtoms(m_settings.window), bucketSizeOf(values, m_settings.window)),
+      m_grid(bucketsOf(values)),
+      m_memory(planMemory(*m_scene, m_plan, values, m_grid)),
       m_layout(channelLayout(m_settings)),
-      m_clock(endsOf(m_stopRule), m_plan.tracePhotons) {
-    checkMemory(values);
+      m_photons(values, sceneIdentity, *m_scene, m_plan),
+      m_clock(endsOf(m_stopRule, m_settings.isAdaptive()), m_plan.tracePhotons) {
+    m_memory.check();
+    if (m_photons.isOnly()) {
+        makeRenderer();
+        return;
+    }
     const BucketOrder& order = orderNamed(values.word(Setting::kBucketOrder));
     m_order = order.cells(m_grid.columns(), m_grid.rows(), m_settings.seed);
     m_isCorrelated = order.isCorrelated;
-    m_pieces =
-        std::make_unique<RenderPieces>(values, sceneIdentity, m_grid, m_isCorrelated, m_order);
+    if (!m_memory.byBuckets)
+        m_pieces =
+            std::make_unique<RenderPieces>(values, sceneIdentity, m_grid, m_isCorrelated, m_order);
     m_orderIndex.resize(m_grid.cellCount());
     for (std::uint32_t i = 0; i < m_order.size(); ++i) m_orderIndex[m_order[i]] = i;
-    m_renderer = m_arena.execute(
-        [this] { return std::make_unique<FrameRenderer>(m_scene, m_settings, m_plan); });
-    m_frame = std::make_unique<FrameStore>(makeFrame(m_settings));
+    makeRenderer();
+    if (m_memory.byBuckets) {
+        m_buckets = std::make_unique<BucketPasses>(
+            BucketPasses::Frame{m_settings, m_grid, m_order, m_orderIndex, m_arena.threads()},
+            m_memory.bucketsHeld);
+        return;
+    }
+    m_frame = std::make_shared<FrameStore>(makeFrame(m_settings));
     const Scratch scratch{std::vector<float>(static_cast<std::size_t>(kAtomPixels) *
                                              static_cast<std::size_t>(m_layout.count)),
                           std::vector<SampleRun>(kAtomPixels)};
     m_scratch.assign(static_cast<std::size_t>(m_arena.threads()), scratch);
 }
 
-void RenderWork::checkMemory(const SettingValues& values) {
-    const auto bucketSize = static_cast<std::uint64_t>(m_grid.bucketSize());
-    m_need.scene = m_scene->memoryBytes();
-    m_need.frame = FrameStore::memoryBytes(m_settings.window, m_layout.count, m_layout.biasProbe,
-                                           m_settings.isAdaptive());
-    m_need.maps = m_plan.mapBytes;
-    m_need.buckets = static_cast<std::uint64_t>(m_arena.threads()) * bucketSize * bucketSize *
-                         static_cast<std::uint64_t>(m_layout.count + 1) * sizeof(float) +
-                     m_grid.cellCount() * sizeof(PmrBucketInfo) * 2;
-    const std::uint64_t limit = memoryLimitBytes(values.number(Setting::kMemoryLimit));
-    if (m_need.total() > limit)
-        throw CallError(
-            PMR_ERROR_MEMORY,
-            fmt::format("the render needs {:.2f} GiB (scene {:.2f}, frame {:.2f}, photon maps "
-                        "{:.2f}, buckets {:.2f}); the memory limit is {:.2f} GiB",
-                        toGib(m_need.total()), toGib(m_need.scene), toGib(m_need.frame),
-                        toGib(m_need.maps), toGib(m_need.buckets), toGib(limit)));
+void RenderWork::makeRenderer() {
+    m_renderer = m_arena.execute(
+        [this] { return std::make_unique<FrameRenderer>(m_scene, m_settings, m_plan); });
+    if (m_photons.source() != nullptr) m_renderer->readPhotons(*m_photons.source());
 }
 
 void RenderWork::warn(const Notice& notice, EventQueue& events) {
@@ -134,7 +133,7 @@ std::uint32_t RenderWork::resume(const Cancel& cancel, EventQueue& events) {
             fmt::format("the checkpoint has {} passes{}; {} were asked for, and none "
                         "can be taken back",
                         resumed.passes, hasPart ? " and a part of the next" : "", *limit));
-    m_clock.startAt(resumed.passes);
+    m_clock.startAt(resumed.passes, resumed.shareOfNext);
     for (const std::uint32_t cell : m_order)
         events.bucketFinished(
             bucketInfo(cell, m_grid.cellRect(cell), resumed.passes == 0 ? 0 : resumed.passes - 1));
@@ -143,22 +142,58 @@ std::uint32_t RenderWork::resume(const Cancel& cancel, EventQueue& events) {
     return resumed.passes;
 }
 
+std::shared_ptr<const FrameStore> RenderWork::frame() const {
+    return m_buckets ? m_buckets->shelf().shown() : m_frame;
+}
+
+std::optional<FrameError> RenderWork::estimateError() const {
+    if (m_photons.isOnly()) return std::nullopt;
+    return m_buckets ? m_buckets->estimateError() : m_frame->estimateError();
+}
+
+void RenderWork::beforeDelivery(std::uint32_t bucketIndex) {
+    if (m_buckets) m_buckets->shelf().show(bucketIndex);
+}
+
+void RenderWork::afterDelivery(std::uint32_t bucketIndex) {
+    if (m_buckets) m_buckets->shelf().release(bucketIndex);
+}
+
+std::uint32_t RenderWork::passesOfPixels() const {
+    return m_buckets ? m_settings.passes : progress().passesDone;
+}
+
 void RenderWork::run(const Cancel& cancel, EventQueue& events) {
-    // However it ends, the checkpoint is free for another render. Who cancels doesn't wait for
-    // disks.
+    if (m_photons.isOnly()) return runPhotonsOnly(cancel, events);
+    if (m_buckets) return runByBuckets(cancel, events);
+    // However it ends, the checkpoint is free for another render.
     const struct Close {
-        RenderPieces& pieces;
+        RenderWork& work;
         const Cancel& cancel;
-        ~Close() { pieces.close(!cancel.isSet()); }
-    } close{*m_pieces, cancel};
+        EventQueue& events;
+        ~Close() { work.closePieces(cancel, events); }
+    } close{*this, cancel, events};
     const std::uint32_t pass = resume(cancel, events);
     // Between two passes a resumed render ends as it would have; within one it can't.
     const bool isBetween = pass > 0 && !m_pieces->isWithinPass();
     if (!isBetween || !endPass(pass - 1, 0, 0)) makePasses(pass, cancel, events);
-    m_pieces->finish(*m_frame, progress().passesDone);
+    const std::uint32_t passes = progress().passesDone;
+    m_pieces->finish(*m_frame, passes, m_photons.hash(passes));
+}
+
+// Who cancels doesn't wait for disks.
+void RenderWork::closePieces(const Cancel& cancel, EventQueue& events) noexcept {
+    m_pieces->close(cancel.flag);
+    try {
+        if (const std::string text = m_pieces->takeTrouble(); !text.empty())
+            warnOfCheckpoint("the checkpoint may not be whole: " + text, events);
+    } catch (...) {
+        // Without memory for the text there is no telling.
+    }
 }
 
 void RenderWork::makePasses(std::uint32_t first, const Cancel& cancel, EventQueue& events) {
+    m_photons.check(cancel.flag);
     for (std::uint32_t pass = first;; ++pass) {
         throwIfCancelled(cancel);
         const double photonSeconds = beginPass(pass, cancel, events);
@@ -176,15 +211,17 @@ bool RenderWork::endPass(std::uint32_t pass, double photonSeconds, double bucket
     PassEnd end;
     end.passesDone = pass + 1;
     const bool inCurve = progress().curve.wants(end.passesDone);
-    if (inCurve || m_stopRule.hasErrorTarget()) end.error = m_frame->estimateError();
+    if (inCurve || m_stopRule.hasErrorTarget()) end.error = estimateError();
     end.seconds = m_watch.seconds();
     const std::uint32_t made = end.passesDone - progress().passesResumed;
     end.longestPassSeconds =
         made == 0 ? 0 : std::max(end.seconds / made, photonSeconds + bucketSeconds);
     const std::int32_t stop = m_stopRule.after(end);
     const bool isLast = stop != PMR_STOP_NONE;
-    if (isLast && !end.error) end.error = m_frame->estimateError();
-    m_clock.endPass(photonSeconds, bucketSeconds, m_stopRule.passesToErrorTarget(end));
+    if (isLast && !end.error) end.error = estimateError();
+    m_clock.endPass(
+        photonSeconds, bucketSeconds, m_stopRule.passesToErrorTarget(end),
+        isLast || !m_frame ? 1.0 : samplesOverPassBefore(m_settings, *m_frame, end.passesDone));
 
     const std::lock_guard lock(m_mutex);
     m_progress.passesDone = end.passesDone;
@@ -246,7 +283,7 @@ void RenderWork::renderAtom(const Rect& rect, const Rect& atom, std::uint32_t pa
                     buffer.begin() + to * m_layout.count);
         const auto runs = scratch.runs.begin() + row * kAtomSizePixels;
         std::transform(runs, runs + kAtomSizePixels, buffer.begin() + weightsAt + to,
-                       [](SampleRun run) { return static_cast<float>(run.count); });
+                       [](SampleRun run) { return run.weight(); });
     }
 }
 
@@ -287,6 +324,7 @@ double RenderWork::renderBuckets(std::uint32_t pass, const Cancel& cancel, Event
             m_clock.buckets(pass, static_cast<double>(++done) / bucketCount());
         events.progress(reading.fraction, reading.remainingSeconds);
     };
+    m_clock.buckets(pass, static_cast<double>(done) / bucketCount());
     const BucketRun result = runBuckets(m_arena, m_grid, order, cancel.token, work);
     const double seconds = watch.seconds();
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,9 +14,12 @@
 #include "integrator/transport/frame_renderer.h"
 #include "integrator/transport/plan.h"
 #include "integrator/values/stopwatch.h"
+#include "plugin/src/bucket_passes.h"
 #include "plugin/src/error_curve.h"
 #include "plugin/src/event_queue.h"
+#include "plugin/src/memory_plan.h"
 #include "plugin/src/progress_clock.h"
+#include "plugin/src/render_photons.h"
 #include "plugin/src/render_pieces.h"
 #include "plugin/src/setting_values.h"
 #include "plugin/src/stop_rule.h"
@@ -42,13 +46,8 @@ struct Cancel {
     bool isSet() const { return flag.load(std::memory_order_acquire); }
 };
 
-// What a render needs, in bytes.
-struct MemoryNeed {
-    std::uint64_t scene = 0, frame = 0, maps = 0, buckets = 0;
-    std::uint64_t total() const { return scene + frame + maps + buckets; }
-};
-
-// Where light meets pixels: one render's passes, photons first, then the buckets in their order.
+// Where light meets pixels: one render's passes, photons first, then the buckets in their order;
+// or, by buckets, the photons of all passes, then each bucket with all passes (see MemoryPlan).
 // Made when the render starts, run once by its thread.
 class RenderWork {
   public:
@@ -69,6 +68,7 @@ class RenderWork {
         std::uint32_t passesResumed = 0;  // of these from the checkpoint
         std::int32_t stopReason = PMR_STOP_NONE;
         ErrorCurve curve;
+        std::string photonHash;                // of a photon map that was written
         double photonSeconds = 0;              // beginPass: photons and their maps
         double bucketSeconds = 0;              // the buckets of all passes
         double idleSeconds = 0;                // of workers at the ends of passes, summed
@@ -79,8 +79,16 @@ class RenderWork {
     RenderCounters counters() const { return m_renderer->counters(); }
     const Scene& scene() const { return *m_scene; }
     const Plan& plan() const { return m_plan; }
-    const MemoryNeed& memoryNeed() const { return m_need; }
-    const FrameStore& frame() const { return *m_frame; }
+    const RenderPhotons& photons() const { return m_photons; }
+    const MemoryPlan& memory() const { return m_memory; }
+    // The pixels that can be read now; by buckets null where no bucket is being delivered.
+    std::shared_ptr<const FrameStore> frame() const;
+    std::optional<FrameError> estimateError() const;  // of the pixels so far
+    // By buckets: the host is about to be called back for one, or has returned from that.
+    void beforeDelivery(std::uint32_t bucketIndex);
+    void afterDelivery(std::uint32_t bucketIndex);
+    // The passes that pixels which can be read now have had.
+    std::uint32_t passesOfPixels() const;
     const ChannelLayout& layout() const { return m_layout; }
     WarningLog& warnings() { return m_warnings; }
     int threads() const { return m_arena.threads(); }
@@ -94,10 +102,15 @@ class RenderWork {
         std::vector<SampleRun> runs;
     };
 
-    void checkMemory(const SettingValues& values);
+    void makeRenderer();
+    void runPhotonsOnly(const Cancel& cancel, EventQueue& events);
+    void tracePass(std::uint32_t pass, const Cancel& cancel, EventQueue& events);
+    void runByBuckets(const Cancel& cancel, EventQueue& events);
+    double addPass(std::uint32_t pass, double share, const Cancel& cancel, EventQueue& events);
     // Returns the first pass to make.
     std::uint32_t resume(const Cancel& cancel, EventQueue& events);
     void warnOfCheckpoint(const std::string& text, EventQueue& events);
+    void closePieces(const Cancel& cancel, EventQueue& events) noexcept;
     void makePasses(std::uint32_t first, const Cancel& cancel, EventQueue& events);
     std::string passName(std::uint32_t pass) const;
     // Whether the pass that just ended was the last.
@@ -117,16 +130,18 @@ class RenderWork {
     const Plan m_plan;
     WorkerArena m_arena;
     const BucketGrid m_grid;
+    const MemoryPlan m_memory;
     std::vector<std::uint32_t> m_order;       // cells in the order of rendering
     std::vector<std::uint32_t> m_orderIndex;  // and where each cell is in it
     std::unique_ptr<RenderPieces> m_pieces;
     std::uint32_t m_timedPasses = 0;  // that secondsPerBucket is the mean of
     bool m_isCorrelated = false;      // the next bucket is chosen while rendering
     ChannelLayout m_layout;
-    MemoryNeed m_need;
+    RenderPhotons m_photons;  // outlives who reads from it:
     std::unique_ptr<FrameRenderer> m_renderer;
-    std::unique_ptr<FrameStore> m_frame;
-    std::vector<Scratch> m_scratch;  // one a worker
+    std::shared_ptr<FrameStore> m_frame;      // the whole one
+    std::unique_ptr<BucketPasses> m_buckets;  // or, by buckets, these, and no pieces
+    std::vector<Scratch> m_scratch;           // one a worker
     ProgressClock m_clock;
     WarningLog m_warnings;
 

@@ -13,6 +13,7 @@
 #include "plugin/src/call_error.h"
 #include "plugin/src/entry.h"
 #include "plugin/src/identity.h"
+#include "plugin/src/light_reader.h"
 #include "plugin/src/transform_reader.h"
 #include "scheduler/worker_arena.h"
 
@@ -41,14 +42,6 @@ std::array<double, 9> checkedRgbToXyz(const double (&given)[9]) {
                               matrix[5], 0,         matrix[6], matrix[7], matrix[8], 0};
     if (determinant(padded) == 0.0) throw argumentError("PmrSceneDesc: rgbToXyz has no inverse");
     return matrix;
-}
-
-Rgb checkedIntensity(const float (&emission)[3]) {
-    for (const float value : emission)
-        if (!(value >= 0.0f) || !std::isfinite(value))
-            throw argumentError(fmt::format(
-                "PmrLightDesc: emission is {}; it must be 0 or more and finite (W/sr)", value));
-    return {emission[0], emission[1], emission[2]};
 }
 
 void refuseOtherCameras(const PmrCameraDesc& desc) {
@@ -145,26 +138,23 @@ void SceneObject::addInstance(const PmrInstanceDesc& desc) {
 void SceneObject::addLight(const PmrLightDesc& desc) {
     const std::lock_guard lock(m_mutex);
     requireOpen();
-    if (desc.kind == PMR_LIGHT_SPOT || desc.kind == PMR_LIGHT_DIRECTIONAL)
-        throw unsupported(fmt::format(
-            "PmrLightDesc: this version renders point lights and emitting surfaces only, not {} "
-            "lights",
-            desc.kind == PMR_LIGHT_SPOT ? "spot" : "directional"));
-    if (desc.kind != PMR_LIGHT_POINT)
-        throw argumentError(
-            fmt::format("PmrLightDesc: kind is {}; it must be 0 to 2 (PMR_LIGHT_*)", desc.kind));
-    const Transform transform = readTransform(desc.transforms, desc.transformCount, "PmrLightDesc");
-    PointLightDescription light;
-    light.position = {transform[3], transform[7], transform[11]};
-    light.intensity = checkedIntensity(desc.emission);
-    light.name = desc.name == nullptr ? "" : desc.name;
-    m_description.pointLights.push_back(std::move(light));
+    readLight(desc, m_description);
 }
 
-void SceneObject::setEnvironment(const PmrEnvironmentDesc&) {
+void SceneObject::setEnvironment(const PmrEnvironmentDesc& desc) {
     const std::lock_guard lock(m_mutex);
     requireOpen();
-    throw unsupported("PmrEnvironmentDesc: this version renders no environment light");
+    EnvironmentDescription environment = readEnvironment(desc);
+    std::shared_ptr<TextureObject> texture;
+    if (desc.texture != nullptr) {
+        texture = findObject<TextureObject>(desc.texture);
+        if (!texture)
+            throw CallError(PMR_ERROR_HANDLE, "PmrEnvironmentDesc: texture is not a live texture");
+        if (texture->context() != m_context)
+            throw argumentError("PmrEnvironmentDesc: texture belongs to another context");
+    }
+    m_description.environment = environment;
+    m_environmentTexture = std::move(texture);
 }
 
 void SceneObject::setCamera(const PmrCameraDesc& desc) {
@@ -190,11 +180,14 @@ void SceneObject::commit() {
     std::unique_lock lock(m_mutex);
     requireOpen();
     SceneDescription description = m_description;
+    if (description.environment)
+        description.environment->texture = m_textures->add(m_environmentTexture);
     description.textures = m_textures;
     const auto start = std::chrono::steady_clock::now();
     WorkerArena arena(m_context->threads());
-    auto built =
-        arena.execute([&] { return Scene::build(std::move(description), m_context->isa()); });
+    auto built = arena.execute([&] {
+        return Scene::build(std::move(description), m_context->isa(), m_context->buildCheck());
+    });
     m_identity = sceneIdentity(*built, *m_textures);
     m_scene = std::move(built);
     m_buildSeconds =

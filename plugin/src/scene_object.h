@@ -60,6 +60,7 @@ class SceneObject {
     std::shared_ptr<SceneTextures> m_textures;
     std::unordered_map<const MaterialObject*, std::uint32_t> m_materialIndices;
     std::vector<std::shared_ptr<MaterialObject>> m_materials;  // keeps the keys above alive
+    std::shared_ptr<TextureObject> m_environmentTexture;       // null: none
     std::shared_ptr<const Scene> m_scene;
     Identity m_identity;
     double m_buildSeconds = 0;

@@ -3,6 +3,7 @@
 #include "plugin/src/scene_textures.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pm::plugin {
 
@@ -26,6 +27,16 @@ Texel SceneTextures::lookUp(std::int32_t index, Vec2f uv, float width) const {
     if (!texture.context()->textures().lookUp(texture.picture(), uv, width, texel))
         m_failures.fetch_add(1, std::memory_order_relaxed);
     return texel;
+}
+
+std::array<std::uint32_t, 2> SceneTextures::texels(std::int32_t index) const {
+    const TexturePicture& picture = m_textures[static_cast<std::size_t>(index)]->picture();
+    const auto over = [](std::uint32_t texels, float scale) {
+        return static_cast<std::uint32_t>(std::clamp(
+            std::ceil(static_cast<double>(texels) * std::abs(static_cast<double>(scale))), 1.0,
+            1e6));
+    };
+    return {over(picture.width, picture.uvScale.x), over(picture.height, picture.uvScale.y)};
 }
 
 std::uint64_t SceneTextures::failureCount() const {

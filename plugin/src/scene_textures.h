@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -22,6 +23,7 @@ class SceneTextures final : public TextureSource {
     std::vector<const TexturePicture*> pictures() const;
 
     Texel lookUp(std::int32_t index, Vec2f uv, float width) const override;
+    std::array<std::uint32_t, 2> texels(std::int32_t index) const override;
     std::uint64_t failureCount() const override;
 
   private:

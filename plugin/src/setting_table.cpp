@@ -32,18 +32,23 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
      "The order in which buckets are rendered; random is shuffled by the seed, correlated chooses "
      "the next bucket while rendering.",
      "Within a few per cent of each other; see docs/orders.md."},
-    {Setting::kAaLevel, "aaLevel", PMR_SETTING_INTEGER, "", "3", 1, 6, 1, "", true,
+    {Setting::kAaLevel, "aaLevel", PMR_SETTING_INTEGER, "", "3", 0, 6, 1, "", true,
      "Anti-aliasing: level l takes 4^(l-1) samples a pixel in every four passes; this is the "
-     "least.",
+     "least. At 0 each 2 x 2 pixels share one, a blur for previews that the estimated error does "
+     "not cover; with a higher aaLevelMost they are divided where their first two samples differ.",
      "Each level takes four times the time of the one before."},
-    {Setting::kAaLevelMost, "aaLevelMost", PMR_SETTING_INTEGER, "", "5", 1, 6, 1, "", true,
+    {Setting::kAaLevelMost, "aaLevelMost", PMR_SETTING_INTEGER, "", "5", 0, 6, 1, "", true,
      "The most that a pixel gets whose samples differ, from the third pass on; aaLevel or less: "
      "every pixel gets the same.",
      "Time goes to the pixels that need it; up to 400 bytes a pixel in place of 250."},
     {Setting::kAaThreshold, "aaThreshold", PMR_SETTING_NUMBER, "", "0.01", 0, 1, 1, "", true,
      "A pixel gets samples, from aaLevel to aaLevelMost, until one more in four passes would lower "
-     "its squared relative error by less than this squared.",
+     "its squared relative error by less than this squared; from the fifth pass on, half of this.",
      "Halved, noisy pixels get twice the samples."},
+    {Setting::kFilter, "filter", PMR_SETTING_CHOICE, "", "box", 0, 0, 1, "box,gaussian", true,
+     "How the frame around a pixel counts in it: box, all of the pixel alike; gaussian, by a "
+     "normal density around its centre with a standard deviation of 0.5 pixels, cut off at 1.5.",
+     "None to speak of: samples are placed by it."},
     {Setting::kIntegrator, "integrator", PMR_SETTING_CHOICE, "", "photon", 0, 0, 1, "photon,path",
      true, "photon: photon maps with final gathering; path: the unbiased path tracer, a reference.",
      "path needs no memory for maps, but many more samples where light is indirect or focused."},
@@ -69,8 +74,8 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
      "albedo and N take 24 bytes a pixel each, Z 8; stderr and samples none."},
     {Setting::kMemoryLimit, "memoryLimitGib", PMR_SETTING_NUMBER, "GiB", "0", 0, 1048576, 1, "",
      false,
-     "A render that needs more is refused at its start; 0 = the cgroup's limit, else 90 % of "
-     "memory.",
+     "A render that needs more is refused at its start, or goes bucket by bucket where the host "
+     "takes that (see delivery); 0 = the cgroup's limit, else 90 % of memory.",
      "None; it never changes the picture."},
     {Setting::kErrorTarget, "errorTarget", PMR_SETTING_NUMBER, "relMSE", "0", 0, 1000000, 1, "",
      false,
@@ -104,6 +109,21 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
      "What of the host decides on the picture, as its colour config: lines `name: value`. "
      "Checkpoints and parts of another are refused.",
      "None."},
+    {Setting::kDelivery, "delivery", PMR_SETTING_CHOICE, "", "frame", 0, 0, 1, "frame,buckets,fit",
+     false,
+     "frame: all pixels are kept until the render is destroyed; buckets: a bucket is rendered with "
+     "all its passes (8 at most, a fixed number), its pixels can be read inside its bucketFinished "
+     "and are forgotten; fit: frame where that fits the memory limit, else buckets where that can "
+     "be. See PMR_DELIVERY_BUCKETS.",
+     "buckets holds the maps of all passes at once, and little for each pixel."},
+    {Setting::kPhotonMap, "photonMap", PMR_SETTING_TEXT, "", "", 0, 0, 1, "", false,
+     "File that photons are read from in place of being traced, for the same picture: one that "
+     "photonsOnly made of the same scene, seed and numbers of photons, with any camera and no "
+     "fewer passes. Empty: none.",
+     "Reading takes a small part of the time of tracing."},
+    {Setting::kPhotonsOnly, "photonsOnly", PMR_SETTING_INTEGER, "", "0", 0, 1, 1, "", false,
+     "1: traces the photons of all passes into the file photonMap and ends; there are no pixels.",
+     "On disk 28 bytes a photon that landed."},
 }};
 
 constexpr bool inOrder() {

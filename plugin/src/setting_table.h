@@ -26,6 +26,7 @@ enum class Setting : std::size_t {
     kAaLevel,
     kAaLevelMost,
     kAaThreshold,
+    kFilter,
     kIntegrator,
     kPhotons,
     kEstimatePhotons,
@@ -42,6 +43,9 @@ enum class Setting : std::size_t {
     kCheckpoint,
     kResume,
     kHostIdentity,
+    kDelivery,
+    kPhotonMap,
+    kPhotonsOnly,
     kCount
 };
 inline constexpr std::size_t kSettingCount = static_cast<std::size_t>(Setting::kCount);

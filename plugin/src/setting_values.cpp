@@ -235,6 +235,8 @@ RenderSettings SettingValues::toRenderSettings() const {
     const auto most = static_cast<std::uint32_t>(integer(Setting::kAaLevelMost));
     settings.aaLevelMost = most > settings.aaLevel ? most : 0;
     settings.aaThreshold = number(Setting::kAaThreshold);
+    settings.filter =
+        word(Setting::kFilter) == "gaussian" ? PixelFilter::kGaussian : PixelFilter::kBox;
     settings.seed = static_cast<std::uint64_t>(integer(Setting::kSeed));
     settings.wantAlbedo = wantsLayer("albedo");
     settings.wantNormal = wantsLayer("N");

@@ -63,7 +63,7 @@ Json bucketJson(const RenderWork& work, const RenderWork::Progress& progress) {
 }
 
 Json memoryJson(const RenderWork& work, const RenderCounters& counters) {
-    const MemoryNeed& need = work.memoryNeed();
+    const MemoryNeed& need = work.memory().need;
     return {{"sceneBytes", need.scene},          {"frameBytes", need.frame},
             {"mapBytes", counters.peakMapBytes}, {"plannedMapBytes", need.maps},
             {"bucketBytes", need.buckets},       {"peakResidentBytes", peakResidentBytes()}};
@@ -90,6 +90,18 @@ Json planJson(const Plan& plan) {
             {"gatherRaysPerPoint", plan.gatherRays},
             {"causticPhotonsPerPass", plan.causticPhotons},
             {"lines", plan.reasons}};
+}
+
+// Of a render with a photon map. Its hash is not among the render's: the picture is the same
+// without.
+void addPhotons(const RenderPhotons& photons, const RenderWork::Progress& progress, Json& json) {
+    if (photons.file().empty()) return;
+    json["photonMap"] = {
+        {"file", photons.file()},
+        {"use", photons.isOnly() ? "written" : "read"},
+        {"passesHeld", photons.passesHeld()},
+        {"fileBytes", photons.bytes()},
+        {"hash", photons.isOnly() ? progress.photonHash : photons.hash(progress.passesDone)}};
 }
 
 Json curveJson(const ErrorCurve& curve) {
@@ -132,6 +144,7 @@ std::string Render::statisticsJson() const {
     json["versions"] = versionsJson();
     json["hashes"] = {{"scene", identityHash(m_scene->identity())},
                       {"settings", identityHash(settingsIdentity(settings()))}};
+    addPhotons(running->photons(), progress, json);
     json["isa"] = running->scene().isa();
     json["stopReason"] = stopText(stopReason());
     json["status"] = status;
@@ -140,7 +153,8 @@ std::string Render::statisticsJson() const {
     json["passesResumed"] = progress.passesResumed;
     json["passesPlanned"] = running->passCount();
     json["threads"] = running->threads();
-    addError(running->frame().estimateError(), json);
+    json["delivery"] = running->memory().byBuckets ? "buckets" : "frame";
+    addError(running->estimateError(), json);
     json["errorCurve"] = curveJson(progress.curve);
     json["phases"] = {
         {"buildSeconds", m_scene->buildSeconds()}, {"photonSeconds", counters.photonSeconds},

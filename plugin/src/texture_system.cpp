@@ -129,13 +129,19 @@ TexturePicture TextureSystem::open(const PmrTextureDesc& desc) {
     OIIO::TextureSystem& textures = system();
     const OIIO::ustring name(picture.fileName);
     picture.handle = textures.get_texture_handle(name);
-    const bool good = picture.handle != nullptr && textures.good(picture.handle) &&
-                      textures.get_texture_info(name, 0, OIIO::ustring("channels"), OIIO::TypeInt,
-                                                &picture.channelCount);
+    std::array<int, 2> size{};
+    const bool good =
+        picture.handle != nullptr && textures.good(picture.handle) &&
+        textures.get_texture_info(name, 0, OIIO::ustring("channels"), OIIO::TypeInt,
+                                  &picture.channelCount) &&
+        textures.get_texture_info(name, 0, OIIO::ustring("resolution"),
+                                  OIIO::TypeDesc(OIIO::TypeDesc::INT, 2), size.data());
     const std::string reason = textures.geterror();
     if (!good || picture.channelCount < 1)
         throw CallError(PMR_ERROR_IO, fmt::format("texture {}: {}", picture.fileName,
                                                   reason.empty() ? "can't be read" : reason));
+    picture.width = static_cast<std::uint32_t>(std::max(1, size[0]));
+    picture.height = static_cast<std::uint32_t>(std::max(1, size[1]));
     return picture;
 }
 

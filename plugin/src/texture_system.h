@@ -20,7 +20,8 @@ namespace pm::plugin {
 struct TexturePicture {
     std::string fileName;
     OIIO::TextureSystem::TextureHandle* handle = nullptr;
-    int channelCount = 1;  // as the file has, at most 4 are used
+    std::uint32_t width = 1, height = 1;  // texels of the finest level
+    int channelCount = 1;                 // as the file has, at most 4 are used
     OIIO::TextureOpt::Wrap wrapS = OIIO::TextureOpt::WrapPeriodic;
     OIIO::TextureOpt::Wrap wrapT = OIIO::TextureOpt::WrapPeriodic;
     Vec2f uvScale{1.0f, 1.0f};

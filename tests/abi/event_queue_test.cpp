@@ -56,7 +56,7 @@ void deliverAll(EventQueue& queue) {
 TEST(EventQueue, MergesWhatWaits) {
     Calls calls;
     EventQueue queue(sinksFor(calls));
-    queue.open(nullptr, 2);
+    queue.open(nullptr);
     for (std::uint32_t pass = 0; pass < 1000; ++pass)
         for (std::uint32_t i = 0; i < 2; ++i) {
             queue.bucketStarted(bucket(i, pass));
@@ -72,7 +72,7 @@ TEST(EventQueue, MergesWhatWaits) {
 TEST(EventQueue, MessagesAreBounded) {
     Calls calls;
     EventQueue queue(sinksFor(calls));
-    queue.open(nullptr, 1);
+    queue.open(nullptr);
     for (int i = 0; i < 100000; ++i) queue.message(PMR_LEVEL_INFO, PMR_MESSAGE_PHASE, "m");
     deliverAll(queue);
     EXPECT_EQ(EventQueue::kMaxWaitingMessages, calls.size());
@@ -81,7 +81,7 @@ TEST(EventQueue, MessagesAreBounded) {
 TEST(EventQueue, DropsAllButFinished) {
     Calls calls;
     EventQueue queue(sinksFor(calls));
-    queue.open(nullptr, 1);
+    queue.open(nullptr);
     queue.message(PMR_LEVEL_INFO, 0, "lost");
     queue.bucketFinished(bucket(0, 0));
     queue.finished(PMR_ERROR_CANCELLED);
@@ -107,7 +107,7 @@ TEST(EventQueue, FinishedOnceWhenDroppedInsideIt) {
     };
     EventQueue queue(desc);
     host.queue = &queue;
-    queue.open(nullptr, 1);
+    queue.open(nullptr);
     queue.finished(PMR_OK);
     EXPECT_EQ(EventQueue::Delivery::kDelivered, queue.deliverOne(deadlineAfter(0.0)));
     EXPECT_EQ(EventQueue::Delivery::kOver, queue.deliverOne(deadlineAfter(0.0)));
@@ -116,7 +116,7 @@ TEST(EventQueue, FinishedOnceWhenDroppedInsideIt) {
 
 TEST(EventQueue, NoCallbacksIsFine) {
     EventQueue queue(PMR_INIT(PmrRenderDesc));
-    queue.open(nullptr, 1);
+    queue.open(nullptr);
     queue.bucketStarted(bucket(0, 0));
     queue.bucketFinished(bucket(0, 0));
     queue.message(0, 0, "");

@@ -86,6 +86,70 @@ TEST_F(Pixels, LevelsAreWhatTheSamplesAmountTo) {
     EXPECT_GT(most, *std::min_element(levels.begin(), levels.end()));
 }
 
+std::vector<float> levelZero(PmrRender render, const char* mostLevel) {
+    EXPECT_EQ(PMR_OK, api().setSettingText(render, "aaLevel", "0"));
+    EXPECT_EQ(PMR_OK, api().setSettingText(render, "aaLevelMost", mostLevel));
+    EXPECT_EQ(PMR_OK, api().setSettingInteger(render, "passes", 4));
+    EXPECT_EQ(PMR_OK, api().startRender(render));
+    EXPECT_EQ(PMR_OK, api().waitRender(render, -1.0));
+    return readLayer(render, "beauty", 4, kWhole);
+}
+
+// Whether the 2 x 2 pixels around (x, y) on even coordinates have one colour.
+bool showsAGroup(const std::vector<float>& beauty, std::int32_t x, std::int32_t y) {
+    const auto at = [&](std::int32_t i, std::int32_t j) {
+        return beauty.data() +
+               4 * static_cast<std::size_t>((y & ~1) * kWidth + (x & ~1) + i + j * kWidth);
+    };
+    for (const float* other : {at(1, 0), at(0, 1), at(1, 1)})
+        if (std::memcmp(at(0, 0), other, 4 * sizeof(float)) != 0) return false;
+    return true;
+}
+
+TEST_F(Pixels, LevelZeroIsOneSampleForFourPixels) {
+    const auto beauty = levelZero(m_render, "0");
+    for (std::int32_t y = 0; y < kHeight; ++y)
+        for (std::int32_t x = 0; x < kWidth; ++x) ASSERT_TRUE(showsAGroup(beauty, x, y));
+    for (const float count : readLayer(m_render, "samples", 1, kWhole)) EXPECT_EQ(0.25f, count);
+    for (const float level : readLayer(m_render, "aalevel", 1, kWhole)) EXPECT_EQ(0.0f, level);
+    const std::string statistics = textOf([&](char* buffer, std::uint64_t size, std::uint64_t* n) {
+        return api().renderStatistics(m_render, buffer, size, n);
+    });
+    EXPECT_NE(std::string::npos, statistics.find("begins at level 0"));
+}
+
+// Some groups are divided, and from then on their pixels' samples are their own; what samples there
+// are is told by the layer, and adds up to those that were taken.
+TEST_F(Pixels, LevelZeroIsDividedWhereItsSamplesDiffer) {
+    const auto beauty = levelZero(m_render, "3");
+    const auto samples = readLayer(m_render, "samples", 1, kWhole);
+    const auto levels = readLayer(m_render, "aalevel", 1, kWhole);
+    std::size_t groups = 0;
+    double sum = 0;
+    for (std::int32_t y = 0; y < kHeight; ++y)
+        for (std::int32_t x = 0; x < kWidth; ++x) {
+            const auto i = static_cast<std::size_t>(y * kWidth + x);
+            sum += static_cast<double>(samples[i]);
+            if (levels[i] == 0.0f) {
+                ++groups;
+                EXPECT_TRUE(showsAGroup(beauty, x, y)) << x << "," << y;
+                EXPECT_EQ(0.5f, samples[i]);  // one in each half, shared by four
+            } else {
+                EXPECT_GE(samples[i], 2.0f);
+                EXPECT_FLOAT_EQ(levels[i], 1 + 0.5f * std::log2(samples[i]));
+            }
+        }
+    EXPECT_GT(groups, samples.size() / 10);
+    EXPECT_LT(groups, samples.size() * 9 / 10);
+    // Pixels that were divided had half a sample more before.
+    sum += 0.5 * static_cast<double>(samples.size() - groups);
+    const std::string statistics = textOf([&](char* buffer, std::uint64_t size, std::uint64_t* n) {
+        return api().renderStatistics(m_render, buffer, size, n);
+    });
+    EXPECT_NE(std::string::npos,
+              statistics.find("\"cameraSamples\": " + std::to_string(std::llround(sum)) + ","));
+}
+
 TEST_F(Pixels, BeautyIsTheSumOfItsParts) {
     for (const float value : readLayer(m_render, "beauty", 4, kWhole)) EXPECT_EQ(0.0f, value);
     finish();

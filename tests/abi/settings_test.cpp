@@ -46,7 +46,8 @@ TEST(Settings, EnumerationIsWhole) {
           "bucketOrder", "aaLevel",          "integrator",   "photons",     "estimatePhotons",
           "gatherRays",  "passes",           "seed",         "layers",      "memoryLimitGib",
           "errorTarget", "timeLimitSeconds", "plan",         "buckets",     "part",
-          "checkpoint",  "resume",           "hostIdentity", "aaLevelMost", "aaThreshold"})
+          "checkpoint",  "resume",           "hostIdentity", "aaLevelMost", "aaThreshold",
+          "filter"})
         EXPECT_EQ(1u, names.count(name)) << name;
     EXPECT_EQ(PMR_OK, api().destroyRender(render));
 }

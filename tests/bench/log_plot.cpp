@@ -5,11 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <fstream>
 
-#include "integrator/values/error.h"
+#include "tests/bench/svg_parts.h"
 
 namespace pm::bench {
 
@@ -17,10 +15,6 @@ namespace {
 
 constexpr double kWidth = 760, kHeight = 440;                        // of the picture, in its units
 constexpr double kLeft = 70, kRight = 225, kTop = 36, kBottom = 50;  // margins
-
-// Colours that stay apart for colour-blind eyes (Okabe and Ito).
-constexpr std::array<const char*, 6> kColours = {"#0072b2", "#56b4e9", "#e69f00",
-                                                 "#009e73", "#d55e00", "#cc79a7"};
 
 // One logarithmic axis: value -> place.
 struct Axis {
@@ -61,30 +55,6 @@ void forTicks(const Axis& axis, const F& f) {
             if (std::log10(value) < axis.low || std::log10(value) > axis.high) continue;
             f(value, digit == 1 || (all && (digit == 2 || digit == 5)));
         }
-}
-
-std::string escaped(const std::string& text) {
-    std::string result;
-    for (const char c : text) {
-        if (c == '&')
-            result += "&amp;";
-        else if (c == '<')
-            result += "&lt;";
-        else
-            result += c;
-    }
-    return result;
-}
-
-std::string textAt(double x, double y, const std::string& anchor, const std::string& text,
-                   const std::string& more = "") {
-    return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" text-anchor=\"{}\" {}>{}</text>\n", x, y,
-                       anchor, more, escaped(text));
-}
-
-std::string straight(double x0, double y0, double x1, double y1, const std::string& style) {
-    return fmt::format("<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" {}/>\n", x0,
-                       y0, x1, y1, style);
 }
 
 std::string grid(const Axis& x, const Axis& y) {
@@ -137,11 +107,7 @@ void writeSvg(const std::filesystem::path& file, const LogPlot& plot) {
             }
     if (plot.level > 0) ys.push_back(plot.level);
     const Axis x = axisFor(xs, kLeft, kWidth - kRight), y = axisFor(ys, kHeight - kBottom, kTop);
-    std::string svg = fmt::format(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {0} {1}\" width=\"{0}\" "
-        "height=\"{1}\" font-family=\"sans-serif\" font-size=\"12\">\n"
-        "<rect width=\"{0}\" height=\"{1}\" fill=\"white\"/>\n",
-        kWidth, kHeight);
+    std::string svg;
     svg += grid(x, y);
     svg += textAt((x.from + x.to) / 2, 22, "middle", plot.title, "font-size=\"15\"");
     svg += textAt((x.from + x.to) / 2, kHeight - 14, "middle", plot.xLabel);
@@ -154,13 +120,11 @@ void writeSvg(const std::filesystem::path& file, const LogPlot& plot) {
         svg += textAt(x.to + 6, at + 4, "start", plot.levelName, "fill=\"#707070\"");
     }
     for (std::size_t i = 0; i < plot.lines.size(); ++i) {
-        const char* const colour = kColours[i % kColours.size()];
+        const char* const colour = plotColour(i);
         svg += curve(plot.lines[i], x, y, colour);
         svg += legendEntry(plot.lines[i], i, x.to + 12, colour);
     }
-    std::ofstream out(file);
-    out << svg << "</svg>\n";
-    if (!out.flush()) throw Error(Status::kIo, file.string() + ": can't be written");
+    writeSvgFile(file, kWidth, kHeight, svg);
 }
 
 }  // namespace pm::bench

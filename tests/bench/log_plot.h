@@ -17,7 +17,7 @@ struct PlotLine {
 
 struct LogPlot {
     std::string title, xLabel, yLabel;
-    std::vector<PlotLine> lines;  // the first six have colours of their own
+    std::vector<PlotLine> lines;  // the first eight have colours of their own
     double level = 0;             // a grey line across at this y; 0 = none
     std::string levelName;
 };

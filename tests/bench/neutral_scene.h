@@ -3,6 +3,7 @@
 // The three neutral scenes that several renderers were measured on, as plain numbers.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -28,6 +29,14 @@ struct NeutralSphere {
     std::string material;  // "mirror" (of reflectance 1) or "glass" (smooth, ior 1.5)
 };
 
+// Flat triangles, the front where they run counter-clockwise.
+struct NeutralMesh {
+    std::string name;
+    std::vector<Vec3f> positions;
+    std::vector<std::array<std::uint32_t, 3>> triangles;  // into positions
+    std::string material;
+};
+
 struct NeutralCamera {
     Vec3d position, lookAt, up;
     double verticalDegrees = 0;
@@ -40,8 +49,9 @@ struct NeutralScene {
     std::map<std::string, Rgb> reflectances;
     std::vector<NeutralQuad> quads;
     std::vector<NeutralSphere> spheres;
-    NeutralQuad lamp;  // black, shines from its front
-    Rgb radiance;      // of the lamp
+    std::vector<NeutralMesh> meshes;  // of our own scenes; no file has any
+    NeutralQuad lamp;                 // black, shines from its front
+    Rgb radiance;                     // of the lamp
     NeutralCamera camera;
 };
 

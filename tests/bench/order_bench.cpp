@@ -5,7 +5,6 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <cmath>
 #include <cstdio>
 #include <thread>
 
@@ -16,6 +15,7 @@
 #include "tests/bench/idle_share.h"
 #include "tests/bench/order_picture.h"
 #include "tests/bench/order_run.h"
+#include "tests/bench/ratios.h"
 #include "tests/bench/report.h"
 
 namespace pm::bench {
@@ -25,22 +25,6 @@ namespace {
 // as many as 32 x 32 pixels make of 512 x 512.
 constexpr std::int32_t kSidePixels = 256, kOrderBucketPixels = 16;
 constexpr std::array kSizes{8, 16, 24, 32, 48, 64, 96, 128, 192, 256};
-
-// "1.0012 (0.9987 to 1.0036)": the geometric mean of ratios and its 95 % interval, of independent
-// turns, by Student's distribution (its quantile to second order in 1 / degrees of freedom).
-std::string showRatios(const std::vector<double>& ratios) {
-    const auto n = static_cast<double>(ratios.size());
-    double mean = 0, squares = 0;
-    for (const double ratio : ratios) mean += std::log(ratio) / n;
-    for (const double ratio : ratios) squares += std::pow(std::log(ratio) - mean, 2);
-    if (n < 2) return fmt::format("{:.4f}", std::exp(mean));
-    const double z = 1.959964, f = n - 1;
-    const double t = z + (std::pow(z, 3) + z) / (4 * f) +
-                     (5 * std::pow(z, 5) + 16 * std::pow(z, 3) + 3 * z) / (96 * f * f);
-    const double reach = t * std::sqrt(squares / f / n);
-    return fmt::format("{:.4f} ({:.4f} to {:.4f})", std::exp(mean), std::exp(mean - reach),
-                       std::exp(mean + reach));
-}
 
 // figures[turn][rival] over the first rival of the same turn.
 std::vector<double> ratiosOf(const std::vector<std::vector<double>>& figures, std::size_t rival) {

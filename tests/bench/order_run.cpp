@@ -3,6 +3,7 @@
 #include "tests/bench/order_run.h"
 
 #include <algorithm>
+#include <atomic>
 #include <numeric>
 #include <utility>
 
@@ -30,16 +31,16 @@ struct Target {
     }
 };
 
-// Processor seconds of each atom, by bucket in its order.
+// Processor seconds of each atom, by bucket as they are begun.
 class AtomTimes {
   public:
-    AtomTimes(const BucketGrid& grid, const std::vector<std::uint32_t>& order)
-        : m_places(order.size()) {
-        for (std::size_t place = 0; place < order.size(); ++place) {
-            m_places[order[place]] = place;
-            m_seconds.emplace_back(
-                static_cast<std::size_t>(atomCount(grid.cellRect(order[place]))));
-        }
+    explicit AtomTimes(const BucketGrid& grid)
+        : m_places(grid.cellCount()), m_seconds(grid.cellCount()) {}
+
+    // Threads: any, for different buckets.
+    void begin(std::uint32_t cell, const Rect& rect) {
+        m_places[cell] = m_begun.fetch_add(1);
+        m_seconds[m_places[cell]].resize(static_cast<std::size_t>(atomCount(rect)));
     }
 
     // Threads: any, for different atoms.
@@ -52,6 +53,7 @@ class AtomTimes {
     std::vector<std::vector<double>> take() { return std::move(m_seconds); }
 
   private:
+    std::atomic<std::size_t> m_begun{0};
     std::vector<std::size_t> m_places;
     std::vector<std::vector<double>> m_seconds;
 };
@@ -120,13 +122,16 @@ OrderScene::OrderScene(std::string name, std::shared_ptr<const Scene> scene,
       m_settings(settings),
       m_renderer(std::make_unique<FrameRenderer>(std::move(scene), settings)) {}
 
-void OrderScene::beginPass() {
-    WorkerArena arena(0);
+void OrderScene::beginPass(int threads) {
+    WorkerArena arena(threads);
     arena.execute([&] { m_renderer->beginPass(0, kNeverCancelled, {}); });
 }
 
 BucketTimes OrderScene::render(const BucketSetting& setting) {
-    beginPass();
+    BucketTimes times;
+    const double prepareStart = processorSeconds();
+    times.prepareSeconds = secondsOf([&] { beginPass(setting.threads); });
+    times.prepareProcessorSeconds = processorSeconds() - prepareStart;
     WorkerArena arena(setting.threads);
     const BucketGrid grid(m_settings.window, setting.size);
     const BucketOrder& named = *findBucketOrder(setting.order);
@@ -134,8 +139,9 @@ BucketTimes OrderScene::render(const BucketSetting& setting) {
     const ChannelLayout layout = m_renderer->layout();
     const auto channels = static_cast<std::size_t>(layout.count);
     std::vector<Target> targets(static_cast<std::size_t>(setting.threads));
-    AtomTimes atoms(grid, order);
+    AtomTimes atoms(grid);
     BucketWork work;
+    work.started = [&](std::uint32_t cell, const Rect& rect) { atoms.begin(cell, rect); };
     work.floatsPerPixel = layout.count + 1;
     work.render = [&](std::uint32_t cell, const Rect& rect, const Rect& atom, int worker,
                       std::span<float> bucket) {
@@ -160,7 +166,6 @@ BucketTimes OrderScene::render(const BucketSetting& setting) {
             choice.finished(cell, floats, channels, static_cast<std::size_t>(layout.beauty));
         };
     }
-    BucketTimes times;
     const double processorStart = processorSeconds();
     times.seconds = secondsOf(
         [&] { times.idleSeconds = runBuckets(arena, grid, order, {}, work).idleSeconds; });
@@ -171,7 +176,7 @@ BucketTimes OrderScene::render(const BucketSetting& setting) {
 }
 
 double OrderScene::renderInside(Inside way) {
-    beginPass();
+    beginPass(0);
     const BucketGrid grid(m_settings.window, 32);
     std::vector<Rect> regions;
     for (const std::uint32_t cell : hilbertOrder(grid.columns(), grid.rows())) {

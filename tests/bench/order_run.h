@@ -20,10 +20,11 @@ struct BucketSetting {
 };
 
 struct BucketTimes {
-    double seconds = 0, processorSeconds = 0;  // of the buckets alone: photons and maps not counted
-    double idleSeconds = 0;                    // of workers at the end, summed
-    double choiceSeconds = 0;                  // of it, spent choosing (order "correlated")
-    std::vector<std::vector<double>> atoms;    // processor seconds of each, by bucket in order
+    double prepareSeconds = 0, prepareProcessorSeconds = 0;  // of photons and maps
+    double seconds = 0, processorSeconds = 0;                // of the buckets alone
+    double idleSeconds = 0;                                  // of workers at the end, summed
+    double choiceSeconds = 0;                // of it, spent choosing (order "correlated")
+    std::vector<std::vector<double>> atoms;  // processor seconds of each, by bucket as begun
 };
 
 // A scene ready to be rendered again and again. Threads: one call at a time.
@@ -34,7 +35,8 @@ class OrderScene {
 
     const std::string& name() const { return m_name; }
 
-    // The first pass, with photons and maps made anew so that nothing is kept from the time before.
+    // The first pass, with photons and maps made anew so that nothing is kept from the time before,
+    // by as many threads as the buckets.
     BucketTimes render(const BucketSetting& setting);
 
     // Ways through a bucket's pixels. One region: what a call of the renderer is given.
@@ -50,7 +52,7 @@ class OrderScene {
     double renderInside(Inside way);
 
   private:
-    void beginPass();
+    void beginPass(int threads);
 
     std::string m_name;
     RenderSettings m_settings;

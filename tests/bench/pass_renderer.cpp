@@ -33,8 +33,9 @@ std::vector<double> channelsOf(const FrameStore& store, std::int32_t first) {
 }
 
 PassRenderer::PassRenderer(std::shared_ptr<const Scene> scene, const RenderSettings& settings,
-                           const Plan& plan, int threads)
+                           const Plan& plan, int threads, std::vector<std::uint32_t> samples)
     : m_settings(settings),
+      m_samples(std::move(samples)),
       m_arena(threads),
       m_frame(plugin::makeFrame(settings)),
       m_pass(settings) {
@@ -66,9 +67,13 @@ void PassRenderer::renderStrips() {
         const auto area = static_cast<std::size_t>(strip.area());
         const std::size_t first = static_cast<std::size_t>(i * kRows) * width;
         std::vector<SampleRun> runs(area);
-        plugin::findSamples(m_settings, m_frame, m_passes, strip, runs);
+        if (m_samples.empty()) plugin::findSamples(m_settings, m_frame, m_passes, strip, runs);
+        for (std::size_t k = 0; k < m_samples.size() && k < area; ++k) {
+            const std::uint32_t count = m_samples[first + k];
+            runs[k] = {m_passes / 2 * count, count, 0};
+        }
         std::ranges::transform(runs, m_pass.weights.begin() + static_cast<std::ptrdiff_t>(first),
-                               [](const SampleRun& run) { return static_cast<float>(run.count); });
+                               [](const SampleRun& run) { return run.weight(); });
         m_renderer->renderRegion(
             strip, runs, std::span(m_pass.pixels).subspan(first * channels, area * channels),
             kNotCancelled);

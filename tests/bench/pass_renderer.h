@@ -28,9 +28,10 @@ std::vector<double> channelsOf(const FrameStore& store, std::int32_t first);
 // Threads: one at a time; works in a TBB arena of its own.
 class PassRenderer {
   public:
-    // The sides of the settings' window are multiples of 8 pixels. threads: of the render.
+    // The sides of the settings' window are multiples of 8 pixels. threads: of the render. samples:
+    // of each pixel in every pass of a render that is not adaptive; empty: as the settings say.
     PassRenderer(std::shared_ptr<const Scene> scene, const RenderSettings& settings,
-                 const Plan& plan, int threads);
+                 const Plan& plan, int threads, std::vector<std::uint32_t> samples = {});
 
     // Renders the next pass and adds it to the frame. Returns it, until the next call.
     const Pass& next();
@@ -41,6 +42,7 @@ class PassRenderer {
     void renderStrips();
 
     RenderSettings m_settings;
+    std::vector<std::uint32_t> m_samples;
     tbb::task_arena m_arena;
     std::unique_ptr<FrameRenderer> m_renderer;
     FrameStore m_frame;

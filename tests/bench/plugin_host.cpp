@@ -44,6 +44,7 @@ class Session {
     void add(PmrMesh mesh, PmrMaterial material);
     void addQuad(const NeutralQuad& quad, PmrMaterial material);
     void addSphere(const NeutralSphere& sphere, PmrMaterial material);
+    void addMesh(const NeutralMesh& mesh, PmrMaterial material);
     void setCamera(const NeutralCamera& camera);
 
     const PmrApi& m_api;
@@ -107,6 +108,18 @@ void Session::addSphere(const NeutralSphere& sphere, PmrMaterial material) {
     add(mesh, material);
 }
 
+void Session::addMesh(const NeutralMesh& mesh, PmrMaterial material) {
+    PmrMeshDesc desc = PMR_INIT(PmrMeshDesc);
+    desc.positions = &mesh.positions.data()->x;
+    desc.positionCount = mesh.positions.size();
+    desc.faceCount = mesh.triangles.size();
+    desc.indices = mesh.triangles.data()->data();
+    desc.indexCount = 3 * mesh.triangles.size();
+    PmrMesh made = nullptr;
+    check(m_api.createMesh(m_context, &desc, &made));
+    add(made, material);
+}
+
 void Session::setCamera(const NeutralCamera& camera) {
     const CameraAxes axes = axesOf(camera);
     std::array<double, 12> transform{};
@@ -144,6 +157,7 @@ void Session::build(const NeutralScene& scene) {
     for (const NeutralQuad& quad : scene.quads) addQuad(quad, materials.at(quad.material));
     for (const NeutralSphere& sphere : scene.spheres)
         addSphere(sphere, materials.at(sphere.material));
+    for (const NeutralMesh& mesh : scene.meshes) addMesh(mesh, materials.at(mesh.material));
     addQuad(scene.lamp, material(lamp));
     setCamera(scene.camera);
     check(m_api.commitScene(m_scene));
@@ -192,6 +206,14 @@ bool PluginHost::offers(const std::string& setting, const std::string& choice) c
         return choices.find(fmt::format(",{},", choice)) != std::string::npos;
     }
     return false;
+}
+
+double PluginHost::least(const std::string& setting) const {
+    for (std::uint32_t i = 0; i < m_api->settingCount(); ++i) {
+        PmrSettingInfo info = PMR_INIT(PmrSettingInfo);
+        if (m_api->settingInfo(i, &info) == PMR_OK && setting == info.name) return info.minimum;
+    }
+    throw Error(Status::kInternal, "the library has no setting " + setting);
 }
 
 HostedRender PluginHost::render(const NeutralScene& scene, const Settings& settings) const {

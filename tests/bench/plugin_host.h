@@ -32,6 +32,9 @@ class PluginHost {
     // Whether a setting of that name exists, with this among its choices.
     bool offers(const std::string& setting, const std::string& choice) const;
 
+    // The least value that a numeric setting takes.
+    double least(const std::string& setting) const;
+
     // One render of a neutral scene with analytic spheres. Threads: one call at a time, so that the
     // seconds are its own.
     HostedRender render(const NeutralScene& scene, const Settings& settings) const;

@@ -50,6 +50,29 @@ TEST_F(Bake, ConvertsBeforeItFilters) {
     }
 }
 
+// Between any two of its steps; nothing of the texture is left, and it can be baked later.
+TEST_F(Bake, IsGivenUpBetweenSteps) {
+    struct Stopped {};
+    writeCheckerboard("checker.png", 16);
+    int left = 0, steps = 0;
+    TextureBaker baking(m_colour, file("tx"), [&] {
+        ++steps;
+        if (--left == 0) throw Stopped();
+    });
+    baking.bake({file("checker.png")});
+    const int ofOne = steps;
+    ASSERT_GE(ofOne, 3);
+    for (int at = 1; at <= ofOne; ++at) {
+        writeCheckerboard("other.png", 16);
+        left = at;
+        EXPECT_THROW(baking.bake({file("other.png")}), Stopped);
+        for (const auto& entry : std::filesystem::directory_iterator(file("tx")))
+            EXPECT_EQ(entry.path().filename().string().find("other"), std::string::npos);
+    }
+    left = 0;
+    EXPECT_TRUE(std::filesystem::exists(baking.bake({file("other.png")}).file));
+}
+
 TEST_F(Bake, CodesBecomeLinearLight) {
     std::vector<float> values;
     for (int i = 0; i < 256; ++i) values.insert(values.end(), 3, static_cast<float>(i) / 255.0f);

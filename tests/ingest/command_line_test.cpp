@@ -59,13 +59,8 @@ TEST(CommandLine, refusesWhatIsUnknownOrToCome) {
     EXPECT_TRUE(refusal({"--bogus"}).starts_with("2 "));
     EXPECT_TRUE(refusal({"another.obj"}).starts_with("2 "));
     EXPECT_TRUE(refusal({"-o"}).starts_with("2 "));
-    for (const char* later : {"--filter", "--photon-map", "--photons-only"}) {
-        EXPECT_EQ(refusal({later, "x"}), std::string("2 ") + later + ": not available yet");
-        EXPECT_EQ(refusal({std::string(later) + "=x"}),
-                  std::string("2 ") + later + ": not available yet");
-    }
-    EXPECT_TRUE(refusal({"--aa", "0"}).starts_with("2 --aa 0: level 0 is not available yet"));
-    EXPECT_TRUE(refusal({"--aa", "0:3"}).starts_with("2 --aa 0:3: level 0 is not available yet"));
+    EXPECT_EQ(refusal({"--denoise", "x"}), "2 --denoise: not available yet");
+    EXPECT_EQ(refusal({"--denoise=x"}), "2 --denoise: not available yet");
 }
 
 TEST(CommandLine, levelsOfAntiAliasing) {
@@ -74,6 +69,39 @@ TEST(CommandLine, levelsOfAntiAliasing) {
     EXPECT_EQ(setting(range, "aaLevelMost"), "5");
     EXPECT_EQ(setting(range, "aaThreshold"), "0.02");
     EXPECT_EQ(setting(parseCommandLine({"s.obj", "--aa=4"}), "aaLevelMost"), "4");
+    const Options preview = parseCommandLine({"s.obj", "--aa", "0", "--filter", "gaussian"});
+    EXPECT_EQ(setting(preview, "aaLevel"), "0");
+    EXPECT_EQ(setting(preview, "aaLevelMost"), "0");
+    EXPECT_EQ(setting(preview, "filter"), "gaussian");
+    EXPECT_EQ(setting(parseCommandLine({"s.obj", "--aa", "0:3"}), "aaLevel"), "0");
+}
+
+TEST(CommandLine, photonMaps) {
+    const Options read = parseCommandLine({"s.obj", "--photon-map", "m"});
+    EXPECT_EQ(setting(read, "photonMap"), "m");
+    EXPECT_EQ(read.outputs.size(), 1u);
+    const Options only =
+        parseCommandLine({"s.obj", "--photons-only", "--photon-map", "m.####", "--frame", "7"});
+    EXPECT_EQ(setting(only, "photonMap"), "m.0007");
+    EXPECT_EQ(setting(only, "photonsOnly"), "1");
+    EXPECT_TRUE(only.outputs.empty());
+    EXPECT_TRUE(refusal({"--photons-only"}).starts_with("2 --photons-only needs --photon-map"));
+    for (const std::vector<std::string>& with :
+         std::vector<std::vector<std::string>>{{"-o", "a.exr"},
+                                               {"--reference", "r.exr"},
+                                               {"--report", "r.html"},
+                                               {"--only-pixel", "1,1"},
+                                               {"--aov", "N"},
+                                               {"--checkpoint", "c"},
+                                               {"--buckets", "1/2"},
+                                               {"--time-limit", "5"},
+                                               {"--error-target", "1"}}) {
+        std::vector<std::string> arguments = {"--photons-only", "--photon-map", "m"};
+        arguments.insert(arguments.end(), with.begin(), with.end());
+        const std::string text = refusal(arguments);
+        EXPECT_TRUE(text.starts_with("2 --photons-only")) << text;
+        EXPECT_NE(text.find(with.front()), std::string::npos) << text;
+    }
 }
 
 TEST(CommandLine, bucketSizeAndOrder) {

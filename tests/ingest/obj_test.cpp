@@ -165,6 +165,25 @@ TEST(Obj, aCommaLocaleChangesNothing) {
     EXPECT_DOUBLE_EQ(scene.bounds.high[2], 2345);
 }
 
+// Reading asks again and again whether to go on, in its own pass over the text and in the parser's.
+TEST(Obj, readingIsGivenUpAtAnyMoment) {
+    struct Stopped {};
+    std::string text = kQuad;
+    for (int i = 0; i < 40000; ++i) text += "f 1 2 3 4\n";
+    Heard heard;
+    int questions = 0;
+    readObj(text, "scene.obj", ".", heard.sink, [&] { ++questions; });
+    EXPECT_GE(questions, 8);
+    for (int last = 1; last <= questions; ++last) {
+        int asked = 0;
+        const auto goOn = [&] {
+            if (++asked == last) throw Stopped();
+        };
+        EXPECT_THROW(readObj(text, "scene.obj", ".", heard.sink, goOn), Stopped);
+        EXPECT_EQ(asked, last);
+    }
+}
+
 TEST(Obj, missingFilesAreErrorsThatNameThem) {
     Heard heard;
     EXPECT_EQ(errorOf([&] { readObjFile("no/such.obj", heard.sink); }),

@@ -45,7 +45,9 @@ TEST_P(Partition, AgreesWithPath) {
         expectAgreement(photon, path, layer, regionBias, 4, name);
         expectAgreement(wholeFrames(photon), wholeFrames(path), layer, frameBias, 4, name);
     };
-    compare(kEmission, 0, 0);
+    // A single path that sees the lamp in glass brings 3e-4 to a region of all path-traced renders;
+    // where none does, their spread is 0.
+    compare(kEmission, 0.005, 0);
     compare(kDirect, 0, 0);
     compare(kCaustic, 0.15, 0.03);
     compare(kIndirect, 0.03, 0.012);

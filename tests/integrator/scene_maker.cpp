@@ -118,6 +118,21 @@ void SceneMaker::pointLight(Vec3d position, Rgb intensity) {
     description.pointLights.push_back({position, intensity, ""});
 }
 
+void SceneMaker::spot(Vec3d position, Vec3d direction, Rgb intensity, double angle,
+                      double falloff) {
+    description.spotLights.push_back({position, direction, intensity, angle, falloff, ""});
+}
+
+void SceneMaker::sun(Vec3d direction, Rgb irradiance, double angularRadius) {
+    description.directionalLights.push_back({direction, irradiance, angularRadius, ""});
+}
+
+void SceneMaker::sky(Rgb radiance, std::shared_ptr<const TextureSource> picture,
+                     const Transform& toWorld) {
+    description.environment = {radiance, picture ? 0 : kNoTexture, toWorld};
+    if (picture) description.textures = std::move(picture);
+}
+
 void SceneMaker::camera(Vec3d eye, Vec3d lookAt, Vec3d up, double verticalDegrees) {
     const Vec3d back = normalize(eye - lookAt);
     const Vec3d right = normalize(cross(up, back));

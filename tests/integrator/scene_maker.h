@@ -30,6 +30,11 @@ class SceneMaker {
     // Bends the shading normals of what was added last: one normal for all of it, object space.
     void bendNormals(Vec3d normal);
     void pointLight(Vec3d position, Rgb intensity);
+    // angle: half of the cone's, falloff: of it; radians.
+    void spot(Vec3d position, Vec3d direction, Rgb intensity, double angle, double falloff);
+    void sun(Vec3d direction, Rgb irradiance, double angularRadius);
+    void sky(Rgb radiance, std::shared_ptr<const TextureSource> picture = nullptr,
+             const Transform& toWorld = kIdentityTransform);
     void camera(Vec3d eye, Vec3d lookAt, Vec3d up, double verticalDegrees);
 
     std::shared_ptr<const Scene> build() const;

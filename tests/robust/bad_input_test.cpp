@@ -65,7 +65,9 @@ TEST_F(BadInput, aBlackPictureIsAWarning) {
 TEST_F(BadInput, options) {
     expectRefusal(run({}), 2, {"SCENE"});
     expectRefusal(run({"box.obj", "--bogus"}), 2, {"--bogus"});
-    expectRefusal(run({"box.obj", "--photon-map", "f"}), 2, {"--photon-map: not available yet"});
+    expectRefusal(run({"box.obj", "--denoise"}), 2, {"--denoise: not available yet"});
+    expectRefusal(run({"box.obj", "--photon-map", "f"}), 3, {"f: there is no such photon map"});
+    expectRefusal(run({"box.obj", "--photons-only"}), 2, {"--photons-only needs --photon-map"});
     expectRefusal(run({"merge", "a"}), 2, {"pm_host merge PART... -o FILE"});
     expectRefusal(run({"box.obj", "--bucket-size", "12"}), 2, {"--bucket-size", "12", "8"});
     expectRefusal(run({"box.obj", "--integrator", "magic"}), 2, {"--integrator", "magic", "path"});

@@ -4,9 +4,11 @@
 #include "host_shim/pictures/picture_io.h"
 #include "tests/robust/host_process.h"
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include <chrono>
+#include <iostream>
 #include <thread>
 
 namespace pm::host::test {
@@ -65,6 +67,48 @@ TEST_F(Interrupt, bakedTexturesAreRemoved) {
     EXPECT_EQ(outcome.exitCode, 130) << outcome.err;
     EXPECT_NE(during, "");
     EXPECT_EQ(textureFolder(), "");
+}
+
+// A signal that comes while a large scene is read or built ends that, too. The moments are shares
+// of the time that an undisturbed run takes.
+TEST_F(Interrupt, beforeTheRenderBegins) {
+    constexpr int kSide = 70;
+    std::string text = "mtllib box.mtl\nusemtl light\nv 0 0 9\nv 1 0 9\nv 0 1 9\nf 1 2 3\n";
+    text += "usemtl wall\n";
+    for (int y = 0; y <= kSide; ++y)
+        for (int x = 0; x <= kSide; ++x) text += fmt::format("v {} {} {}\n", x, y, (x * y) % 7);
+    for (int y = 0; y < kSide; ++y)
+        for (int x = 0; x < kSide; ++x) {
+            const int corner = 4 + y * (kSide + 1) + x;
+            text += fmt::format("f {} {} {} {}\n", corner, corner + 1, corner + kSide + 2,
+                                corner + kSide + 1);
+        }
+    write("sheet.obj", text);
+    const std::vector<std::string> arguments{"sheet.obj", "--subdivide", "all", "--explain",
+                                             "--stats",   "s.json",      "-o",  "a.exr"};
+    const auto start = std::chrono::steady_clock::now();
+    ASSERT_EQ(run(arguments).exitCode, 0);
+    const auto whole = std::chrono::steady_clock::now() - start;
+    int interrupted = 0;
+    for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) {
+        fs::remove(path("s.json"));
+        std::chrono::steady_clock::time_point told;
+        const Outcome outcome = run(arguments, [&](pid_t child) {
+            std::this_thread::sleep_for(share * whole);
+            told = std::chrono::steady_clock::now();
+            kill(child, SIGTERM);
+        });
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - told;
+        // Before it has its handlers the signal ends it, and after its end nothing does.
+        if (outcome.exitCode != 143) continue;
+        ++interrupted;
+        std::cout << "at " << share << " of " << std::chrono::duration<double>(whole).count()
+                  << " s: ended " << took.count() << " s after the signal" << std::endl;
+        EXPECT_NE(outcome.err.find("pm_host: terminated"), std::string::npos) << outcome.err;
+        EXPECT_EQ(nlohmann::json::parse(readText(path("s.json"))).at("stopReason"), "terminated");
+        EXPECT_FALSE(fs::exists(path("a.exr")));
+    }
+    EXPECT_GE(interrupted, 2);
 }
 
 TEST_F(Interrupt, aSecondSignalEndsAtOnce) {

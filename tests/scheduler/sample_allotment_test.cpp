@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <functional>
@@ -143,34 +144,55 @@ std::array<SeenSamples, kPixels> evenAtom(double samples, double mean, double de
     return atom;
 }
 
-TEST(SampleAllotment, samplesGrowWithTheRelativeSpread) {
+// What the rule gives all pixels of an even atom.
+std::uint16_t samplesOf(std::uint32_t passes, double mean, double deviation,
+                        const SampleRule& rule = kRule) {
     std::array<std::uint16_t, kPixels> samples{};
-    // s / (4 threshold), s relative to sqrt(r^2 + 0.01).
-    for (const double deviation : {0.1, 0.4, 1.0}) {
-        allotSamples(kRule, evenAtom(2, 2.0, deviation), samples);
-        const double expected = deviation / std::sqrt(4.01) / 0.04;
-        for (const std::uint16_t count : samples) EXPECT_EQ(count, std::lround(expected));
-    }
+    allotSamples(rule, passes, evenAtom(2, mean, deviation), samples);
+    for (const std::uint16_t count : samples) EXPECT_EQ(count, samples[0]);
+    return samples[0];
+}
+
+TEST(SampleAllotment, samplesGrowWithTheRelativeSpread) {
+    // s / (4 threshold), s relative to sqrt(r^2 + 0.01), to the nearest power of two.
+    for (const double factor : {0.72, 1.0, 1.4})
+        for (const unsigned count : {2u, 8u, 16u, 32u}) {
+            const double deviation = factor * count * 0.04 * std::sqrt(4.01);
+            EXPECT_EQ(samplesOf(2, 2.0, deviation), count) << factor;
+        }
     // At most and at least what the rule allows; a spread that is no number asks for nothing.
-    const double none = std::numeric_limits<double>::quiet_NaN();
-    for (const auto& [deviation, count] :
-         {std::pair{0.0, 1u}, std::pair{1e3, 64u}, std::pair{none, 1u}}) {
-        allotSamples(kRule, evenAtom(2, 2.0, deviation), samples);
-        for (const std::uint16_t s : samples) EXPECT_EQ(s, count) << deviation;
+    EXPECT_EQ(samplesOf(2, 2.0, 0.0), 1u);
+    EXPECT_EQ(samplesOf(2, 2.0, 1e3), 64u);
+    EXPECT_EQ(samplesOf(2, 2.0, std::numeric_limits<double>::quiet_NaN()), 1u);
+    EXPECT_EQ(samplesOf(2, 2.0, 1e3, {3, 100, 0.01}), 100u);
+    EXPECT_EQ(samplesOf(2, 2.0, 0.0, {0, 64, 0.01}), 0u);
+}
+
+// An even picture, whose pixels need no more samples one than another, gets none that are odd.
+TEST(SampleAllotment, samplesArePowersOfTwo) {
+    for (double deviation = 0.01; deviation < 10; deviation *= 1.1) {
+        const std::uint16_t count = samplesOf(2, 1.0, deviation);
+        EXPECT_TRUE(std::has_single_bit(count)) << count;
     }
+}
+
+TEST(SampleAllotment, thresholdIsHalvedFromFourPassesOn) {
+    const double deviation = 4 * 0.04 * std::sqrt(4.01);
+    for (const auto& [passes, count] : {std::pair{2u, 4u}, std::pair{4u, 8u}, std::pair{64u, 8u}})
+        EXPECT_EQ(samplesOf(passes, 2.0, deviation), count) << passes;
 }
 
 TEST(SampleAllotment, neighboursOfANoisyPixelGetSamplesToo) {
     auto atom = evenAtom(8, 1.0, 0.0);
     atom[3 * 8 + 3].square += 8 * 3 * 0.5;
     std::array<std::uint16_t, kPixels> samples{};
-    allotSamples(kRule, atom, samples);
+    allotSamples(kRule, 2, atom, samples);
     for (std::size_t i = 0; i < kPixels; ++i) {
         const auto dx = static_cast<int>(i % 8) - 3, dy = static_cast<int>(i / 8) - 3;
         if (std::abs(dx) > 1 || std::abs(dy) > 1)
             EXPECT_EQ(samples[i], 1u) << i;
         else
-            EXPECT_GT(samples[i], dx == 0 && dy == 0 ? 15u : 5u) << i;
+            EXPECT_EQ(samples[i], dx == 0 && dy == 0 ? 16u : 4u) << i;
     }
 }
 
@@ -181,7 +203,7 @@ TEST(SampleAllotment, oneSampleEachIsComparedWithItsNeighbours) {
         atom[i] = {1, {value, value, value}, 3 * value * value};
     }
     std::array<std::uint16_t, kPixels> samples{};
-    allotSamples(kRule, atom, samples);
+    allotSamples(kRule, 2, atom, samples);
     for (std::size_t i = 0; i < kPixels; ++i) {
         const bool atEdge = i % 8 >= 2 && i % 8 <= 5;  // the step, and what is beside it
         EXPECT_EQ(samples[i] > 1, atEdge) << i;

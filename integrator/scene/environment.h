@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "integrator/scene/scene_description.h"
+#include "integrator/values/cancel_check.h"
+#include "integrator/values/rgb.h"
+#include "integrator/values/vec.h"
+
+namespace pm {
+
+// Light from infinitely far all around: a constant, or a latitude-longitude picture times it.
+//
+// In the environment's own space the middle of the picture lies towards -z, its right half towards
+// +x, its upper edge towards +y; so a camera that isn't turned sees the middle of the picture as it
+// is. Directions are chosen in proportion to the picture's mean over cells of a table that is even
+// in the picture; within a cell evenly over the solid angle, a small share over all directions.
+// Threads: const functions from any, at once.
+class Environment {
+  public:
+    // textures: may be null without a texture; must outlive this. Looks at every texel, in parallel
+    // in the calling TBB arena. Throws Error(kCancelled) soon after `cancel` is set.
+    Environment(const EnvironmentDescription& description, const TextureSource* textures,
+                const CancelCheck& cancel = {});
+
+    // Radiance that is seen along a unit direction; W m^-2 sr^-1, >= 0.
+    Rgb radiance(const Vec3f& direction) const;
+
+    // A unit direction to look along, and its density, sr^-1, which is > 0.
+    Vec3f sample(Vec2f u, float& pdfSolidAngle) const;
+    float pdfSolidAngle(const Vec3f& direction) const;
+
+    // Over all directions, of the mean of the channels; W m^-2.
+    double integral() const { return m_integral; }
+
+    std::uint64_t memoryBytes() const {
+        return (m_cumulative.size() + m_rows.size()) * sizeof(float) +
+               m_heights.size() * sizeof(float);
+    }
+
+    // The table has no more cells than this across, half as many down.
+    static constexpr std::uint32_t kMostColumns = 2048;
+
+  private:
+    Vec2f toPicture(const Vec3f& local) const;
+    Vec3f toLocal(const Vec3f& direction) const;
+    Vec3f toWorld(const Vec3f& local) const;
+    Rgb texel(Vec2f uv) const;
+    void fillTable(const CancelCheck& cancel);
+    double meanOfCell(std::size_t column, std::size_t row, std::uint32_t steps) const;
+    double solidAngleOfRow(std::size_t row) const;
+    double fillRow(std::span<const double> means, std::size_t row);
+    void fillRows(std::span<const double> rowSums);
+    float pdfOfCell(std::uint32_t column, std::uint32_t row) const;
+
+    Rgb m_scale;
+    std::int32_t m_texture = kNoTexture;
+    const TextureSource* m_textures = nullptr;
+    Vec3f m_axes[3];  // of the environment's space, in the world's
+    double m_integral = 0;
+    std::uint32_t m_columns = 0, m_rowCount = 0;  // of the table; 0: all directions alike
+    std::vector<float> m_cumulative;              // of the cells of each row, its last is 1
+    std::vector<float> m_rows;                    // of the rows
+    std::vector<float> m_heights;  // of the rows' lower edges, the cosines to -y: -1 ... 1
+};
+
+}  // namespace pm

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <memory>
+
+#include "integrator/materials/bsdf.h"
+#include "integrator/sampling/sampler.h"
+#include "integrator/scene/camera.h"
+#include "integrator/scene/light_sampler.h"
+#include "integrator/scene/scene.h"
+#include "integrator/values/rgb.h"
+
+namespace pm {
+
+// Lamps that the camera sees, straight or by way of delta lobes: the class of paths E S* L (see
+// PathClass). Their images are bright and often smaller than a pixel, and rays to them cost little
+// beside a camera sample's look-ups; so where lamps or delta lobes are seen a camera sample has
+// several paths for this class alone. Where they meet glass they follow reflection and refraction
+// both: a choice between them would find most images of lamps once in 25 times.
+//
+// Where that is: a pilot of each square of pixels tells, computed when it is first asked for. It
+// enters no picture and chooses between two estimates of the same mean, so it may miss something.
+// Threads: const functions from any, at once.
+class SeenLamps {
+  public:
+    static constexpr std::int32_t kSquare = 8;  // pixels to a side of what has one pilot
+
+    // scene, lights and camera must outlive this. width, height: of the frame, pixels.
+    SeenLamps(const Scene& scene, const LightSampler& lights, const Camera& camera,
+              std::int32_t width, std::int32_t height);
+
+    // Paths for each camera sample of a pixel. 0: none, the camera sample's own path finds lamps;
+    // so outside the frame.
+    std::uint32_t paths(std::int32_t x, std::int32_t y) const;
+
+    // Radiance of the lamps along a ray. Adds its rays to `rays`.
+    Rgb along(const Ray& ray, Sampler& sampler, std::uint32_t& rays) const;
+
+  private:
+    // How far a path has come.
+    struct Branch {
+        Ray ray;
+        Rgb throughput{1.0f};
+        // Undoes the factors eta^2 of refraction, as PathWalk.
+        float etaScale = 1.0f;
+        int events = 0;
+    };
+    // Branches of one path that wait to be followed.
+    struct Waiting {
+        static constexpr std::size_t kMost = 16;
+        std::array<Branch, kMost> branches;
+        std::size_t count = 0;
+        std::size_t divisions = 0;  // so far
+    };
+    enum class Shown : std::uint8_t { kUnknown, kNeither, kDelta, kLamps };
+
+    bool step(Branch& branch, Waiting& waiting, Sampler& sampler, Rgb& found) const;
+    bool goOn(const Branch& from, const Surface& surface, const Bsdf& bsdf,
+              const BsdfSample& sample, Sampler& sampler, Branch& next) const;
+    Shown look(std::int32_t column, std::int32_t row) const;
+
+    const Scene& m_scene;
+    const LightSampler& m_lights;
+    const Camera& m_camera;
+    std::int32_t m_width, m_height, m_columns;
+    bool m_hasLamps;
+    std::unique_ptr<std::atomic<Shown>[]> m_shown;  // of each square
+};
+
+}  // namespace pm

@@ -1,0 +1,130 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/src/memory_plan.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "integrator/photons/photon.h"
+#include "integrator/transport/frame_renderer.h"
+#include "plugin/include/pm_plugin.h"
+#include "plugin/src/call_error.h"
+#include "plugin/src/frame_samples.h"
+#include "plugin/src/memory_limit.h"
+#include "plugin/src/render_photons.h"
+#include "scheduler/available_threads.h"
+#include "scheduler/bucket_errors.h"
+#include "scheduler/bucket_order.h"
+
+namespace pm::plugin {
+
+namespace {
+
+// Buckets held for each thread: one in work, others done, which wait for one before them in the
+// order or for the host.
+constexpr std::uint32_t kBucketsHeldPerThread = 4;
+// Of a photon that is traced and not put into a map: in its batch, and where batches are joined.
+constexpr std::uint64_t kTracedBytesPerPhoton = 2 * sizeof(Photon);
+// Of a cell: its place in two orders, and how long it took, in three copies.
+constexpr std::uint64_t kCellBytes = 2 * sizeof(std::uint32_t) + 3 * sizeof(double);
+
+// Why the passes of a bucket can't all be made before the next one; empty where they can.
+std::string obstacle(const SettingValues& values) {
+    if (values.number(Setting::kTimeLimit) > 0) return "timeLimitSeconds";
+    if (values.number(Setting::kErrorTarget) > 0) return "errorTarget";
+    if (values.passLimit() > kMostPassesByBuckets)
+        return fmt::format("more than {} passes", kMostPassesByBuckets);
+    for (const Setting files : {Setting::kBuckets, Setting::kPart, Setting::kCheckpoint})
+        if (!values.word(files).empty())
+            return settingSpecs()[static_cast<std::size_t>(files)].name;
+    const BucketOrder* order = findBucketOrder(values.word(Setting::kBucketOrder));
+    if (order != nullptr && order->isCorrelated) return "the bucket order correlated";
+    return {};
+}
+
+std::string figures(const MemoryNeed& need) {
+    return fmt::format(
+        "{:.2f} GiB (scene {:.2f}, frame {:.2f}, photon maps {:.2f}, buckets {:.2f})",
+        toGib(need.total()), toGib(need.scene), toGib(need.frame), toGib(need.maps),
+        toGib(need.buckets));
+}
+
+}  // namespace
+
+BucketGrid bucketsOf(const SettingValues& values) {
+    const Rect window = values.window();
+    const auto size = static_cast<std::int32_t>(values.integer(Setting::kBucketSize));
+    return {wholeAtoms(window), size == 0 ? autoBucketSize(window) : size};
+}
+
+MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues& values,
+                      const BucketGrid& grid) {
+    const RenderSettings settings = values.toRenderSettings();
+    const ChannelLayout layout = channelLayout(settings);
+    const auto asked = static_cast<int>(values.integer(Setting::kThreads));
+    const auto threads = static_cast<std::uint64_t>(asked == 0 ? availableThreads() : asked);
+    const auto bucketSize = static_cast<std::uint64_t>(grid.bucketSize());
+    auto frameBytes = [ofBucket = settings](const Rect& window) mutable {
+        ofBucket.window = window;
+        return frameMemoryBytes(ofBucket);
+    };
+    MemoryPlan memory;
+    memory.limit = memoryLimitBytes(values.number(Setting::kMemoryLimit));
+    memory.whole = {scene.memoryBytes(), frameBytes(settings.window), plan.mapBytes,
+                    threads * bucketSize * bucketSize *
+                            static_cast<std::uint64_t>(layout.count + 1) * sizeof(float) +
+                        grid.cellCount() * sizeof(PmrBucketInfo) * 2};
+    // Without pixels there is no frame, whatever the delivery.
+    const bool photonsOnly = values.integer(Setting::kPhotonsOnly) != 0;
+    if (photonsOnly)
+        memory.whole = {scene.memoryBytes(), 0, plan.landingsPerPass() * kTracedBytesPerPhoton, 0};
+    memory.need = memory.whole;
+    if (photonsOnly) return memory;
+    const std::string& delivery = values.word(Setting::kDelivery);
+    if (delivery == "frame") return memory;
+    memory.whyWhole = obstacle(values);
+    const bool demanded = delivery == "buckets";
+    if (demanded && !memory.whyWhole.empty())
+        throw argumentError(
+            fmt::format("setting delivery is buckets; it does not go together with "
+                        "{}",
+                        memory.whyWhole));
+    if (!demanded && (memory.whole.total() <= memory.limit || !memory.whyWhole.empty()))
+        return memory;
+    memory.byBuckets = true;
+    memory.bucketsHeld = static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(kBucketsHeldPerThread * threads, grid.cellCount()));
+    const auto side = static_cast<std::int32_t>(bucketSize);
+    memory.need.frame = memory.bucketsHeld * frameBytes({0, 0, side, side});
+    memory.need.maps = plan.mapBytes * settings.passes;
+    memory.need.buckets =
+        threads * kAtomPixels * static_cast<std::uint64_t>(layout.count + 4) * sizeof(float) +
+        grid.cellCount() * kCellBytes + BucketErrors::memoryBytes(grid);
+    return memory;
+}
+
+std::string MemoryPlan::explain() const {
+    if (byBuckets)
+        return fmt::format(
+            "memory: {}, bucket by bucket with the maps of all passes; the whole "
+            "frame would need {:.2f} GiB, the limit is {:.2f} GiB\n",
+            figures(need), toGib(whole.total()), toGib(limit));
+    return fmt::format("memory: {}, the limit is {:.2f} GiB\n", figures(need), toGib(limit));
+}
+
+void MemoryPlan::check() const {
+    if (need.total() <= limit) return;
+    std::string text = fmt::format("the render needs {}", figures(need));
+    if (byBuckets)
+        text += fmt::format(
+            " even bucket by bucket, with the maps of all passes; with the whole "
+            "frame {:.2f} GiB",
+            toGib(whole.total()));
+    text += fmt::format("; the memory limit is {:.2f} GiB", toGib(limit));
+    if (!whyWhole.empty())
+        text += fmt::format("; bucket by bucket does not go together with {}", whyWhole);
+    throw CallError(PMR_ERROR_MEMORY, text);
+}
+
+}  // namespace pm::plugin

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// What adaptive samples gain: the time to the true error of a fixed level, beside that of an oracle
+// that knows each pixel's variance.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <random>
+
+#include "integrator/values/error.h"
+#include "scheduler/sample_allotment.h"
+#include "tests/bench/adaptive_run.h"
+#include "tests/bench/adaptive_scenes.h"
+#include "tests/bench/report.h"
+#include "tests/bench/timing.h"
+
+namespace pm::bench {
+namespace {
+
+struct Options {
+    std::filesystem::path peers = PM_SHARED_PEERS, keep;
+    std::string csvFile, docsFile, scenes;
+    std::vector<std::string> levels = {"3:5"};
+    std::vector<double> thresholds = {0.01}, oracles = {0.01, 0.005, 0.0025};
+    std::int32_t size = 96;
+    int seeds = 4, threads = 1;
+    std::uint32_t passes = 16, pathPasses = 4, photonPasses = 64, knownPasses = 16;
+    bool quick = false;
+};
+
+constexpr std::uint32_t kFixedLevel = 3;
+constexpr int kResamples = 400;
+// The share of a gain below that is nothing but noise.
+constexpr double kLeastGain = 1.1;
+
+// A way and its curves by seed.
+struct Rival {
+    std::string name;
+    Way way;
+    std::vector<TimedErrors> curves;
+};
+
+// Mean of the curves of these seeds, as far as all of them go.
+TimedErrors meanCurve(const Rival& rival, const std::vector<std::size_t>& seeds) {
+    TimedErrors mean;
+    std::size_t passes = rival.curves[seeds[0]].errors.size();
+    for (const std::size_t seed : seeds)
+        passes = std::min(passes, rival.curves[seed].errors.size());
+    mean.errors.resize(passes);
+    mean.seconds.resize(passes);
+    for (const std::size_t seed : seeds)
+        for (std::size_t i = 0; i < passes; ++i) {
+            mean.errors[i] += rival.curves[seed].errors[i] / static_cast<double>(seeds.size());
+            mean.seconds[i] += rival.curves[seed].seconds[i] / static_cast<double>(seeds.size());
+        }
+    return mean;
+}
+
+// Times of the first rival over those of the others, to its error after so many passes.
+std::vector<double> gainsOf(const std::vector<Rival>& rivals, std::uint32_t passes,
+                            const std::vector<std::size_t>& seeds) {
+    const TimedErrors fixed = meanCurve(rivals[0], seeds);
+    const double error = fixed.errors[passes - 1], seconds = fixed.seconds[passes - 1];
+    std::vector<double> gains;
+    for (std::size_t i = 1; i < rivals.size(); ++i)
+        gains.push_back(seconds / secondsTo(error, meanCurve(rivals[i], seeds)));
+    return gains;
+}
+
+std::string interval(double value, std::vector<double> resampled) {
+    std::ranges::sort(resampled);
+    const auto at = [&](double share) {
+        return resampled[static_cast<std::size_t>(share *
+                                                  static_cast<double>(resampled.size() - 1))];
+    };
+    return fmt::format("{:.2f} ({:.2f} to {:.2f})", value, at(0.025), at(0.975));
+}
+
+class AdaptiveBench {
+  public:
+    explicit AdaptiveBench(const Options& options) : m_options(options) {}
+    void run();
+
+  private:
+    RenderSettings settings(std::uint32_t least, std::uint32_t most, double threshold) const;
+    Truth truthOf(const AdaptiveScene& adaptive, const std::shared_ptr<const Scene>& scene) const;
+    std::vector<Rival> rivals(const Known& known) const;
+    void measure(const AdaptiveScene& adaptive);
+    void tell(const AdaptiveScene& adaptive, const std::vector<Rival>& rivals);
+
+    Options m_options;
+    Report m_report{"pm_bench_adaptive"};
+};
+
+RenderSettings AdaptiveBench::settings(std::uint32_t least, std::uint32_t most,
+                                       double threshold) const {
+    RenderSettings s;
+    s.width = s.height = m_options.size;
+    s.window = {0, 0, m_options.size, m_options.size};
+    s.passes = m_options.passes;
+    s.aaLevel = least;
+    s.aaLevelMost = most > least ? most : 0;
+    s.aaThreshold = threshold;
+    return s;
+}
+
+Truth AdaptiveBench::truthOf(const AdaptiveScene& adaptive,
+                             const std::shared_ptr<const Scene>& scene) const {
+    const std::uint32_t passes = adaptive.byPaths ? m_options.pathPasses : m_options.photonPasses;
+    const auto file =
+        m_options.keep / fmt::format("{}_{}_{}.truth", adaptive.key, m_options.size, passes);
+    Truth truth;
+    const std::size_t count = 3u * static_cast<std::size_t>(m_options.size * m_options.size);
+    truth.first.resize(count);
+    truth.second.resize(count);
+    const auto bytes = static_cast<std::streamsize>(count * sizeof(double));
+    if (std::ifstream kept(file, std::ios::binary); !m_options.keep.empty() && kept) {
+        kept.read(reinterpret_cast<char*>(truth.first.data()), bytes);
+        kept.read(reinterpret_cast<char*>(truth.second.data()), bytes);
+        if (kept) return truth;
+    }
+    truth = makeTruth(scene, m_options.size, adaptive.byPaths, passes, m_options.threads);
+    if (m_options.keep.empty()) return truth;
+    std::ofstream keep(file, std::ios::binary);
+    keep.write(reinterpret_cast<const char*>(truth.first.data()), bytes);
+    keep.write(reinterpret_cast<const char*>(truth.second.data()), bytes);
+    return truth;
+}
+
+// The fixed level, the adaptive ways, and the oracle by each of its thresholds.
+std::vector<Rival> AdaptiveBench::rivals(const Known& known) const {
+    std::vector<Rival> result = {{"fixed", {settings(kFixedLevel, 0, 0.01), {}}, {}}};
+    for (const std::string& range : m_options.levels) {
+        const auto least = static_cast<std::uint32_t>(range[0] - '0');
+        const auto most = static_cast<std::uint32_t>(range[2] - '0');
+        for (const double threshold : m_options.thresholds)
+            result.push_back({fmt::format("{}, {}", range, threshold),
+                              {settings(least, most, threshold), {}},
+                              {}});
+    }
+    const RenderSettings first = result[1].way.settings;
+    const SampleRule rule = sampleRule(first.aaLevel, first.aaLevelMost, 0.01);
+    for (const double threshold : m_options.oracles)
+        result.push_back({fmt::format("oracle, {}", threshold),
+                          {settings(kFixedLevel, 0, 0.01),
+                           oracleSamples(known, rule.least, rule.most, threshold)},
+                          {}});
+    return result;
+}
+
+void AdaptiveBench::tell(const AdaptiveScene& adaptive, const std::vector<Rival>& rivals) {
+    const std::size_t adaptives = rivals.size() - 1 - m_options.oracles.size();
+    std::vector<std::size_t> all(rivals[0].curves.size());
+    for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
+    const auto bestOracle = [&](const std::vector<double>& gains) {
+        return *std::max_element(gains.begin() + static_cast<std::ptrdiff_t>(adaptives),
+                                 gains.end());
+    };
+    for (std::uint32_t passes = 4; passes <= m_options.passes; passes *= 2) {
+        const std::vector<double> gains = gainsOf(rivals, passes, all);
+        std::vector<std::vector<double>> resampled(gains.size());
+        std::vector<double> oracle;
+        std::vector<std::vector<double>> shares(adaptives);
+        std::mt19937_64 random(1);
+        const auto shareOf = [&](const std::vector<double>& g, std::size_t i) {
+            return (g[i] - 1) / (bestOracle(g) - 1);
+        };
+        for (int k = 0; k < kResamples; ++k) {
+            std::vector<std::size_t> some;
+            for (std::size_t i = 0; i < all.size(); ++i) some.push_back(random() % all.size());
+            const std::vector<double> g = gainsOf(rivals, passes, some);
+            for (std::size_t i = 0; i < g.size(); ++i) resampled[i].push_back(g[i]);
+            oracle.push_back(bestOracle(g));
+            for (std::size_t i = 0; i < adaptives; ++i) shares[i].push_back(shareOf(g, i));
+        }
+        std::string what;
+        for (std::size_t i = adaptives; i < gains.size(); ++i)
+            what += fmt::format(" {}={:.2f}", rivals[i + 1].name, gains[i]);
+        fmt::print(stderr, "  {} passes: {}\n", passes, what);
+        for (std::size_t i = 0; i < adaptives; ++i)
+            m_report.row(
+                {adaptive.key, rivals[i + 1].name, std::to_string(passes),
+                 show(meanCurve(rivals[0], all).errors[passes - 1]),
+                 interval(gains[i], resampled[i]), interval(bestOracle(gains), oracle),
+                 bestOracle(gains) < kLeastGain ? "" : interval(shareOf(gains, i), shares[i])});
+    }
+}
+
+void AdaptiveBench::measure(const AdaptiveScene& adaptive) {
+    const std::shared_ptr<const Scene> scene = adaptive.maker.build();
+    const double start = processorSeconds();
+    const Truth truth = truthOf(adaptive, scene);
+    const double truthSeconds = processorSeconds() - start;
+    const Known known = measureKnown(scene, settings(kFixedLevel, 0, 0.01), m_options.knownPasses,
+                                     m_options.threads);
+    const double knownSeconds = processorSeconds() - start - truthSeconds;
+    double spread = 0, square = 0;
+    for (const double s : known.spread) {
+        spread += s / static_cast<double>(known.spread.size());
+        square += s * s / static_cast<double>(known.spread.size());
+    }
+    fmt::print(stderr,
+               "{}: truth {:.1f} s, noise {:.2e}; known {:.1f} s: shared {:.2e}, spread {:.3f}, "
+               "its square {:.3e}; sample {:.4f} s, pass {:.4f} s\n",
+               adaptive.key, truthSeconds, truth.ownNoise(), knownSeconds, known.shared, spread,
+               square, known.sampleSeconds, known.passSeconds);
+    std::vector<Rival> all = rivals(known);
+    std::vector<Way> ways;
+    for (const Rival& rival : all) ways.push_back(rival.way);
+    for (int seed = 1; seed <= m_options.seeds; ++seed) {
+        const std::vector<TimedErrors> curves =
+            takeTurns(scene, truth, ways, static_cast<std::uint64_t>(seed), m_options.threads);
+        for (std::size_t i = 0; i < all.size(); ++i) all[i].curves.push_back(curves[i]);
+    }
+    tell(adaptive, all);
+    fmt::print(stderr, "  {:.1f} s in all\n", processorSeconds() - start);
+}
+
+void AdaptiveBench::run() {
+    m_report.paragraph(machineLine());
+    m_report.table(
+        fmt::format("Processor time of fixed level 3 over that of adaptive samples and of the "
+                    "oracle, to the same true relMSE: {0} x {0} pixels, {1} seeds, 95 % intervals",
+                    m_options.size, m_options.seeds),
+        {"scene", "levels, threshold", "passes of level 3", "relMSE", "fixed / adaptive",
+         "fixed / oracle", "share of the oracle's gain"});
+    if (!std::filesystem::exists(m_options.peers / "scenes.json"))
+        fmt::print(stderr, "neutral scenes: skipped, no scenes.json in the folder of peers\n");
+    for (const AdaptiveScene& scene : adaptiveScenes(m_options.peers))
+        if (m_options.scenes.empty() ||
+            ("," + m_options.scenes + ",").find("," + scene.key + ",") != std::string::npos)
+            measure(scene);
+    m_report.publish(m_options.csvFile, m_options.docsFile);
+}
+
+int runProgram(int argc, char** argv) {
+    Options options;
+    CLI::App app("Time of adaptive samples to the error of a fixed level");
+    app.add_option("--csv", options.csvFile, "also write the tables to this CSV file");
+    app.add_option("--docs", options.docsFile, "also put the tables into this Markdown file");
+    app.add_option("--peers", options.peers, "folder of scenes.json");
+    app.add_option("--keep", options.keep, "keep the truths in this folder and read those there");
+    app.add_option("--scenes", options.scenes, "only these, with commas");
+    app.add_option("--levels", options.levels, "ranges of adaptive renders (3:5)");
+    app.add_option("--thresholds", options.thresholds, "of adaptive renders (0.01)");
+    app.add_option("--oracles", options.oracles,
+                   "thresholds of the oracle, whose best counts (0.01 0.005 0.0025)");
+    app.add_option("--size", options.size, "pixels, both ways, a multiple of 8 (96)");
+    app.add_option("--seeds", options.seeds, "renders of each kind (4)")->check(CLI::Range(1, 999));
+    app.add_option("--passes", options.passes, "of the fixed level (16)")
+        ->check(CLI::Range(4, 999));
+    app.add_option("--path-passes", options.pathPasses, "of 256 samples, of each half of a truth");
+    app.add_option("--photon-passes", options.photonPasses, "the same where paths miss light");
+    app.add_option("--known-passes", options.knownPasses, "of 16 samples, for the oracle");
+    app.add_option("--threads", options.threads, "threads (1)")->check(CLI::Range(1, 256));
+    app.add_flag("--quick", options.quick, "64 x 64 pixels, 2 seeds, 8 passes, one oracle");
+    CLI11_PARSE(app, argc, argv);
+    if (options.quick) {
+        options.size = 64;
+        options.seeds = 2;
+        options.passes = 8;
+        options.oracles = {0.005};
+        options.pathPasses = 2;
+        options.photonPasses = options.knownPasses = 8;
+    }
+    try {
+        AdaptiveBench(options).run();
+        return 0;
+    } catch (const std::exception& e) {
+        fmt::print(stderr, "pm_bench_adaptive: {}\n", e.what());
+        return 1;
+    }
+}
+
+}  // namespace
+}  // namespace pm::bench
+
+int main(int argc, char** argv) {
+    return pm::bench::runProgram(argc, argv);
+}
