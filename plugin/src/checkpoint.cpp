@@ -78,6 +78,7 @@ Checkpoint::Checkpoint(const std::string& file, bool resume, PieceHead head, con
     m_isNew = m_file->size() == 0;
     if (!m_isNew && !reader.isPiece())
         throw unusable(m_file->name(), "is there and no checkpoint; it would be overwritten");
+    if (!resume && !m_isNew) refuseOtherPieces();
     if (resume && !m_isNew)
         readHead();
     else
@@ -101,6 +102,21 @@ void Checkpoint::open(const std::string& file) {
     }
     m_file = nullptr;
     throw CallError(PMR_ERROR_IO, fmt::format("{}: another render uses this checkpoint", file));
+}
+
+// A part or photons would be lost without a word; a checkpoint, damaged or not, is begun anew.
+void Checkpoint::refuseOtherPieces() const {
+    PieceReader reader(*m_file);
+    if (!reader.next() || reader.kind() != PieceRecord::kHead) return;
+    PieceKind kind = PieceKind::kCheckpoint;
+    try {
+        kind = PieceHead::fromJson(reader.payload()).kind;
+    } catch (const CallError&) {
+        return;
+    }
+    if (kind != PieceKind::kCheckpoint)
+        throw unusable(m_file->name(), fmt::format("is {}, no checkpoint; it would be overwritten",
+                                                   kindName(kind)));
 }
 
 void Checkpoint::readHead() {

@@ -66,6 +66,7 @@ class Checkpoint {
 
   private:
     void open(const std::string& file);
+    void refuseOtherPieces() const;
     void readHead();
     void beginAnew();
     void loadSums(std::span<const std::byte> payload, FrameStore& frame);

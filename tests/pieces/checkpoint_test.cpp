@@ -157,7 +157,10 @@ TEST_F(Checkpoints, OtherFilesAreNotOverwritten) {
         EXPECT_EQ("a letter to a friend", readFile(path("c")));
     }
     makePart("c", "");
+    const std::string part = readFile(path("c"));
     expectRefusal(render(on()), PMR_ERROR_FILE, "is a part of a picture");
+    expectRefusal(render({{"checkpoint", path("c")}}), PMR_ERROR_FILE, "is a part of a picture");
+    EXPECT_TRUE(part == readFile(path("c")));
 }
 
 TEST_F(Checkpoints, InAFolderThatIsNotThere) {
