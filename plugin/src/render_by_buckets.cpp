@@ -43,7 +43,6 @@ void RenderWork::runByBuckets(const Cancel& cancel, EventQueue& events) {
         if (cancel.isSet()) throw Error(Status::kCancelled, "the render was cancelled");
     };
     m_photons.check(cancel.flag);
-    m_photons.check(cancel.flag);
     const double share = photonShare(m_plan);
     double photonSeconds = 0;
     for (std::uint32_t pass = 0; pass < m_settings.passes; ++pass) {
