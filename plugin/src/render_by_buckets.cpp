@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "integrator/values/error.h"
 #include "plugin/src/render_work.h"
 
 namespace pm::plugin {
@@ -39,19 +38,16 @@ double RenderWork::addPass(std::uint32_t pass, double share, const Cancel& cance
 }
 
 void RenderWork::runByBuckets(const Cancel& cancel, EventQueue& events) {
-    const auto throwIfCancelled = [&cancel] {
-        if (cancel.isSet()) throw Error(Status::kCancelled, "the render was cancelled");
-    };
     m_photons.check(cancel.flag);
     const double share = photonShare(m_plan);
     double photonSeconds = 0;
     for (std::uint32_t pass = 0; pass < m_settings.passes; ++pass) {
-        throwIfCancelled();
+        cancel.throwIfSet();
         photonSeconds += addPass(pass, share, cancel, events);
         const std::lock_guard lock(m_mutex);
         m_progress.photonSeconds = photonSeconds;
     }
-    throwIfCancelled();
+    cancel.throwIfSet();
     const Stopwatch watch;
     BucketRun result = m_buckets->run(*m_renderer, m_arena, share, cancel, events);
     const double bucketSeconds = watch.seconds();
@@ -65,7 +61,7 @@ void RenderWork::runByBuckets(const Cancel& cancel, EventQueue& events) {
             m_progress.secondsPerBucket = std::move(result.seconds);
         }
     }
-    throwIfCancelled();
+    cancel.throwIfSet();
     endPass(m_settings.passes - 1, photonSeconds, bucketSeconds);
 }
 

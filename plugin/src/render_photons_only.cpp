@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // RenderWork without pixels: the photons of all passes, into a file.
-#include "integrator/values/error.h"
 #include "plugin/src/render_work.h"
 
 namespace pm::plugin {
@@ -26,7 +25,7 @@ void RenderWork::tracePass(std::uint32_t pass, const Cancel& cancel, EventQueue&
 void RenderWork::runPhotonsOnly(const Cancel& cancel, EventQueue& events) {
     try {
         for (std::uint32_t pass = 0; pass < m_settings.passes; ++pass) {
-            if (cancel.isSet()) throw Error(Status::kCancelled, "the render was cancelled");
+            cancel.throwIfSet();
             tracePass(pass, cancel, events);
         }
         m_photons.writer().finish(cancel.flag);

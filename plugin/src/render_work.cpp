@@ -29,10 +29,6 @@ const BucketOrder& orderNamed(const std::string& name) {
     return *order;
 }
 
-void throwIfCancelled(const Cancel& cancel) {
-    if (cancel.isSet()) throw Error(Status::kCancelled, "the render was cancelled");
-}
-
 double processorSeconds() {
     std::timespec time{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
@@ -195,11 +191,11 @@ void RenderWork::closePieces(const Cancel& cancel, EventQueue& events) noexcept 
 void RenderWork::makePasses(std::uint32_t first, const Cancel& cancel, EventQueue& events) {
     m_photons.check(cancel.flag);
     for (std::uint32_t pass = first;; ++pass) {
-        throwIfCancelled(cancel);
+        cancel.throwIfSet();
         const double photonSeconds = beginPass(pass, cancel, events);
         const double bucketSeconds = renderBuckets(pass, cancel, events);
         for (const Notice& notice : m_renderer->takeNotices()) warn(notice, events);
-        throwIfCancelled(cancel);
+        cancel.throwIfSet();
         m_pieces->endPass(*m_frame, pass + 1, cancel.flag);
         if (const std::string text = m_pieces->takeTrouble(); !text.empty())
             warnOfCheckpoint("the render goes on without checkpoint: " + text, events);

@@ -13,6 +13,7 @@
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame_renderer.h"
 #include "integrator/transport/plan.h"
+#include "integrator/values/error.h"
 #include "integrator/values/stopwatch.h"
 #include "plugin/src/bucket_passes.h"
 #include "plugin/src/error_curve.h"
@@ -44,6 +45,9 @@ struct Cancel {
         flag.store(true, std::memory_order_release);
     }
     bool isSet() const { return flag.load(std::memory_order_acquire); }
+    void throwIfSet() const {
+        if (isSet()) throw Error(Status::kCancelled, "the render was cancelled");
+    }
 };
 
 // Where light meets pixels: one render's passes, photons first, then the buckets in their order;

@@ -15,12 +15,11 @@
 
 #include "integrator/photons/photon_tracer.h"
 #include "integrator/sampling/sampler.h"
+#include "tests/integrator/aimed.h"
 #include "tests/integrator/scene_maker.h"
 
 namespace pm::test {
 namespace {
-
-const std::atomic<bool> kNotCancelled{false};
 
 std::uint32_t glass(SceneMaker& maker) {
     MaterialDescription m;
@@ -150,25 +149,6 @@ std::shared_ptr<const Scene> build(const TestScene& test) {
     test.add(maker);
     return maker.build();
 }
-
-// Aimed emission that has learned from a pilot.
-struct Aimed {
-    std::shared_ptr<const Scene> scene;
-    LightSampler lights;
-    AimedEmission aim;
-
-    explicit Aimed(std::shared_ptr<const Scene> scene_, bool learn = true)
-        : scene(std::move(scene_)), lights(*scene), aim(*scene, lights) {
-        if (learn) aim.refine(trace(PhotonKind::kCausticPilot, 20'000, 1, true).records);
-    }
-    PhotonTraceResult trace(PhotonKind kind, std::uint64_t count, std::uint64_t seed,
-                            bool aimed) const {
-        PhotonTraceRequest request{kind, count, seed, 0};
-        request.aim = aimed ? &aim : nullptr;
-        request.keepRecords = kind == PhotonKind::kCausticPilot;
-        return tracePhotons(*scene, lights, request, kNotCancelled, {});
-    }
-};
 
 // Of the photons that landed: flux, its moments over places (red), and over the normal's y.
 constexpr std::size_t kMoments = 7;

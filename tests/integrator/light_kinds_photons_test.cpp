@@ -15,6 +15,7 @@
 #include "integrator/photons/photon_tracer.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/box_shadow.h"
+#include "tests/integrator/aimed.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/sky_picture.h"
@@ -24,8 +25,6 @@ namespace pm::test {
 namespace {
 
 constexpr double kPiD = std::numbers::pi;
-const std::atomic<bool> kNotCancelled{false};
-
 // Walls around [-1, 1]^3 but for the upper one and the front.
 SceneMaker openBox() {
     SceneMaker maker;
@@ -85,24 +84,6 @@ std::shared_ptr<const Scene> build(const TestLight& light) {
     maker.box({-0.7, -0.9, -0.3}, {-0.4, -0.6, 0.4}, maker.material(mirror()), false);
     return maker.build();
 }
-
-struct Aimed {
-    std::shared_ptr<const Scene> scene;
-    LightSampler lights;
-    AimedEmission aim;
-
-    explicit Aimed(std::shared_ptr<const Scene> scene_, bool learn = true)
-        : scene(std::move(scene_)), lights(*scene), aim(*scene, lights) {
-        if (learn) aim.refine(trace(PhotonKind::kCausticPilot, 20'000, 1, true).records);
-    }
-    PhotonTraceResult trace(PhotonKind kind, std::uint64_t count, std::uint64_t seed,
-                            bool aimed) const {
-        PhotonTraceRequest request{kind, count, seed, 0};
-        request.aim = aimed ? &aim : nullptr;
-        request.keepRecords = kind == PhotonKind::kCausticPilot;
-        return tracePhotons(*scene, lights, request, kNotCancelled, {});
-    }
-};
 
 // Sums over the photons of a trace: flux by channel, red flux by place and by side.
 constexpr std::size_t kSums = 8;
