@@ -3,7 +3,10 @@
 #include "host_shim/app/host.h"
 #include "host_shim/app/interrupt.h"
 
+#include <unistd.h>
+
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 
 namespace {
@@ -26,5 +29,9 @@ int main(int argc, char** argv) {
     std::signal(SIGPIPE, SIG_IGN);
     std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit then fails like on a full disk
     pm::host::installInterruptHandlers();
-    return pm::host::runHost({argv + 1, argv + argc});
+    const int code = pm::host::runHost({argv + 1, argv + argc});
+    std::fflush(nullptr);
+    // All is written; what libraries still have in work nobody wants any more.
+    if (pm::host::interruptSignal() != 0) _exit(code);
+    return code;
 }

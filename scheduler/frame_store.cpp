@@ -216,7 +216,8 @@ void FrameStore::allot(const Rect& atom, std::uint32_t passes) {
     if (hasGroups()) divideGroups(atom);
     std::array<SeenSamples, kAtomPixels> seen;
     std::array<std::uint16_t, kAtomPixels> samples{};
-    for (int half = 0; half < 2; ++half) {
+    // After the first pass the odd ones have seen nothing yet.
+    for (int half = passes == 1 ? 1 : 0; half < 2; ++half) {
         std::size_t i = 0;
         const auto forEachPixel = [&](const auto& use) {
             i = 0;
@@ -241,9 +242,12 @@ void FrameStore::nextSamples(std::uint32_t pass, const Rect& rect,
         for (std::int32_t x = rect.x0; x < rect.x1; ++x, ++to) {
             const std::size_t pixel = pixelIndex(x, y);
             const float group = hasGroups() ? m_groups[pixel] : kOwn;
+            const bool isEven = pass % 2 == 0;
             const double even = m_evenWeights[pixel];
-            *to = {static_cast<std::uint32_t>(pass % 2 == 0 ? even : m_weights[pixel] - even),
-                   m_allotted[2 * pixel + pass % 2]};
+            const auto had = static_cast<std::uint32_t>(isEven ? even : m_weights[pixel] - even);
+            const std::uint32_t evenPasses = m_evenPasses[pixel];
+            *to = {had, samplesOfNextPass(*m_rule, m_allotted[2 * pixel + pass % 2], had,
+                                          isEven ? evenPasses : m_passes[pixel] - evenPasses)};
             if (group != kOwn) *to = {0, group == kDivided ? to->count : 0, group != kDivided};
         }
     }

@@ -36,7 +36,7 @@ namespace pm {
 //     mean = (n_even mean_even + n_odd mean_odd) / (n_even + n_odd),   n the passes with samples:
 // weights that no sample decides on, so that this has no bias. Its variance is then that of a
 // sample, M2 / (n - 1), times the sum over the halves of (n_half / n)^2 / W_half. An atom's samples
-// are allotted as soon as its pass 1, 3, 7, ... is there, so the store holds whole atoms, also
+// are allotted as soon as its pass 0, 1, 3, 7, ... is there, so the store holds whole atoms, also
 // those that the window cuts.
 //
 // At level 0 such a render begins with groups of 2 x 2 pixels: a group's samples count for each of

@@ -18,15 +18,24 @@ namespace pm {
 namespace {
 
 constexpr double kPassesOfALevel = 4;
-// What two passes show is little; from four on the threshold is divided by this, and no further:
-// what the samples of a pass share, such as its photons, gains nothing by more of them.
+// What one or two passes show is little; from four on the threshold is divided by this.
 constexpr double kFiner = 2;
+// Where the samples of a pass share no noise: the threshold is divided by this as well.
+constexpr double kFinerAlone = 4;
+// Those of level 3 in four passes, which errors are told by then.
+constexpr double kSamplesOfReference = 16;
 // What the neighbours met may be here, too, and not have been met yet: they count as so many
 // samples of the pixel's own.
-constexpr double kSamplesOfNeighbours = 4;
+constexpr double kSamplesOfNeighbours = 3;
 // In four passes; see isDivided().
 constexpr double kSamplesThatDivide = 16;
 constexpr std::size_t kSide = kAtomSizePixels;
+
+// Where nothing is shared the error of N samples of a low-discrepancy sequence falls like N^-p,
+// p = 5/3 about, and 2 / (p + 1) is 3/4. By square roots, which are the same everywhere.
+double toThreeQuarters(double x) {
+    return std::sqrt(x) * std::sqrt(std::sqrt(x));
+}
 
 // Calls visit with each pixel of the 3 x 3 around (x, y) that lies in the atom.
 template <typename Visit>
@@ -56,22 +65,29 @@ class Spread {
     double m_samples = 0, m_sums[3]{}, m_square = 0;
 };
 
-// Of so many that are wanted in four passes.
-std::uint16_t samplesOfPass(const SampleRule& rule, double wanted) {
-    const double inPass = wanted / kPassesOfALevel;
-    // A number that is none asks for nothing.
-    std::uint32_t power = inPass >= 0.5 ? 1 : 0;
-    while (power > 0 && power < rule.most && power * std::numbers::sqrt2 < inPass) power *= 2;
-    return static_cast<std::uint16_t>(std::clamp(power, rule.least, rule.most));
+// What the pixels around this one lead to expect: half of it what those show by themselves, half by
+// what they differ from each other, since an edge between two pixels mostly cuts one of them. Given
+// are the pixels' variances.
+double varianceAround(std::size_t pixel, std::span<const SeenSamples> seen,
+                      std::span<const double> variance) {
+    Spread together;
+    double sum = 0, count = 0;
+    around(pixel % kSide, pixel / kSide, [&](std::size_t at) {
+        together.add(seen[at]);
+        sum += variance[at];
+        ++count;
+    });
+    return (sum / count + together.variance()) / 2;
 }
 
 }  // namespace
 
-SampleRule sampleRule(std::uint32_t leastLevel, std::uint32_t mostLevel, double threshold) {
+SampleRule sampleRule(std::uint32_t leastLevel, std::uint32_t mostLevel, double threshold,
+                      bool sharesNoise) {
     const auto inPass = [](std::uint32_t level) {
         return level < 2 ? 0u : 1u << (2 * (level - 2));
     };
-    return {inPass(leastLevel), inPass(mostLevel), threshold, leastLevel == 0};
+    return {inPass(leastLevel), inPass(mostLevel), threshold, leastLevel == 0, sharesNoise};
 }
 
 void checkSampleRule(const SampleRule& rule) {
@@ -86,7 +102,7 @@ void checkSampleRule(const SampleRule& rule) {
 }
 
 bool allotsAfter(std::uint32_t passes) {
-    return passes >= 2 && std::has_single_bit(passes);
+    return std::has_single_bit(passes);
 }
 
 bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSamples& odd) {
@@ -95,6 +111,17 @@ bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSample
     spread.add(odd);
     // Also where it is not a number.
     return !(std::sqrt(spread.variance()) <= kSamplesThatDivide * rule.threshold);
+}
+
+std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes, double spread) {
+    double wanted = spread / rule.threshold * (passes < 4 ? 1 : kFiner);
+    if (!rule.sharesNoise)
+        wanted = kSamplesOfReference * toThreeQuarters(kFinerAlone * wanted / kSamplesOfReference);
+    const double inPass = wanted / kPassesOfALevel;
+    // A number that is none asks for nothing.
+    std::uint32_t power = inPass >= 0.5 ? 1 : 0;
+    while (power > 0 && power < rule.most && power * std::numbers::sqrt2 < inPass) power *= 2;
+    return static_cast<std::uint16_t>(std::clamp(power, rule.least, rule.most));
 }
 
 void allotSamples(const SampleRule& rule, std::uint32_t passes, std::span<const SeenSamples> seen,
@@ -109,18 +136,23 @@ void allotSamples(const SampleRule& rule, std::uint32_t passes, std::span<const 
             around(i % kSide, i / kSide, [&](std::size_t at) { spread.add(seen[at]); });
         variance[i] = spread.variance();
     }
-    const double threshold = passes < 4 ? rule.threshold : rule.threshold / kFiner;
     for (std::size_t i = 0; i < variance.size(); ++i) {
-        double sum = 0, count = 0;
-        around(i % kSide, i / kSide, [&](std::size_t at) {
-            sum += variance[at];
-            ++count;
-        });
         const double own = seen[i].samples;
         const double pooled =
-            (own * variance[i] + kSamplesOfNeighbours * sum / count) / (own + kSamplesOfNeighbours);
-        samples[i] = samplesOfPass(rule, std::sqrt(pooled) / threshold);
+            (own * variance[i] + kSamplesOfNeighbours * varianceAround(i, seen, variance)) /
+            (own + kSamplesOfNeighbours);
+        samples[i] = samplesOfSpread(rule, passes, std::sqrt(pooled));
     }
+}
+
+std::uint32_t samplesOfNextPass(const SampleRule& rule, std::uint32_t allotted, std::uint32_t had,
+                                std::uint32_t passes) {
+    // A first pass has nothing to make up for. Where noise is shared, a pass with many more samples
+    // than the others would bring its own back.
+    if (rule.sharesNoise || passes == 0) return allotted;
+    const std::uint64_t due = (std::uint64_t{passes} + 1) * allotted;
+    const std::uint64_t missing = due > had ? due - had : 0;
+    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(missing, rule.least, rule.most));
 }
 
 }  // namespace pm

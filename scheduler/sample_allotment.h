@@ -20,21 +20,32 @@ namespace pm {
 // The rule: of N samples in four passes whose relative spread is s, one more lowers the squared
 // relative error by s^2 / N^2. A pixel gets samples until that is less than threshold^2, so
 // N = s / threshold: the allotment for which the sum of the squared errors is least for the same
-// number of samples. Relative means: to sqrt(r^2 + 0.01), r the mean, as in relMSE. Two passes
-// show little: from four on the threshold is halved. In a pass N / 4, rounded to a power of two:
-// low-discrepancy sequences are at their best there, and a pixel that needs no more samples than
-// another is not to have some more.
+// number of samples. Relative means: to sqrt(r^2 + 0.01), r the mean, as in relMSE. Up to three
+// passes show little: from four on the threshold is halved. In a pass N / 4, rounded to a power of
+// two: low-discrepancy sequences are at their best there, and a pixel that needs no more samples
+// than another is not to have some more.
+//
+// That is so where the samples of a pass share noise, such as that of its photons: more samples
+// don't lower it, more passes do. Where they share none a pixel's passes are as good as one, and
+// all that counts is how many samples a pixel has beside others. So there
+// - the threshold T is a quarter, and pixels may differ more;
+// - N = 16 (s / (16 T))^(3/4), as the squared error falls like N^(-5/3) then, not like 1 / N;
+// - a half that has had fewer samples than its passes would have by what is known now makes up for
+//   it in its next pass.
 struct SampleRule {
     std::uint32_t least = 1;  // samples of a pixel in a pass, up to 65535
     std::uint32_t most = 1;   // as well, at least `least`
-    double threshold = 0.01;  // > 0; of what is allotted after two passes
+    double threshold = 0.01;  // > 0
     // At first, pixels are taken together in groups of 2 x 2, on even coordinates.
     bool groups = false;
+    // The samples of a pass share noise.
+    bool sharesNoise = true;
 };
 
 // The rule for levels from least to most, 0 to 6. Of levels 0, where it begins with groups, and 1,
 // less than a sample a pass, the rule has none: who renders knows in which passes they come.
-SampleRule sampleRule(std::uint32_t leastLevel, std::uint32_t mostLevel, double threshold);
+SampleRule sampleRule(std::uint32_t leastLevel, std::uint32_t mostLevel, double threshold,
+                      bool sharesNoise = true);
 
 // Errors: kInvalidArgument for numbers that are not allowed.
 void checkSampleRule(const SampleRule& rule);
@@ -47,17 +58,25 @@ struct SeenSamples {
     double square = 0;   // sum over samples and channels of the beauty squared
 };
 
-// Whether samples are allotted anew after so many passes: 2, 4, 8, ...
+// Whether samples are allotted anew after so many passes: 1, 2, 4, 8, ...
 bool allotsAfter(std::uint32_t passes);
 
 // Whether the samples of a group differ so much that it is divided: by their spread, a pixel would
 // get the 16 samples of level 3. A group blurs what is even, and noise alone is not to divide it.
 bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSamples& odd);
 
+// Samples a pass of a pixel of this relative spread, after so many passes.
+std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes, double spread);
+
 // Samples a pass of the pixels of one atom of 8 x 8, row by row, after so many passes, by what the
 // other half of them has seen. A pixel's neighbours count where they are in the atom: so a picture
 // does not depend on crop or buckets.
 void allotSamples(const SampleRule& rule, std::uint32_t passes, std::span<const SeenSamples> seen,
                   std::span<std::uint16_t> samples);
+
+// Samples in a half's next pass of a pixel that is allotted so many a pass and has had `had` in
+// `passes` of that half.
+std::uint32_t samplesOfNextPass(const SampleRule& rule, std::uint32_t allotted, std::uint32_t had,
+                                std::uint32_t passes);
 
 }  // namespace pm

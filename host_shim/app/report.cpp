@@ -238,6 +238,13 @@ std::string Report::bucketsHtml(const std::string& onePixelCommand) const {
                       std::max(window.x1, r.x1), std::max(window.y1, r.y1)};
         }
     const std::string map = bucketMap(buckets, window, kMapBytes);
+    if (map.empty() && !m_bucketSamples.dataUri.empty())
+        return section(
+            "buckets", "Buckets",
+            figureHtml(m_bucketSamples, "samples of the buckets",
+                       "Samples a bucket. None was timed here; parts carry no times, so that they "
+                       "are the same bytes however often they are made.") +
+                scaleHtml("0", fmt::format("{:.0f} samples", m_mostBucketSamples)));
     if (map.empty()) return section("buckets", "Buckets", paragraph("No bucket was timed."));
     double all = 0;
     for (const auto& bucket : buckets) all += bucket.seconds;

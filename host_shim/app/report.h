@@ -40,6 +40,7 @@ class Report {
                        const DisplayTransform& display);
     void takeStandardError(const PictureSource& source, const Picture& picture);
     void takeLevels(const PictureSource& source);
+    void takeBucketSamples(const PictureSource& source);
     void takeBrightest(const Picture& picture, const std::array<double, 3>& luminance);
 
     std::string pictureHtml() const;
@@ -50,8 +51,10 @@ class Report {
     BucketTimes m_bucketTimes;
     PixelRect m_window;
     EmbeddedPicture m_picture, m_reference, m_difference, m_standardError, m_levels;
+    EmbeddedPicture m_bucketSamples;  // only where no bucket was timed
     float m_mostDifference{}, m_mostStandardError{}, m_leastLevel{}, m_mostLevel{};
     double m_meanLevel{};
+    float m_mostBucketSamples{};
     std::vector<Pixel> m_brightest;
 };
 

@@ -5,6 +5,8 @@
 
 #include "host_shim/colour/display_picture.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -16,6 +18,7 @@ constexpr std::size_t kPictureBytes = 1'000'000;
 constexpr std::size_t kDifferenceBytes = 700'000;
 constexpr std::size_t kLayerBytes = 400'000;
 
+constexpr std::int32_t kAtom = 8;  // pixels; see docs/orders.md
 constexpr std::size_t kMostBrightest = 10;
 constexpr std::int32_t kNearShare = 32;  // of the shorter side
 // What lies above is shown like it: a few fireflies would leave the rest dark.
@@ -79,6 +82,7 @@ void Report::takePicture(const PictureSource& source, const Picture& picture,
     if (reference != nullptr) takeReference(picture, *reference, display);
     takeStandardError(source, picture);
     takeLevels(source);
+    if (m_bucketTimes.timed().empty()) takeBucketSamples(source);
     takeBrightest(picture, luminance);
 }
 
@@ -123,6 +127,31 @@ void Report::takeLevels(const PictureSource& source) {
     for (const float level : plane.values) sum += level;
     m_meanLevel = plane.values.empty() ? 0 : sum / static_cast<double>(plane.values.size());
     m_levels = embedded(heatMap(plane, m_leastLevel, m_mostLevel), kLayerBytes);
+}
+
+// In place of their times, which parts don't carry: they must be the same bytes however often made.
+void Report::takeBucketSamples(const PictureSource& source) {
+    const auto json = nlohmann::json::parse(source.statistics());
+    const std::int32_t size = json.at("buckets").at("sizePixels").get<std::int32_t>();
+    // Buckets are of whole atoms, also where the window is not.
+    const auto atom = [](std::int32_t v) { return v - ((v % kAtom) + kAtom) % kAtom; };
+    const std::int32_t x0 = atom(m_window.x0), y0 = atom(m_window.y0);
+    const std::int32_t columns = (m_window.x1 - x0 + size - 1) / size;
+    const std::int32_t rows = (m_window.y1 - y0 + size - 1) / size;
+    Plane plane{m_window.width(), m_window.height(), layer(source, m_window, "samples", 1)};
+    std::vector<double> sums(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+    const auto sumOf = [&](std::size_t pixel) -> double& {
+        const auto width = static_cast<std::size_t>(plane.width);
+        const auto x = static_cast<std::int32_t>(pixel % width) + m_window.x0 - x0;
+        const auto y = static_cast<std::int32_t>(pixel / width) + m_window.y0 - y0;
+        return sums[static_cast<std::size_t>(y / size * columns + x / size)];
+    };
+    for (std::size_t i = 0; i < plane.values.size(); ++i)
+        sumOf(i) += static_cast<double>(plane.values[i]);
+    for (std::size_t i = 0; i < plane.values.size(); ++i)
+        plane.values[i] = static_cast<float>(sumOf(i));
+    m_mostBucketSamples = quantile(plane, 1);
+    m_bucketSamples = embedded(heatMap(plane, 0, m_mostBucketSamples), kLayerBytes);
 }
 
 // Those that nothing near outshines, so that one lamp does not fill the list.

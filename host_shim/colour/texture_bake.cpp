@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/colour/texture_bake.h"
 
+#include "host_shim/colour/asked_work.h"
 #include "host_shim/colour/texture_read.h"
 #include "host_shim/pictures/finished_file.h"
 
@@ -14,6 +15,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 
 namespace pm::host {
 namespace {
@@ -104,6 +106,16 @@ void writeTexture(const std::filesystem::path& path, const TextureImage& image,
     finished.commit();
 }
 
+// To the rendering space, before any filtering: a mean of sRGB codes is not the code of the mean.
+// Returns how many texels were bad.
+std::int64_t convert(TextureImage& image, bool isColour, const SpaceConversion& conversion) {
+    const std::int64_t bad = replaceBadTexels(image.values);
+    if (!isColour) return bad;
+    expandToColour(image);
+    conversion.apply(image.values, image.channels);
+    return bad + replaceBadTexels(image.values);
+}
+
 std::string bakedName(const std::filesystem::path& file, const std::string& key) {
     return fmt::format("{}.{:016x}.tx", file.stem().string(), XXH3_64bits(key.data(), key.size()));
 }
@@ -121,33 +133,26 @@ const BakedTexture& TextureBaker::bake(const TextureRequest& request) {
                                           isColour ? request.colorspace : "", request.clamp);
     if (const auto found = m_baked.find(asked); found != m_baked.end()) return found->second;
 
-    const auto ask = [this] {
-        if (m_goOn) m_goOn();
-    };
-    ask();
-    TextureImage image = readTexture(request.file, isColour);
-    ask();
+    // Shared with the work that goOn may leave behind: of a large picture each step takes seconds.
+    const auto image = std::make_shared<TextureImage>(
+        runAsking(m_goOn, [file = request.file, isColour] { return readTexture(file, isColour); }));
     BakedTexture baked;
-    baked.badTexels = replaceBadTexels(image.values);
     SpaceConversion conversion;
+    baked.space.isData = !isColour;
     if (isColour) {
-        baked.space = m_colour.textureSpace(request.file, image.isFloatFile, request.colorspace);
+        baked.space = m_colour.textureSpace(request.file, image->isFloatFile, request.colorspace);
         conversion = m_colour.textureToRendering(baked.space);
-        expandToColour(image);
-        // Before any filtering: a mean of sRGB codes is not the code of the mean.
-        conversion.apply(image.values, image.channels);
-        baked.badTexels += replaceBadTexels(image.values);
-    } else {
-        baked.space.isData = true;
     }
-    ask();
-    const bool half = isColour && image.is8Bit && fitsHalf(image.values);
-    baked.width = image.width;
-    baked.height = image.height;
-    baked.channels = image.channels;
+    baked.badTexels = runAsking(
+        m_goOn, [image, isColour, conversion] { return convert(*image, isColour, conversion); });
+    baked.width = image->width;
+    baked.height = image->height;
+    baked.channels = image->channels;
     baked.file = m_folder / bakedName(request.file, asked + "\n" + conversion.cacheId());
-    writeTexture(baked.file, image, half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT,
-                 request.clamp);
+    callAsking(m_goOn, [image, isColour, file = baked.file, clamp = request.clamp] {
+        const bool half = isColour && image->is8Bit && fitsHalf(image->values);
+        writeTexture(file, *image, half ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT, clamp);
+    });
     return m_baked.emplace(asked, std::move(baked)).first->second;
 }
 

@@ -38,8 +38,8 @@ struct BakedTexture {
 class TextureBaker {
   public:
     // folder must exist and outlive the use of the textures; the caller removes it. colour must
-    // outlive the baker. goOn: called between the steps of a texture; what it throws ends bake()
-    // and leaves nothing of it; may be empty.
+    // outlive the baker. goOn: called again and again while a texture is made; what it throws ends
+    // bake() at once, though a thread may go on for a while in vain (see callAsking); may be empty.
     TextureBaker(const ColourPipeline& colour, std::filesystem::path folder,
                  std::function<void()> goOn = {});
 

@@ -14,6 +14,8 @@
 namespace pm {
 namespace {
 
+constexpr const char* kChecking = "checking a mesh";
+
 [[noreturn]] void reject(const std::string& text) {
     throw Error(Status::kInvalidScene, text);
 }
@@ -28,8 +30,9 @@ void checkLimits(const PolygonMesh& mesh) {
     }
 }
 
-void checkPositions(const PolygonMesh& mesh) {
+void checkPositions(const PolygonMesh& mesh, const CancelCheck& cancel) {
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
+        cancel.throwIfSet(kChecking);
         const Vec3f& p = mesh.positions[i];
         if (isFinite(p) && maxAbsComponent(p) <= kMaxCoordinate) continue;
         reject(
@@ -37,6 +40,7 @@ void checkPositions(const PolygonMesh& mesh) {
                         i, p.x, p.y, p.z, kMaxCoordinate));
     }
     for (std::size_t i = 0; i < mesh.texcoords.size(); ++i) {
+        cancel.throwIfSet(kChecking);
         const Vec2f& t = mesh.texcoords[i];
         if (std::isfinite(t.x) && std::isfinite(t.y)) continue;
         reject(fmt::format("texture coordinate {} is ({}, {}); it must be finite", i, t.x, t.y));
@@ -62,7 +66,7 @@ void checkArraySize(const char* name, std::size_t size, std::size_t expected, bo
         fmt::format("there are {} {}, but the faces have {} corners in all", size, name, expected));
 }
 
-void checkIndices(const PolygonMesh& mesh) {
+void checkIndices(const PolygonMesh& mesh, const CancelCheck& cancel) {
     const auto vertexCount = static_cast<std::int64_t>(mesh.positions.size());
     const auto normalCount = static_cast<std::int64_t>(mesh.normals.size());
     const auto texcoordCount = static_cast<std::int64_t>(mesh.texcoords.size());
@@ -73,6 +77,7 @@ void checkIndices(const PolygonMesh& mesh) {
     };
     std::size_t corner = 0;
     for (std::size_t face = 0; face < mesh.faceCount(); ++face) {
+        cancel.throwIfSet(kChecking);
         for (std::uint32_t i = 0; i < mesh.faceVertexCounts[face]; ++i, ++corner) {
             check(face, "vertex", mesh.vertexIndices[corner], 0, vertexCount);
             if (!mesh.normalIndices.empty())
@@ -85,9 +90,9 @@ void checkIndices(const PolygonMesh& mesh) {
 
 }  // namespace
 
-void validate(const PolygonMesh& mesh) {
+void validate(const PolygonMesh& mesh, const CancelCheck& cancel) {
     checkLimits(mesh);
-    checkPositions(mesh);
+    checkPositions(mesh, cancel);
     const std::size_t corners = checkFaceSizes(mesh);
     checkArraySize("vertex indices", mesh.vertexIndices.size(), corners, false);
     checkArraySize("normal indices", mesh.normalIndices.size(), corners, true);
@@ -96,7 +101,7 @@ void validate(const PolygonMesh& mesh) {
         reject(fmt::format("there are {} material slots for {} faces", mesh.faceMaterials.size(),
                            mesh.faceCount()));
     }
-    checkIndices(mesh);
+    checkIndices(mesh, cancel);
 }
 
 bool isDegenerateTriangle(const Vec3f& a, const Vec3f& b, const Vec3f& c) {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "integrator/values/cancel_check.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
@@ -72,8 +73,9 @@ struct BuiltMesh {
 
 // Throws Error(kInvalidScene) unless every index is in range, every face has 3 to kMaxFaceSize
 // corners, the arrays fit each other and all positions and texture coordinates are finite
-// (positions within kMaxCoordinate). Bad normals pass: triangulate() replaces them.
-void validate(const PolygonMesh& mesh);
+// (positions within kMaxCoordinate). Bad normals pass: triangulate() replaces them. Throws
+// Error(kCancelled) soon after cancel is set.
+void validate(const PolygonMesh& mesh, const CancelCheck& cancel = {});
 
 // True when a triangle has no area to speak of: a corner is met twice or all three are in line.
 bool isDegenerateTriangle(const Vec3f& a, const Vec3f& b, const Vec3f& c);

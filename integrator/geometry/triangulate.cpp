@@ -15,10 +15,11 @@ constexpr std::uint32_t kNone = 0xffffffffu;
 // Triangulates the faces of one mesh, one after another.
 class MeshTriangulator {
   public:
-    explicit MeshTriangulator(const PolygonMesh& source);
-    BuiltMesh build(const CancelCheck& cancel);
+    MeshTriangulator(const PolygonMesh& source, const CancelCheck& cancel);
+    BuiltMesh build();
 
   private:
+    void goOn() const { m_cancel.throwIfSet("cutting faces into triangles"); }
     void addFace(std::size_t face, std::uint32_t size);
     void addTriangle(std::size_t face, const TriangleMesh::Corners& corners);
     std::uint32_t normalOf(std::size_t corner);
@@ -26,6 +27,7 @@ class MeshTriangulator {
     std::uint32_t texcoordOf(std::size_t corner);
 
     const PolygonMesh& m_source;
+    const CancelCheck m_cancel;
     BuiltMesh m_built;
     PolygonClipper m_clipper;
     std::vector<bool> m_goodNormals;
@@ -39,13 +41,15 @@ class MeshTriangulator {
     std::uint32_t m_zeroTexcoord = kNone;
 };
 
-MeshTriangulator::MeshTriangulator(const PolygonMesh& source) : m_source(source) {
+MeshTriangulator::MeshTriangulator(const PolygonMesh& source, const CancelCheck& cancel)
+    : m_source(source), m_cancel(cancel) {
     TriangleMesh& mesh = m_built.mesh;
     mesh.positions = source.positions;
     if (!source.texcoordIndices.empty()) mesh.texcoords = source.texcoords;
     if (source.normalIndices.empty()) return;
     m_goodNormals.reserve(source.normals.size());
     for (const Vec3f& given : source.normals) {
+        goOn();
         const Vec3d normal(given);
         const double size = length(normal);
         const bool good = std::isfinite(size) && size > 0;
@@ -55,9 +59,9 @@ MeshTriangulator::MeshTriangulator(const PolygonMesh& source) : m_source(source)
     }
 }
 
-BuiltMesh MeshTriangulator::build(const CancelCheck& cancel) {
+BuiltMesh MeshTriangulator::build() {
     for (std::size_t face = 0; face < m_source.faceCount(); ++face) {
-        cancel.throwIfSet("cutting faces into triangles");
+        goOn();
         addFace(face, m_source.faceVertexCounts[face]);
     }
     return std::move(m_built);
@@ -134,8 +138,8 @@ std::uint32_t MeshTriangulator::texcoordOf(std::size_t corner) {
 }  // namespace
 
 BuiltMesh triangulate(const PolygonMesh& mesh, const CancelCheck& cancel) {
-    validate(mesh);
-    return MeshTriangulator(mesh).build(cancel);
+    validate(mesh, cancel);
+    return MeshTriangulator(mesh, cancel).build();
 }
 
 }  // namespace pm

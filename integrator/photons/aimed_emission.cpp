@@ -132,7 +132,8 @@ class SphereCaps {
 
 }  // namespace
 
-AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights)
+AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights,
+                             const CancelCheck& cancel)
     : m_scene(scene), m_lights(lights) {
     const auto& all = scene.lights();
     if (lights.empty()) return;
@@ -145,12 +146,13 @@ AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights)
         const float u = (static_cast<float>(i) + 0.5f) / kViewpoints;
         viewpoints.push_back(viewpoint(byPower.choose(u, probability), spreadPoint(i)));
     }
-    m_casters = findCasters(scene, viewpoints);
+    m_casters = findCasters(scene, viewpoints, cancel);
     if (m_casters.empty()) return;
     groupLights();
     m_guess.resize(all.size());
     const std::uint32_t points = all.size() <= 1024 ? 16 : 4;
     tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
+        cancel.throwIfSet("aiming at what casts caustics");
         m_guess[i] = fluxTowardsCasters(static_cast<std::uint32_t>(i), points);
     });
     m_choice = LightChoice(m_guess);
@@ -352,7 +354,8 @@ bool AimedEmission::emitParallel(const Light& light, float probability, float uC
 
 std::uint64_t AimedEmission::memoryBytes() const {
     return m_casters.size() * sizeof(Caster) + m_worth.size() * sizeof(float) +
-           m_group.size() * (sizeof(std::uint8_t) + sizeof(double) + 2 * sizeof(float));
+           m_group.size() * (sizeof(std::uint8_t) + sizeof(double) + 2 * sizeof(float)) +
+           (m_sky.empty() ? 0 : SkyParts::kCount * sizeof(float));
 }
 
 }  // namespace pm

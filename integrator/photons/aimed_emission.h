@@ -11,6 +11,7 @@
 #include "integrator/scene/light_choice.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
+#include "integrator/values/cancel_check.h"
 
 namespace pm {
 
@@ -49,8 +50,8 @@ struct EmissionRecord {
 class AimedEmission {
   public:
     // Finds the casters. lights: of this scene; both must outlive this. Runs in parallel in the
-    // calling TBB arena.
-    AimedEmission(const Scene& scene, const LightSampler& lights);
+    // calling TBB arena. Throws Error(kCancelled) soon after cancel is set.
+    AimedEmission(const Scene& scene, const LightSampler& lights, const CancelCheck& cancel = {});
 
     // Nothing to aim from or at: emit() has no photon to give.
     bool empty() const { return m_casters.empty() || m_choice.empty(); }

@@ -64,12 +64,21 @@ Vec3d middle(const Item& item) {
 // A box whose corners lie this near to the sphere can be narrower than it: that of a ball can't.
 constexpr double kUsefulBox = 1.2;
 
-Caster boundsOf(std::span<const Item> items) {
+// Called for every item of what may take long.
+void goOn(const CancelCheck& cancel) {
+    cancel.throwIfSet("looking for what casts caustics");
+}
+
+Caster boundsOf(std::span<const Item> items, const CancelCheck& cancel) {
     Box box;
-    for (const Item& item : items) box.grow(item);
+    for (const Item& item : items) {
+        goOn(cancel);
+        box.grow(item);
+    }
     Caster caster{box.centre(), 0, (box.hi - box.lo) * 0.5, false};
     double squared = 0;  // of triangles alone, so that no root is taken for each
     for (const Item& item : items) {
+        goOn(cancel);
         if (item.radius > 0.0f)
             caster.radius = std::max(caster.radius,
                                      length(Vec3d(item.corners[0]) - caster.centre) + item.radius);
@@ -90,12 +99,13 @@ Vec3f toScene(const Transform& m, const Vec3f& point, const Vec3d& centre) {
 }
 
 void addMesh(const Scene& scene, const InstanceDescription& instance, const TriangleMesh& mesh,
-             std::vector<Item>& items) {
+             std::vector<Item>& items, const CancelCheck& cancel) {
     std::vector<bool> casts;
     for (const std::uint32_t material : instance.materials)
         casts.push_back(castsCaustics(scene.material(material)));
     if (std::find(casts.begin(), casts.end(), true) == casts.end()) return;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        goOn(cancel);
         if (!casts[mesh.materials.empty() ? 0 : mesh.materials[i]]) continue;
         Item item;
         for (std::size_t k = 0; k < 3; ++k)
@@ -105,13 +115,13 @@ void addMesh(const Scene& scene, const InstanceDescription& instance, const Tria
     }
 }
 
-std::vector<Item> castingItems(const Scene& scene) {
+std::vector<Item> castingItems(const Scene& scene, const CancelCheck& cancel) {
     std::vector<Item> items;
     const auto& instances = scene.description().instances;
     for (std::uint32_t i = 0; i < instances.size(); ++i) {
         if (const auto* mesh =
                 std::get_if<std::shared_ptr<const TriangleMesh>>(&instances[i].shape)) {
-            addMesh(scene, instances[i], **mesh, items);
+            addMesh(scene, instances[i], **mesh, items, cancel);
         } else if (castsCaustics(scene.material(instances[i].materials[0]))) {
             const SphereShape sphere = scene.sphere(i);
             const Vec3f centre(sphere.centre);
@@ -159,8 +169,9 @@ void tryAxis(std::span<const Item> items, const Box& middles, int axis, Division
 // Divides a binary tree of parts and takes back what is not worth it.
 class CasterTree {
   public:
-    CasterTree(std::vector<Item> items, std::span<const EmissionPoint> viewpoints)
-        : m_items(std::move(items)), m_viewpoints(viewpoints) {
+    CasterTree(std::vector<Item> items, std::span<const EmissionPoint> viewpoints,
+               const CancelCheck& cancel)
+        : m_items(std::move(items)), m_viewpoints(viewpoints), m_cancel(cancel) {
         addNode(0, m_items.size());
         for (std::size_t leaves = 1; leaves < kMostCasters; ++leaves)
             if (!divideLargest()) break;
@@ -187,7 +198,7 @@ class CasterTree {
 
     void addNode(std::size_t begin, std::size_t end) {
         Node node{begin, end, {}, 0, end - begin > 1};
-        node.bounds = boundsOf(itemsOf(node));
+        node.bounds = boundsOf(itemsOf(node), m_cancel);
         m_nodes.push_back(node);
     }
 
@@ -215,6 +226,7 @@ class CasterTree {
         for (int axis = 0; axis < 3; ++axis) tryAxis(items, middles, axis, best);
         if (best.cost == std::numeric_limits<double>::infinity()) return false;
         const auto split = std::stable_partition(items.begin(), items.end(), [&](const Item& item) {
+            goOn(m_cancel);
             return binOf(item, middles, best.axis) <= best.bin;
         });
         const std::size_t at = node.begin + static_cast<std::size_t>(split - items.begin());
@@ -252,6 +264,7 @@ class CasterTree {
 
     std::vector<Item> m_items;
     std::span<const EmissionPoint> m_viewpoints;
+    const CancelCheck m_cancel;
     std::vector<Node> m_nodes;
 };
 
@@ -262,10 +275,11 @@ bool castsCaustics(const MaterialDescription& material) {
            material.transparency > 0.0f || material.opacityTexture != kNoTexture;
 }
 
-std::vector<Caster> findCasters(const Scene& scene, std::span<const EmissionPoint> viewpoints) {
-    std::vector<Item> items = castingItems(scene);
+std::vector<Caster> findCasters(const Scene& scene, std::span<const EmissionPoint> viewpoints,
+                                const CancelCheck& cancel) {
+    std::vector<Item> items = castingItems(scene, cancel);
     if (items.empty()) return {};
-    return CasterTree(std::move(items), viewpoints).casters();
+    return CasterTree(std::move(items), viewpoints, cancel).casters();
 }
 
 }  // namespace pm

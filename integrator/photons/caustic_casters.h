@@ -7,6 +7,7 @@
 
 #include "integrator/photons/aim_cone.h"
 #include "integrator/scene/scene.h"
+#include "integrator/values/cancel_check.h"
 
 namespace pm {
 
@@ -15,7 +16,9 @@ bool castsCaustics(const MaterialDescription& material);
 
 // Casters that together hold every surface of the scene that casts caustics, at most kMostCasters:
 // as many as make the solid angle they fill, seen from the viewpoints, clearly smaller. Empty when
-// nothing casts. Time: about that of sorting the casting triangles by place.
-std::vector<Caster> findCasters(const Scene& scene, std::span<const EmissionPoint> viewpoints);
+// nothing casts. Time: about that of sorting the casting triangles by place. Throws
+// Error(kCancelled) soon after cancel is set.
+std::vector<Caster> findCasters(const Scene& scene, std::span<const EmissionPoint> viewpoints,
+                                const CancelCheck& cancel = {});
 
 }  // namespace pm

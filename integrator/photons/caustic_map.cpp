@@ -30,17 +30,15 @@ PilotRadius::PilotRadius(std::vector<Photon> pilot, std::uint32_t estimatePhoton
 
 float CausticRadius::at(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const {
     const float largest = kLargestRadius * m_typical;
-    m_pilot.findNearest({position, normal, m_count, largest}, scratch);
-    if (scratch.found().size() < m_count) return largest;
+    const float radius = m_pilot.radiusOf({position, normal, m_count, largest}, scratch);
     // Photons in one point leave no area to divide by.
-    return std::max(kSmallestRadius * m_typical,
-                    std::sqrt(scratch.found().front().distanceSquared));
+    return std::clamp(radius, kSmallestRadius * m_typical, largest);
 }
 
 TwoRadii CausticMap::irradiance(const Vec3f& position, const Vec3f& normal,
                                 NearestPhotons& scratch) const {
     const float radius = m_radius.at(position, normal, scratch) * m_radiusFactor;
-    TwoRadii flux = m_map.fluxWithin(position, normal, radius);
+    TwoRadii flux = m_map.fluxWithin(position, normal, radius, scratch);
     SurfacePatch::Shares share;
     // In the dark there is nothing to correct.
     if (m_patches && !isBlack(flux.wide)) {

@@ -28,6 +28,8 @@ class PilotRadius {
     // What half of the pilot's photons need; scene units, > 0.
     float typical() const { return m_typical; }
 
+    const PhotonMap& photons() const { return m_pilot; }
+
   protected:
     PhotonMap m_pilot;
     std::uint32_t m_count;

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/photons/irradiance_sites.h"
 
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -21,6 +23,11 @@ constexpr float kSiteCosine = 0.8f;
 // ... and evenly: then the way is at right angles to the sum of both normals, within this.
 constexpr float kSiteFlatness = 0.2f;
 constexpr std::size_t kFewestSlots = 1 << 16, kMostSlots = 1 << 22, kMostProbes = 16;
+constexpr std::size_t kHugePage = std::size_t{2} << 20;
+
+std::size_t slotsFor(std::size_t photons) {
+    return std::bit_ceil(std::clamp(photons, kFewestSlots, kMostSlots));
+}
 
 // Of the cells: another one in each pass, as radii differ from pass to pass.
 Vec3f originOf(const PhotonMap& map, float radius) {
@@ -35,12 +42,30 @@ Vec3f originOf(const PhotonMap& map, float radius) {
 
 }  // namespace
 
-IrradianceSites::IrradianceSites(const Scene& scene, const PhotonMap& map, float radius)
-    : m_estimate(scene, map, radius),
+IrradianceSites::IrradianceSites(const Scene& scene, const PhotonMap& map, float radius,
+                                 const SurfacePatches* patches)
+    : m_estimate(scene, map, radius, patches),
       m_cells(scene, kCellSize * radius, originOf(map, radius)),
-      m_slotCount(std::bit_ceil(std::clamp(map.size(), kFewestSlots, kMostSlots))),
-      m_slots(static_cast<Slot*>(std::calloc(m_slotCount, sizeof(Slot)))) {
-    if (!m_slots) throw std::bad_alloc();
+      m_slotCount(slotsFor(map.size())) {
+    allocate();
+}
+
+void IrradianceSites::Unmap::operator()(void* p) const {
+    munmap(p, bytes);
+}
+
+// Slots are asked for in no order: in small pages the processor would have to look up the place of
+// most of these anew.
+void IrradianceSites::allocate() {
+    std::size_t size = m_slotCount * sizeof(Slot), space = size + kHugePage;
+    void* first = mmap(nullptr, space, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (first == MAP_FAILED) throw std::bad_alloc();
+    m_memory = std::unique_ptr<void, Unmap>(first, Unmap{space});
+    first = std::align(kHugePage, size, first, space);
+#if defined(MADV_HUGEPAGE)
+    madvise(first, size, MADV_HUGEPAGE);  // a wish: nothing is lost where it isn't granted
+#endif
+    m_slots = static_cast<Slot*>(first);
 }
 
 IrradianceSites::Value IrradianceSites::compute(const Cell& cell, std::uint64_t hash) const {
@@ -130,6 +155,10 @@ TwoRadii IrradianceSites::at(const Vec3f& position, const Vec3f& normal) const {
 
 std::uint64_t IrradianceSites::memoryBytes() const {
     return m_slotCount * sizeof(Slot);
+}
+
+std::uint64_t IrradianceSites::memoryBytes(std::uint64_t photons) {
+    return slotsFor(photons) * sizeof(Slot);
 }
 
 }  // namespace pm

@@ -5,7 +5,6 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <cstdlib>
 #include <memory>
 #include <vector>
 
@@ -23,12 +22,18 @@ namespace pm {
 // Threads: const functions from any, at once.
 class IrradianceSites {
   public:
-    // scene and map must outlive this. radius: of the estimates, scene units, > 0.
-    IrradianceSites(const Scene& scene, const PhotonMap& map, float radius);
+    // scene, map and patches must outlive this. radius: of the estimates, scene units, > 0.
+    // patches: see SurfaceEstimate.
+    IrradianceSites(const Scene& scene, const PhotonMap& map, float radius,
+                    const SurfacePatches* patches = nullptr);
 
     // Irradiance, W m^-2, at a site near the point, on the side of the normal; estimated at the
     // point itself where none is.
     TwoRadii at(const Vec3f& position, const Vec3f& normal) const;
+    // Asks for the site to be at hand soon.
+    void prefetch(const Vec3f& position, const Vec3f& normal) const {
+        __builtin_prefetch(&m_slots[m_cells.at(position, normal).hash() & (m_slotCount - 1)]);
+    }
 
     // Irradiance, W m^-2, at a point, computed now. pattern turns the rays about the normal.
     TwoRadii estimate(const Vec3f& position, const Vec3f& normal, std::uint32_t pattern) const {
@@ -36,6 +41,8 @@ class IrradianceSites {
     }
 
     std::uint64_t memoryBytes() const;
+    // The same of a map of so many photons.
+    static std::uint64_t memoryBytes(std::uint64_t photons);
 
   private:
     using Cell = SurfaceCells::Cell;
@@ -50,9 +57,11 @@ class IrradianceSites {
         std::array<std::atomic<float>, 12> value;
         std::atomic<std::uint32_t> ready;
     };
-    struct Free {
-        void operator()(void* p) const { std::free(p); }
+    struct Unmap {
+        std::size_t bytes;
+        void operator()(void* p) const;
     };
+    void allocate();
 
     Slot* slotOf(std::uint64_t hash) const;
     Value compute(const Cell& cell, std::uint64_t hash) const;
@@ -62,7 +71,8 @@ class IrradianceSites {
     SurfaceCells m_cells;
     // Open addressing by the cell's hash; all zero where nobody has asked yet.
     std::size_t m_slotCount;
-    std::unique_ptr<Slot[], Free> m_slots;
+    std::unique_ptr<void, Unmap> m_memory;
+    Slot* m_slots = nullptr;
 };
 
 }  // namespace pm

@@ -4,9 +4,9 @@
 
 #include <bit>
 #include <cstdint>
-#include <memory>
 #include <span>
 
+#include "integrator/photons/big_array.h"
 #include "integrator/photons/photon.h"
 #include "integrator/photons/photon_leaf.h"
 #include "integrator/values/cancel_check.h"
@@ -30,9 +30,9 @@ struct PhotonTree {
     Vec3f lo, hi;          // their box, scene units
     std::uint32_t leafCount = 0;
     // Arrays that nothing is written to before the threads that build them do.
-    std::unique_ptr<Node[]> nodes;
-    std::unique_ptr<PhotonLeaf[]> leaves;
-    std::unique_ptr<float[]> fluxes;  // W, three of each photon, in the order of the leaves
+    BigArray<Node> nodes;
+    BigArray<PhotonLeaf> leaves;
+    BigArray<LeafFluxes> fluxes;  // of each leaf
 };
 
 // In parallel in the calling TBB arena; the same photons give the same tree for any number of
@@ -40,7 +40,7 @@ struct PhotonTree {
 // cancel is set.
 PhotonTree buildPhotonTree(std::span<const Photon> photons, const CancelCheck& cancel = {});
 
-// While it is built, beside the photons: two lists of entries and the tree itself.
-constexpr std::uint64_t kTreeBuildBytesPerPhoton = 2 * 16 + 29;
+// While it is built, beside the photons: two lists of entries, their buckets, and the tree itself.
+constexpr std::uint64_t kTreeBuildBytesPerPhoton = 2 * 16 + 1 + 29;
 
 }  // namespace pm

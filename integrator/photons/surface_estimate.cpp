@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "integrator/photons/surface_patches.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
 
@@ -105,11 +106,41 @@ SurfaceEstimate::Shares SurfaceEstimate::shares(const View& view) const {
     return {wide, 2.0f * narrow};
 }
 
+// Flux over the area that is surface.
+TwoRadii SurfaceEstimate::irradiance(const TwoRadii& flux, const Shares& share) const {
+    const float discArea = kPi * m_radius * m_radius;
+    return {flux.wide / (discArea * std::max(kSmallestShare, share.wide)),
+            flux.narrow / (0.5f * discArea * std::max(kSmallestShare, share.narrow))};
+}
+
 TwoRadii SurfaceEstimate::at(const Vec3f& position, const Vec3f& normal,
                              std::uint32_t pattern) const {
     TwoRadii flux = m_map.fluxWithin(position, normal, m_radius);
-    // In the dark no rays are needed.
+    // In the dark there is nothing to correct.
     if (isBlack(flux.wide)) return {};
+    Shares share;
+    if (m_patches && askPatch(position, normal, flux, share)) return irradiance(flux, share);
+    return askRays(position, normal, pattern, flux);
+}
+
+// False where the patch there doesn't speak for the point. flux: becomes that of the photons that
+// count.
+bool SurfaceEstimate::askPatch(const Vec3f& position, const Vec3f& normal, TwoRadii& flux,
+                               Shares& share) const {
+    SurfacePatch spare;
+    const SurfacePatch& patch = m_patches->at(position, normal, m_radius, spare);
+    if (!patch.speaksFor(m_scene, position, normal)) return false;
+    const SurfacePatch::Shares shares = patch.shares(position, m_radius);
+    share = {shares.wide, shares.narrow};
+    if (patch.hidesSurface())
+        flux = m_map.fluxWithin(position, normal, m_radius, [&](std::uint32_t index) {
+            return patch.counts(m_scene, m_map.photon(index));
+        });
+    return true;
+}
+
+TwoRadii SurfaceEstimate::askRays(const Vec3f& position, const Vec3f& normal, std::uint32_t pattern,
+                                  TwoRadii flux) const {
     const Frame frame(normal);
     const float height = apexHeight(m_scene, position, normal, m_radius);
     const std::uint64_t random = mixBits(pattern);
@@ -120,20 +151,17 @@ TwoRadii SurfaceEstimate::at(const Vec3f& position, const Vec3f& normal,
                     frame.bitangent,
                     toUnitFloat(static_cast<std::uint32_t>(random)),
                     toUnitFloat(static_cast<std::uint32_t>(random >> 32))};
-    const float discArea = kPi * m_radius * m_radius;
-    const TwoRadii whole{flux.wide / discArea, flux.narrow / (0.5f * discArea)};
-    if (isWhole(view)) return whole;
+    if (isWhole(view)) return irradiance(flux, {});
     const Shares share = shares(view);
     // What sees nothing at all is inside of something that stands there, and tells nothing.
-    if (!(share.wide > 0.0f)) return whole;
+    if (!(share.wide > 0.0f)) return irradiance(flux, {});
     flux = m_map.fluxWithin(position, normal, m_radius, [&](std::uint32_t index) {
         const Photon photon = m_map.photon(index);
         // Ends a little above the photon, whose own surface must not hide it.
         const Vec3f above = photon.position + photon.normal.unpack() * (kLift * height);
         return !m_scene.occluded({view.apex, above - view.apex, 1.0f});
     });
-    return {flux.wide / (discArea * std::max(kSmallestShare, share.wide)),
-            flux.narrow / (0.5f * discArea * std::max(kSmallestShare, share.narrow))};
+    return irradiance(flux, share);
 }
 
 }  // namespace pm

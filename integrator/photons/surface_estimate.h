@@ -9,6 +9,8 @@
 
 namespace pm {
 
+class SurfacePatches;
+
 // What ends on a surface is lifted off it by this share of the height it is seen from.
 inline constexpr float kLift = 0.01f;
 // The share of the disc in the sharpest corner that is still told apart; a square one has 1/4.
@@ -31,17 +33,20 @@ float apexHeight(const Scene& scene, const Vec3f& position, const Vec3f& normal,
 //
 // Near an edge a part of the estimate's disc is not on the surface. It is found by short rays from
 // above the point, and the flux is divided by the area that is there; there, too, only photons that
-// are seen from above the point count, so that none is counted across a wall.
+// are seen from above the point count, so that none is counted across a wall. Where a patch knows
+// the surface around the point it is asked in place of the rays.
 // Threads: const functions from any, at once.
 class SurfaceEstimate {
   public:
-    // scene and map must outlive this. radius: scene units, > 0.
-    SurfaceEstimate(const Scene& scene, const PhotonMap& map, float radius)
-        : m_scene(scene), m_map(map), m_radius(radius) {}
+    // scene, map and patches must outlive this. radius: scene units, > 0. patches: of the scene;
+    // null where rays are to be sent at every point.
+    SurfaceEstimate(const Scene& scene, const PhotonMap& map, float radius,
+                    const SurfacePatches* patches = nullptr)
+        : m_scene(scene), m_map(map), m_radius(radius), m_patches(patches) {}
 
     float radius() const { return m_radius; }
     // The same at another radius.
-    SurfaceEstimate withRadius(float radius) const { return {m_scene, m_map, radius}; }
+    SurfaceEstimate withRadius(float radius) const { return {m_scene, m_map, radius, m_patches}; }
 
     // W m^-2, on the side of the normal. pattern turns the rays about the normal.
     TwoRadii at(const Vec3f& position, const Vec3f& normal, std::uint32_t pattern) const;
@@ -61,6 +66,10 @@ class SurfaceEstimate {
         Vec3f tangent, bitangent;
         float turn, shift;  // [0, 1)
     };
+    bool askPatch(const Vec3f& position, const Vec3f& normal, TwoRadii& flux, Shares& share) const;
+    TwoRadii askRays(const Vec3f& position, const Vec3f& normal, std::uint32_t pattern,
+                     TwoRadii flux) const;
+    TwoRadii irradiance(const TwoRadii& flux, const Shares& share) const;
     Seen look(const View& view, float turns, float radiusSquared) const;
     bool isWhole(const View& view) const;
     Shares shares(const View& view) const;
@@ -68,6 +77,7 @@ class SurfaceEstimate {
     const Scene& m_scene;
     const PhotonMap& m_map;
     float m_radius;
+    const SurfacePatches* m_patches;
 };
 
 }  // namespace pm

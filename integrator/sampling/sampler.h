@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <bit>
 #include <cstdint>
 
 #include "integrator/values/vec.h"
@@ -69,6 +70,14 @@ class Sampler {
         : m_key(combineBits(combineBits(seed, stream), sequence)),
           m_reversedIndex(reverseBits(index)) {}
 
+    // The same of another point of the sequence, from its first dimension on.
+    Sampler at(std::uint32_t index) const {
+        Sampler other(*this);
+        other.m_reversedIndex = reverseBits(index);
+        other.m_dimension = 0;
+        return other;
+    }
+
     // Range: [0, 1).
     float next1D() {
         const std::uint64_t hash = nextHash();
@@ -87,6 +96,17 @@ class Sampler {
                 toUnitFloat(reverseBits(owenScrambleReversed(
                     sobolSecondReversed(shuffled), static_cast<std::uint32_t>(seeds >> 32))))};
     }
+
+    // Where a sample takes `count` points of a dimension, a power of two, in place of one: what
+    // draws the i-th of them. Those of all indices are one sequence, those of one index an even
+    // part of it; count x index is below 2^32.
+    Sampler part(std::uint32_t count, std::uint32_t i) const {
+        Sampler sampler = *this;
+        sampler.m_reversedIndex = m_reversedIndex >> std::countr_zero(count) | reverseBits(i);
+        return sampler;
+    }
+    // Leaves out the next dimension, whether 1D or 2D.
+    void skip() { ++m_dimension; }
 
   private:
     std::uint64_t nextHash() { return mixBits(m_key + 0x9e3779b97f4a7c15ull * ++m_dimension); }

@@ -12,6 +12,13 @@
 
 namespace pm {
 
+namespace {
+
+// From within so many of the scene's radii rounding takes no more of a ray than of the scene.
+constexpr double kNearRadii = 4.0;
+
+}  // namespace
+
 Camera::Camera(const Scene& scene, std::int32_t width, std::int32_t height)
     : m_halfWidth(0.5 * width), m_halfHeight(0.5 * height), m_sceneRadius(scene.radius()) {
     const auto& camera = scene.description().camera;
@@ -35,6 +42,7 @@ Camera::Camera(const Scene& scene, std::int32_t width, std::int32_t height)
     m_up = normalize(m_up);
     m_forward = normalize(m_forward);
     m_eye = Vec3d{m[3], m[7], m[11]} - scene.centre();
+    m_isFar = length(m_eye) > kNearRadii * m_sceneRadius;
     // sin/cos of the half angle by the double-precision library would differ between processors in
     // the last bit of a double only; rounding the scale to float removes even that.
     m_scale = static_cast<double>(static_cast<float>(std::tan(0.5 * camera->verticalFieldOfView))) /
@@ -46,13 +54,12 @@ Ray Camera::ray(double x, double y) const {
     const Vec3d direction =
         normalize(m_forward + m_right * ((x - m_halfWidth) * m_scale * m_aspect) +
                   m_up * ((m_halfHeight - y) * m_scale));
+    if (!m_isFar) return {Vec3f(m_eye), Vec3f(direction)};
     Vec3d origin = m_eye;
     // Entry into a sphere slightly larger than the scene's.
     const double radius = m_sceneRadius * 1.01;
-    if (lengthSquared(m_eye) > radius * radius) {
-        const double t = intersectSphere(m_eye, direction, 1e300, Vec3d(0.0), radius);
-        if (t > 0) origin = m_eye + direction * t;
-    }
+    const double t = intersectSphere(m_eye, direction, 1e300, Vec3d(0.0), radius);
+    if (t > 0) origin = m_eye + direction * t;
     return {Vec3f(origin), Vec3f(direction)};
 }
 

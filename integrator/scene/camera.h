@@ -11,8 +11,9 @@ namespace pm {
 
 class Scene;
 
-// The pinhole camera of a scene and frame. Rays start where they enter the sphere around the scene,
-// computed in double: a camera a thousand radii away loses no digits of the scene to its distance.
+// The pinhole camera of a scene and frame. Where it is more than a few of the scene's radii away
+// its rays start where they enter the sphere around the scene, computed in double: a camera a
+// thousand radii away loses no digits of the scene to its distance.
 class Camera {
   public:
     // Throws Error(kInvalidScene) without a camera in the scene, or one with a field of view
@@ -32,6 +33,7 @@ class Camera {
     double m_aspect;                   // width of a pixel over its height
     double m_halfWidth, m_halfHeight;  // pixels
     double m_sceneRadius;
+    bool m_isFar;  // from the scene
 };
 
 }  // namespace pm

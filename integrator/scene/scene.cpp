@@ -203,6 +203,12 @@ class Scene::Builder {
                 Vec3f(transformPoint(transform, Vec3d(p)) - m_scene.m_centre));
         }
         record.positions.emplace_back();
+        record.facets.reserve(mesh->triangles.size());
+        for (std::uint32_t i = 0; i < mesh->triangles.size(); ++i) {
+            goOn();
+            record.facets.emplace_back(record.corner(i), record.mirrored);
+            m_scene.m_triangleArea += triangleArea(record, i);
+        }
         const NormalTransform normalTransform(transform);
         record.normals.reserve(mesh->normals.size());
         for (const Vec3f& n : mesh->normals) {
@@ -313,17 +319,24 @@ bool Scene::isFlat() const {
     // The plane's normal is the sum over all triangles: what rounding does to inner vertices
     // cancels.
     Vec3d normal, origin;
+    const auto reflects = [&](const ShapeRecord& record, std::uint32_t primitive) {
+        return !isBlackBody(m_description.materials[record.materialOf(primitive)]);
+    };
     const auto forEachTriangle = [&](const auto& visit) {
-        for (const ShapeRecord& record : m_shapes)
-            for (const auto& triangle : record.mesh->triangles)
-                if (!visit(Vec3d(record.positions[triangle[0]]),
-                           Vec3d(record.positions[triangle[1]]),
-                           Vec3d(record.positions[triangle[2]])))
+        for (const ShapeRecord& record : m_shapes) {
+            if (!record.mesh) continue;
+            const auto& triangles = record.mesh->triangles;
+            for (std::size_t i = 0; i < triangles.size(); ++i)
+                if (reflects(record, static_cast<std::uint32_t>(i)) &&
+                    !visit(Vec3d(record.positions[triangles[i][0]]),
+                           Vec3d(record.positions[triangles[i][1]]),
+                           Vec3d(record.positions[triangles[i][2]])))
                     return false;
+        }
         return true;
     };
     for (const ShapeRecord& record : m_shapes)
-        if (!record.mesh) return false;
+        if (!record.mesh && reflects(record, 0)) return false;
     forEachTriangle([&](const Vec3d& v0, const Vec3d& v1, const Vec3d& v2) {
         const Vec3d n = cross(v1 - v0, v2 - v0);
         normal += dot(n, normal) < 0 ? -n : n;
@@ -349,6 +362,7 @@ std::uint64_t Scene::memoryBytes() const {
     for (const ShapeRecord& record : m_shapes) {
         bytes += record.positions.size() * sizeof(Vec3f) + record.normals.size() * sizeof(Vec3f) +
                  record.lightOfPrimitive.size() * sizeof(std::int32_t);
+        bytes += record.facets.size() * sizeof(Facet);
         if (record.mesh)
             bytes += record.mesh->positions.size() * sizeof(Vec3f) +
                      record.mesh->triangles.size() * (sizeof(TriangleMesh::Corners) + 8);

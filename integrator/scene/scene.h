@@ -65,8 +65,8 @@ class Scene {
     // Whether a ray that meets nothing sees light.
     bool seesFarLight(const Vec3f& direction) const;
 
-    // True when all triangles lie in one plane (to rounding), so that no light goes from one
-    // surface to another.
+    // True when all that reflects or lets light through are triangles in one plane (to rounding),
+    // so that no light goes from one surface by way of another.
     bool isFlat() const;
 
     // A point on an area light's primitive, uniform over its area, as a Surface.
@@ -78,6 +78,10 @@ class Scene {
     const std::string& isa() const { return m_tracer.isa(); }
     std::uint64_t memoryBytes() const;
     std::uint64_t triangleCount() const { return m_triangleCount; }
+    // Mean over the triangles, scene units squared; 0 of none.
+    double meanTriangleArea() const {
+        return m_triangleCount > 0 ? m_triangleArea / static_cast<double>(m_triangleCount) : 0.0;
+    }
 
   private:
     struct ShapeRecord;
@@ -88,6 +92,7 @@ class Scene {
     struct Corner {
         Vec3d vertex, e1, e2;
     };
+    struct Facet;
     void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, const Corner& corner,
                            double b1, double b2, Surface& surface) const;
     void surfaceOnSphere(const ShapeRecord& shape, const Vec3d& direction, Surface& surface) const;
@@ -103,6 +108,7 @@ class Scene {
     Vec3d m_halfSize;
     double m_radius = 0;
     std::uint64_t m_triangleCount = 0;
+    double m_triangleArea = 0;  // of all
     RayTracer m_tracer;  // last: it refers to the shapes' arrays and is destroyed before them
 };
 

@@ -6,11 +6,22 @@
 
 namespace pm {
 
+// What is the same all over a triangle.
+struct Scene::Facet {
+    Vec3f normal;  // geometric, unit, out of the front
+    // What surfaceOffset takes for the farthest vertex's distance: the longest edge, which no point
+    // has farther to a vertex, and more of slivers; scene units.
+    float reach;
+
+    Facet(const Corner& corner, bool mirrored);
+};
+
 // One instance made ready: vertices in the scene's own coordinates.
 struct Scene::ShapeRecord {
     std::shared_ptr<const TriangleMesh> mesh;  // null for a sphere
     std::vector<Vec3f> positions;              // one spare element at the end, for Embree
     std::vector<Vec3f> normals;                // transformed, unit
+    std::vector<Facet> facets;                 // of each triangle
     bool mirrored = false;                     // the transform turns the winding round
     SphereShape sphere;
     std::vector<std::uint32_t> materials;        // of each slot

@@ -55,6 +55,16 @@ Vec3f interpolateNormal(const Vec3f& n0, const Vec3f& n1, const Vec3f& n2, float
 
 }  // namespace
 
+Scene::Facet::Facet(const Corner& corner, bool mirrored) {
+    Vec3d n = cross(corner.e1, corner.e2);
+    if (mirrored) n = -n;
+    const double twiceArea = length(n);
+    normal = twiceArea > 0 ? Vec3f(n / twiceArea) : Vec3f{0.0f, 1.0f, 0.0f};
+    const double longest = std::sqrt(std::max({lengthSquared(corner.e1), lengthSquared(corner.e2),
+                                               lengthSquared(corner.e2 - corner.e1)}));
+    reach = static_cast<float>(longest * normalCondition(corner.e1, corner.e2, twiceArea));
+}
+
 bool Scene::intersect(const Ray& ray, Surface& surface) const {
     RayHit hit;
     if (!m_tracer.intersect(ray, hit)) return false;
@@ -79,18 +89,10 @@ void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive
                               const Corner& corner, double b1, double b2, Surface& surface) const {
     const TriangleMesh& mesh = *record.mesh;
     const auto& [v0, e1, e2] = corner;
-    const Vec3d offsetFromV0 = e1 * b1 + e2 * b2;
-    surface.position = Vec3f(v0 + offsetFromV0);
-    const double farthest = std::max({lengthSquared(offsetFromV0), lengthSquared(offsetFromV0 - e1),
-                                      lengthSquared(offsetFromV0 - e2)});
-    Vec3d n = cross(e1, e2);
-    if (record.mirrored) n = -n;
-    const double nLength = length(n);
-    surface.offset =
-        surfaceOffset(surface.position,
-                      static_cast<float>(std::sqrt(farthest) * normalCondition(e1, e2, nLength)));
-    surface.geometricNormal = nLength > 0 ? Vec3f(n / nLength) : Vec3f{0.0f, 1.0f, 0.0f};
-    surface.shadingNormal = surface.geometricNormal;
+    surface.position = Vec3f(v0 + (e1 * b1 + e2 * b2));
+    const Facet& facet = record.facets[primitive];
+    surface.offset = surfaceOffset(surface.position, facet.reach);
+    surface.geometricNormal = surface.shadingNormal = facet.normal;
     const auto f1 = static_cast<float>(b1), f2 = static_cast<float>(b2);
     if (!mesh.normals.empty()) {
         const auto& at = mesh.normalIndices[primitive];

@@ -9,12 +9,13 @@
 
 namespace pm {
 
-DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
-                              const Surface& surface, const Bsdf& bsdf, LampStrategy diffuse,
-                              Sampler& sampler, std::uint32_t& rays) {
+namespace {
+
+// By one of `samples` lamp samples, to be divided by their number.
+DirectRadiance byLampSample(const Scene& scene, const LightSampler& lights, const Surface& surface,
+                            const Bsdf& bsdf, LampStrategy diffuse, float samples, Vec2f u,
+                            std::uint32_t& rays) {
     DirectRadiance result;
-    // Drawn in any case: the dimensions that follow keep their numbers.
-    const Vec2f u = sampler.next2D();
     LightSample light;
     if (!lights.sample(surface, bsdf.facingGeometricNormal(), u, light) ||
         !(light.pdfSolidAngle > 0.0f))
@@ -25,9 +26,9 @@ DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
         if (isBlack(value)) return Rgb{};
         const bool alone =
             light.isPoint || (lobe == Lobe::kDiffuse && diffuse == LampStrategy::kNextEventOnly);
-        const float weight =
-            alone ? 1.0f
-                  : powerHeuristic(light.pdfSolidAngle, bsdf.pdfSolidAngle(lobe, light.direction));
+        const float weight = alone ? 1.0f
+                                   : powerHeuristic(samples * light.pdfSolidAngle,
+                                                    bsdf.pdfSolidAngle(lobe, light.direction));
         return value * light.radiance * (weight / light.pdfSolidAngle);
     };
     result.diffuse = contribution(Lobe::kDiffuse);
@@ -38,12 +39,30 @@ DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
     return result;
 }
 
+}  // namespace
+
+DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
+                              const Surface& surface, const Bsdf& bsdf, LampStrategy diffuse,
+                              std::uint32_t samples, Sampler& sampler, std::uint32_t& rays) {
+    DirectRadiance sum;
+    const auto number = static_cast<float>(samples);
+    for (std::uint32_t i = 0; i < samples; ++i) {
+        const DirectRadiance one = byLampSample(scene, lights, surface, bsdf, diffuse, number,
+                                                sampler.part(samples, i).next2D(), rays);
+        sum.diffuse += one.diffuse;
+        sum.glossy += one.glossy;
+    }
+    sampler.skip();
+    return {sum.diffuse / number, sum.glossy / number};
+}
+
 Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const LastScatter& last) {
     if (surface.light == kNoLight) return {};
     const Rgb emitted = lights.emittedRadiance(surface, -last.direction);
     if (isDelta(last.lobe) || isBlack(emitted)) return emitted;
     return emitted * powerHeuristic(last.pdfSolidAngle,
-                                    lights.pdfSolidAngle(last.from, last.direction, surface));
+                                    static_cast<float>(last.lampSamples) *
+                                        lights.pdfSolidAngle(last.from, last.direction, surface));
 }
 
 Rgb weightedFarLight(const Scene& scene, const LightSampler& lights, const LastScatter& last) {
@@ -52,10 +71,11 @@ Rgb weightedFarLight(const Scene& scene, const LightSampler& lights, const LastS
     for (std::size_t i = 0; i < far.size(); ++i) {
         const Rgb radiance = scene.farRadiance(far[i], last.direction);
         if (isBlack(radiance)) continue;
-        sum +=
-            isDelta(last.lobe)
-                ? radiance
-                : radiance * powerHeuristic(last.pdfSolidAngle,
+        sum += isDelta(last.lobe)
+                   ? radiance
+                   : radiance *
+                         powerHeuristic(last.pdfSolidAngle,
+                                        static_cast<float>(last.lampSamples) *
                                             lights.farPdfSolidAngle(last.from, last.direction, i));
     }
     return sum;

@@ -77,11 +77,13 @@ enum class LampStrategy : std::uint8_t {
     kNextEventOnly,  // where lamps fill so little of the view that sampling the lobe adds nothing
 };
 
-// Next-event estimation for both lobes with one shadow ray; weighted against finding the same light
-// by sampling the lobe, for the diffuse lobe as `diffuse` says. Counts its ray in `rays`.
+// Next-event estimation for both lobes: the mean of `samples` lamp samples, a power of two, with a
+// shadow ray each; weighted against finding the same light by sampling the lobe once, for the
+// diffuse lobe as `diffuse` says. Draws from one dimension of `sampler`. Counts its rays in `rays`.
+// Source: Veach 1997, section 9.2 (several samples of one strategy).
 DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
                               const Surface& surface, const Bsdf& bsdf, LampStrategy diffuse,
-                              Sampler& sampler, std::uint32_t& rays);
+                              std::uint32_t samples, Sampler& sampler, std::uint32_t& rays);
 
 // The sample that led from one surface to the next, as far as the weight of light found there
 // needs.
@@ -90,6 +92,7 @@ struct LastScatter {
     Vec3f direction;
     Lobe lobe = Lobe::kStraight;
     float pdfSolidAngle = 0.0f;
+    std::uint32_t lampSamples = 1;  // of next-event estimation at `from`
 };
 
 // Emission of `surface` towards the path that came by `last`, weighted against next-event

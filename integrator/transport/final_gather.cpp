@@ -7,8 +7,8 @@
 
 namespace pm {
 
-Gathered finalGather(const Scene& scene, const IrradianceSites& sites, const Ray& ray,
-                     Sampler& sampler) {
+Gathered followGather(const Scene& scene, const IrradianceSites& sites, const Ray& ray,
+                      Sampler& sampler) {
     Gathered result;
     PathWalk path(ray);
     while (true) {
@@ -22,10 +22,15 @@ Gathered finalGather(const Scene& scene, const IrradianceSites& sites, const Ray
         const Bsdf bsdf(scene, surface, -path.ray.direction, Transport::kRadiance, path.throughput);
         if (bsdf.isBlackBody()) return result;
         if (bsdf.has(Lobe::kDiffuse)) {
-            const TwoRadii irradiance = sites.at(surface.position, bsdf.facingGeometricNormal());
-            const Rgb reflected = path.throughput * bsdf.diffuse() * kInvPi;
-            result.radiance += {reflected * irradiance.wide, reflected * irradiance.narrow};
-            if (bsdf.isDiffuseOnly()) return result;
+            result.isWaiting = true;
+            result.position = surface.position;
+            result.normal = bsdf.facingGeometricNormal();
+            result.reflected = path.throughput * bsdf.diffuse() * kInvPi;
+            if (bsdf.isDiffuseOnly()) {
+                sites.prefetch(result.position, result.normal);
+                return result;
+            }
+            endGather(sites, result);
         }
         BsdfSample sample;
         const float uLobe = sampler.next1D();
@@ -34,6 +39,21 @@ Gathered finalGather(const Scene& scene, const IrradianceSites& sites, const Ray
             !path.scatter(surface, bsdf, sample, sampler))
             return result;
     }
+}
+
+void endGather(const IrradianceSites& sites, Gathered& gathered) {
+    if (!gathered.isWaiting) return;
+    gathered.isWaiting = false;
+    const TwoRadii irradiance = sites.at(gathered.position, gathered.normal);
+    gathered.radiance +=
+        {gathered.reflected * irradiance.wide, gathered.reflected * irradiance.narrow};
+}
+
+Gathered finalGather(const Scene& scene, const IrradianceSites& sites, const Ray& ray,
+                     Sampler& sampler) {
+    Gathered result = followGather(scene, sites, ray, sampler);
+    endGather(sites, result);
+    return result;
 }
 
 }  // namespace pm

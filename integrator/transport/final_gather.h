@@ -16,11 +16,24 @@ struct Gathered {
     Surface first;        // what the ray met first
     bool hitAny = false;  // `first` is valid
     std::uint32_t rays = 0;
+    // Where the way ends, the irradiance that is still to be looked up, and the share of it that
+    // is brought, sr^-1.
+    bool isWaiting = false;
+    Vec3f position, normal;
+    Rgb reflected;
 };
 
 // Follows a gather ray to the diffuse surfaces where the irradiance sites end it. Light that it
 // finds at a lamp is not in `radiance`: met at once it is direct light, by way of other lobes a
 // caustic. Source: Jensen 2001, section 9.2.
+//
+// In two steps: the first asks for the site at the end to be at hand soon, the second reads it.
+// With another ray's first step between them memory has the time that it takes.
+Gathered followGather(const Scene& scene, const IrradianceSites& sites, const Ray& ray,
+                      Sampler& sampler);
+void endGather(const IrradianceSites& sites, Gathered& gathered);
+
+// Both.
 Gathered finalGather(const Scene& scene, const IrradianceSites& sites, const Ray& ray,
                      Sampler& sampler);
 

@@ -12,6 +12,7 @@
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/lamp_samples.h"
 #include "integrator/transport/lit_places.h"
 #include "integrator/transport/path_integrator.h"
 #include "integrator/transport/photon_integrator.h"
@@ -38,6 +39,13 @@ struct Cell {
     std::int32_t x, y;  // its left and upper edge, pixels
     bool isGroup;
 };
+
+// The even passes' samples are one low-discrepancy sequence, the odd passes' another: samples added
+// later fall between those before, and the two halves' errors share nothing. Groups have sequences
+// that no pixel has. Odd streams are photons'; see PhotonTracer.
+std::uint64_t streamOf(std::uint32_t pass, const Cell& cell) {
+    return 2 * std::uint64_t{pass % 2} + (cell.isGroup ? 4 : 0);
+}
 
 // Where a ray leaves the camera, pixels of the frame.
 struct Place {
@@ -125,11 +133,13 @@ struct FrameRenderer::Impl {
           photons(*scene, camera, lights, plan, settings),
           seenLamps(*scene, lights, camera, settings_.width, settings_.height) {
         if (lights.isGuided()) lights.learn(findLitPlaces(*scene, camera, settings), settings.seed);
+        if (plan.lampSamples == 0)
+            plan.lampSamples = findLampSamples(*scene, lights, camera, settings, plan);
     }
 
     Place placeInCell(const Cell& cell, Vec2f u) const;
-    SampleRadiance sample(std::uint32_t pass, const Cell& cell, std::uint32_t index,
-                          NearestPhotons& scratch) const;
+    SampleRadiance sample(std::uint32_t pass, const Cell& cell, Sampler sampler,
+                          std::uint32_t index, NearestPhotons& scratch) const;
     void renderCell(std::uint32_t pass, const Cell& cell, SampleRun run, float* pixel,
                     NearestPhotons& scratch, RenderCounters& local) const;
     void writePixel(const PixelSums& sums, std::uint32_t samples, float* pixel) const;
@@ -155,24 +165,19 @@ Place FrameRenderer::Impl::placeInCell(const Cell& cell, Vec2f u) const {
             cell.y + side * placeInPixel(settings.filter, u.y)};
 }
 
-SampleRadiance FrameRenderer::Impl::sample(std::uint32_t pass, const Cell& cell,
+SampleRadiance FrameRenderer::Impl::sample(std::uint32_t pass, const Cell& cell, Sampler sampler,
                                            std::uint32_t index, NearestPhotons& scratch) const {
-    // The even passes' samples are one low-discrepancy sequence, the odd passes' another: samples
-    // added later fall between those before, and the two halves' errors share nothing. Groups have
-    // sequences that no pixel has. Odd streams are photons'; see PhotonTracer.
-    const std::uint64_t stream = 2 * std::uint64_t{pass % 2} + (cell.isGroup ? 4 : 0);
-    Sampler sampler(settings.seed, stream, pixelKey(cell.x, cell.y), index);
     const Place place = placeInCell(cell, sampler.next2D());
     const Ray ray = camera.ray(place.x, place.y);
     if (settings.integrator == IntegratorKind::kPath)
         return PathIntegrator(*scene, lights).sample(ray, sampler);
     const std::uint32_t lampPaths = seenLamps.paths(cell.x, cell.y);
-    SampleRadiance result = PhotonIntegrator(*scene, lights, photons.maps(pass))
+    SampleRadiance result = PhotonIntegrator(*scene, lights, photons.maps(pass), plan.lampSamples)
                                 .sample({static_cast<float>(place.x), static_cast<float>(place.y)},
                                         ray, sampler, scratch, lampPaths == 0);
     // By a sequence of their own in the pixel.
     for (std::uint32_t i = 0; i < lampPaths; ++i) {
-        Sampler lampSampler(settings.seed, stream + 8, pixelKey(cell.x, cell.y),
+        Sampler lampSampler(settings.seed, streamOf(pass, cell) + 8, pixelKey(cell.x, cell.y),
                             index * lampPaths + i);
         const Place seen = placeInCell(cell, lampSampler.next2D());
         result.emission += seenLamps.along(camera.ray(seen.x, seen.y), lampSampler, result.rays) /
@@ -185,8 +190,10 @@ void FrameRenderer::Impl::renderCell(std::uint32_t pass, const Cell& cell, Sampl
                                      float* pixel, NearestPhotons& scratch,
                                      RenderCounters& local) const {
     PixelSums sums;
+    const Sampler cellSampler(settings.seed, streamOf(pass, cell), pixelKey(cell.x, cell.y), 0);
     for (std::uint32_t i = 0; i < run.count; ++i) {
-        const SampleRadiance s = sample(pass, cell, run.first + i, scratch);
+        const std::uint32_t index = run.first + i;
+        const SampleRadiance s = sample(pass, cell, cellSampler.at(index), index, scratch);
         local.rays += s.rays;
         if (!isFinite(s.emission) || !isFinite(s.direct) || !isFinite(s.caustic) ||
             !isFinite(s.indirect) || !isFinite(s.biasProbe)) {

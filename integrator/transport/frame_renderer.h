@@ -72,6 +72,8 @@ struct RenderCounters {
     std::uint64_t photonsStoredGlobal = 0;
     std::uint64_t photonsStoredCaustic = 0;
     std::uint64_t photonsLost = 0;  // ended for a numerical reason
+    // Gather rays of each gather point, all passes alike; 0 before the first or without points.
+    std::uint32_t gatherRaysOfPoint = 0;
     // Flux over all passes and channels, W: emitted = absorbed + escaped + lost.
     double fluxEmitted = 0, fluxAbsorbed = 0, fluxEscaped = 0, fluxLost = 0;
     double photonSeconds = 0, mapSeconds = 0;

@@ -49,6 +49,13 @@ std::int32_t cellsAcross(std::int32_t pixels, float spacing) {
     return static_cast<std::int32_t>(std::ceil(static_cast<float>(pixels) / spacing)) + 2 * kMargin;
 }
 
+void addTo(std::array<double, 6>& sum, const TwoRadii& radiance) {
+    for (int c = 0; c < 3; ++c) {
+        sum[static_cast<std::size_t>(c)] += static_cast<double>(radiance.wide[c]);
+        sum[static_cast<std::size_t>(c) + 3] += static_cast<double>(radiance.narrow[c]);
+    }
+}
+
 }  // namespace
 
 GatherPoints::GatherPoints(const Scene& scene, const Camera& camera, const IrradianceSites& sites,
@@ -115,12 +122,17 @@ GatherPoints::Value GatherPoints::compute(std::size_t index, std::uint64_t& rays
     std::array<double, 6> sum{};
     float clearance = std::numeric_limits<float>::max();
     std::uint32_t lamps = 0;
+    const Sampler tileSampler(m_request.seed, streamOf(m_request.pass), kRaySequences + tile, 0);
+    Gathered last;
+    const auto addLast = [&] {
+        endGather(m_sites, last);
+        addTo(sum, last.radiance);
+    };
     for (std::uint32_t i = 0; i < m_request.rays; ++i) {
-        Sampler sampler(m_request.seed, streamOf(m_request.pass), kRaySequences + tile,
-                        static_cast<std::uint32_t>(part) * m_request.rays + i);
+        Sampler sampler = tileSampler.at(static_cast<std::uint32_t>(part) * m_request.rays + i);
         const Vec3f direction = normalize(frame.toWorld(sampleCosineHemisphere(sampler.next2D())));
         if (dot(direction, geometricNormal) <= 0.0f) continue;
-        const Gathered found = finalGather(m_scene, m_sites, {start, direction}, sampler);
+        const Gathered found = followGather(m_scene, m_sites, {start, direction}, sampler);
         rays += found.rays;
         if (!found.hitAny) {
             lamps += m_scene.seesFarLight(direction);
@@ -129,14 +141,10 @@ GatherPoints::Value GatherPoints::compute(std::size_t index, std::uint64_t& rays
         lamps += found.first.light != kNoLight && dot(direction, found.first.geometricNormal) < 0;
         const float distance = length(found.first.position - point.position);
         clearance = std::min(clearance, std::max(distance, m_planeTolerance));
-        const auto add = [&sum](std::size_t at, const Rgb& c) {
-            sum[at] += static_cast<double>(c.r);
-            sum[at + 1] += static_cast<double>(c.g);
-            sum[at + 2] += static_cast<double>(c.b);
-        };
-        add(0, found.radiance.wide);
-        add(3, found.radiance.narrow);
+        addLast();
+        last = found;
     }
+    addLast();
     const double count = m_request.rays, scale = static_cast<double>(kPi) / count;
     const auto irradiance = [&](std::size_t at) {
         return Rgb(static_cast<float>(sum[at] * scale), static_cast<float>(sum[at + 1] * scale),

@@ -65,6 +65,7 @@ class GatherPoints {
     // there is none. pattern: any number that depends on the place alone.
     TwoRadii descendedAt(const Place& place, std::uint32_t pattern) const;
 
+    std::uint32_t raysOfPoint() const { return m_request.rays; }
     // Gather rays so far.
     std::uint64_t raysTraced() const { return m_raysTraced.load(std::memory_order_relaxed); }
     std::uint64_t memoryBytes() const {

@@ -26,8 +26,8 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
         if (result.rays == 1) recordFirstHit(surface, bsdf, result);
         if (bsdf.isBlackBody()) return result;
         if (bsdf.has(Lobe::kDiffuse) || bsdf.has(Lobe::kGlossy)) {
-            const DirectRadiance direct = estimateDirect(m_scene, m_lights, surface, bsdf,
-                                                         LampStrategy::kBoth, sampler, result.rays);
+            const DirectRadiance direct = estimateDirect(
+                m_scene, m_lights, surface, bsdf, LampStrategy::kBoth, 1, sampler, result.rays);
             PathState byDiffuse = state, byGlossy = state;
             byDiffuse.scatter(Lobe::kDiffuse);
             byGlossy.scatter(Lobe::kGlossy);

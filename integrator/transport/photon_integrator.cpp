@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/transport/photon_integrator.h"
 
+#include <algorithm>
 #include <bit>
 
 #include "integrator/sampling/warps.h"
@@ -15,8 +16,14 @@ namespace {
 // Lamps that fill less than this share of the cosine-weighted view are found by next-event
 // estimation alone: the other strategy's weight is below its square there.
 constexpr float kLargeLampShare = 0.02f;
-// Where there are no gather points a sample sends rays of its own: few, as it is one of many.
-constexpr std::uint32_t kOwnGatherRays = 4;
+// Where there are no gather points a sample sends rays of its own: few, as it is one of many, and
+// more where the points have many.
+constexpr std::uint32_t kFewestOwnRays = 4, kRaysOfPointToAnOwnRay = 8;
+
+std::uint32_t ownGatherRays(const GatherPoints* points) {
+    return points ? std::max(kFewestOwnRays, points->raysOfPoint() / kRaysOfPointToAnOwnRay)
+                  : kFewestOwnRays;
+}
 
 }  // namespace
 
@@ -27,6 +34,7 @@ SampleRadiance PhotonIntegrator::sample(Vec2f screen, const Ray& ray, Sampler& s
     PathWalk path(ray);
     LastScatter last;
     last.direction = ray.direction;
+    std::uint32_t lampSamples = m_lampSamples;
     for (bool first = true;; first = false) {
         Surface surface;
         ++result.rays;
@@ -45,9 +53,10 @@ SampleRadiance PhotonIntegrator::sample(Vec2f screen, const Ray& ray, Sampler& s
         StillToFind still;
         if (bsdf.has(Lobe::kDiffuse))
             still = readMaps(screen, surface, bsdf, path.throughput, scratch, result);
-        if (bsdf.has(Lobe::kDiffuse) || bsdf.has(Lobe::kGlossy)) {
-            const DirectRadiance direct =
-                estimateDirect(m_scene, m_lights, surface, bsdf, still.lamps, sampler, result.rays);
+        const bool reflectsLamps = bsdf.has(Lobe::kDiffuse) || bsdf.has(Lobe::kGlossy);
+        if (reflectsLamps) {
+            const DirectRadiance direct = estimateDirect(
+                m_scene, m_lights, surface, bsdf, still.lamps, lampSamples, sampler, result.rays);
             result.direct += path.throughput * (direct.diffuse + direct.glossy);
         }
         if (bsdf.isDiffuseOnly() && still.lamps == LampStrategy::kNextEventOnly && !still.indirect)
@@ -56,18 +65,21 @@ SampleRadiance PhotonIntegrator::sample(Vec2f screen, const Ray& ray, Sampler& s
         const float uLobe = sampler.next1D();
         bool valid = bsdf.sample(uLobe, sampler.next2D(), sample);
         if (sample.lobe == Lobe::kDiffuse) {
-            const std::uint32_t rays = still.indirect ? kOwnGatherRays : 1;
+            const std::uint32_t rays = still.indirect ? ownGatherRays(m_maps.points) : 1;
             const Rgb share = path.throughput / static_cast<float>(rays);
             for (std::uint32_t i = 0; i < rays; ++i) {
                 if (i > 0) valid = bsdf.sample(uLobe, sampler.next2D(), sample);
-                if (valid) followDiffuse(surface, sample, still, share, sampler, result);
+                if (!valid) continue;
+                last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle, lampSamples};
+                followDiffuse(last, still, share * sample.weight, sampler, result);
             }
             return result;
         }
         if (!valid) return result;
         if (!path.scatter(surface, bsdf, sample, sampler)) return result;
         state.scatter(sample.lobe);
-        last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle};
+        last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle, lampSamples};
+        if (reflectsLamps) lampSamples = 1;
     }
 }
 
@@ -107,11 +119,9 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(Vec2f screen, const Sur
 
 // Light that the ray finds at a lamp is direct, the other strategy of its next-event estimation;
 // light found by way of other lobes is a caustic and its map's business.
-void PhotonIntegrator::followDiffuse(const Surface& surface, const BsdfSample& sample,
-                                     StillToFind still, const Rgb& throughput, Sampler& sampler,
-                                     SampleRadiance& result) const {
-    const Rgb weight = throughput * sample.weight;
-    const Ray ray = rayFrom(surface, sample.direction);
+void PhotonIntegrator::followDiffuse(const LastScatter& last, StillToFind still, const Rgb& weight,
+                                     Sampler& sampler, SampleRadiance& result) const {
+    const Ray ray = rayFrom(last.from, last.direction);
     Gathered found;
     if (still.indirect) {
         found = finalGather(m_scene, *m_maps.global, ray, sampler);
@@ -123,7 +133,6 @@ void PhotonIntegrator::followDiffuse(const Surface& surface, const BsdfSample& s
         found.hitAny = m_scene.intersect(ray, found.first);
     }
     if (still.lamps != LampStrategy::kBoth) return;
-    const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle};
     result.direct += weight * (found.hitAny ? weightedEmission(m_lights, found.first, last)
                                             : weightedFarLight(m_scene, m_lights, last));
 }

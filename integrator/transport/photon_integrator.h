@@ -29,8 +29,11 @@ struct PhotonMaps {
 // Threads: any, at once, each with a scratch of its own.
 class PhotonIntegrator {
   public:
-    PhotonIntegrator(const Scene& scene, const LightSampler& lights, const PhotonMaps& maps)
-        : m_scene(scene), m_lights(lights), m_maps(maps) {}
+    // lampSamples: of next-event estimation where a camera sample first meets a lobe that is not
+    // delta, a power of two; farther on there is one.
+    PhotonIntegrator(const Scene& scene, const LightSampler& lights, const PhotonMaps& maps,
+                     std::uint32_t lampSamples = 1)
+        : m_scene(scene), m_lights(lights), m_maps(maps), m_lampSamples(lampSamples) {}
 
     // screen: where the ray leaves the camera, pixels. withSeenLamps: false where emission is left
     // to paths of SeenLamps.
@@ -46,12 +49,13 @@ class PhotonIntegrator {
     StillToFind readMaps(Vec2f screen, const Surface& surface, const Bsdf& bsdf,
                          const Rgb& throughput, NearestPhotons& scratch,
                          SampleRadiance& result) const;
-    void followDiffuse(const Surface& surface, const BsdfSample& sample, StillToFind still,
-                       const Rgb& throughput, Sampler& sampler, SampleRadiance& result) const;
+    void followDiffuse(const LastScatter& last, StillToFind still, const Rgb& weight,
+                       Sampler& sampler, SampleRadiance& result) const;
 
     const Scene& m_scene;
     const LightSampler& m_lights;
     PhotonMaps m_maps;
+    std::uint32_t m_lampSamples;
 };
 
 }  // namespace pm

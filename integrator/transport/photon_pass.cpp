@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <utility>
 
 #include "integrator/transport/frame_renderer.h"
+#include "integrator/transport/gather_pilot.h"
 #include "integrator/values/error.h"
 #include "integrator/values/stopwatch.h"
 
@@ -115,7 +117,7 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
 // What light is sent to which casters of caustics: a geometric guess, and a pilot that finds what
 // is hidden.
 void PhotonPass::aim(Control& control) {
-    m_aim = std::make_unique<AimedEmission>(m_scene, m_lights);
+    m_aim = std::make_unique<AimedEmission>(m_scene, m_lights, CancelCheck(control.cancelled));
     if (m_aim->empty()) return;
     // A pass's number that the pilot of the radii doesn't have.
     const PhotonTraceRequest request{
@@ -130,24 +132,31 @@ void PhotonPass::findRadii(Control& control) {
     const auto fallback = static_cast<float>(0.01 * m_scene.radius());
     const std::uint32_t estimatePhotons = m_settings.estimatePhotons;
     const CancelCheck check(control.cancelled);
-    if (m_plan.globalMap)
-        m_globalRadius =
-            PilotRadius(
-                trace(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0, control).photons,
-                estimatePhotons, fallback, check)
-                .typical();
+    if (m_plan.globalMap) {
+        const PilotRadius pilot(
+            trace(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0, control).photons,
+            estimatePhotons, fallback, check);
+        m_globalRadius = pilot.typical();
+        m_raysOfPoint = m_plan.gatherRays;
+        if (m_plan.gatherRaysByPilot) {
+            const IrradianceSites sites(m_scene, pilot.photons(), m_globalRadius);
+            m_raysOfPoint = gatherRaysFor(
+                gatherSpread(m_scene, m_camera, m_lights, sites, m_settings), m_plan.gatherRays);
+        }
+    }
     if (m_plan.causticMap) {
         if (!m_source) aim(control);
         PhotonTraceResult pilot =
             trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), 0, control);
         m_causticRadius = std::make_unique<CausticRadius>(std::move(pilot.photons), estimatePhotons,
                                                           fallback, check);
-        m_patches = std::make_unique<SurfacePatches>(m_scene, m_causticRadius->typical());
         if (m_plan.descent > 0.0f)
             m_descendedRadius = PilotRadius(std::move(pilot.descended),
                                             kDescendedPhotons * estimatePhotons, fallback, check)
                                     .typical();
     }
+    m_patches = std::make_unique<SurfacePatches>(
+        m_scene, m_causticRadius ? m_causticRadius->typical() : m_globalRadius);
     m_haveRadii = true;
 }
 
@@ -157,7 +166,6 @@ void PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
     const Stopwatch watch;
     const CancelCheck check(control.cancelled);
     const float factor = radiusFactor(maps.pass);
-    m_patches->makeRoom();
     maps.caustic = std::make_unique<CausticMap>(std::move(traced.photons), *m_causticRadius, factor,
                                                 m_patches.get(), check);
     if (m_plan.descent > 0.0f) {
@@ -169,15 +177,23 @@ void PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
     m_mapSeconds += watch.seconds();
 }
 
+// Patches pay where one serves many sites and most surfaces are flat across an estimate's disc;
+// among small triangles rays of each site's own cost less.
+bool PhotonPass::sitesHavePatches() const {
+    const auto radius = static_cast<double>(m_globalRadius);
+    return m_scene.meanTriangleArea() > std::numbers::pi * radius * radius;
+}
+
 void PhotonPass::buildIndirect(PassMaps& maps, Control& control) {
     PhotonTraceResult traced = trace(PhotonKind::kGlobal, m_plan.globalPhotons, maps.pass, control);
     const Stopwatch watch;
     const float factor = radiusFactor(maps.pass);
     maps.global =
         std::make_unique<PhotonMap>(std::move(traced.photons), CancelCheck(control.cancelled));
-    maps.sites = std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor);
+    maps.sites = std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor,
+                                                   sitesHavePatches() ? m_patches.get() : nullptr);
     const GatherPoints::Request request{
-        m_settings.width, m_settings.height, m_plan.gatherSpacing, m_plan.gatherRays, factor,
+        m_settings.width, m_settings.height, m_plan.gatherSpacing, m_raysOfPoint, factor,
         m_settings.seed,  maps.pass,         maps.descended.get()};
     maps.points =
         std::make_unique<GatherPoints>(m_scene, m_camera, *maps.sites, request, control.cancelled);
@@ -189,6 +205,7 @@ void PhotonPass::buildIndirect(PassMaps& maps, Control& control) {
 void PhotonPass::buildMaps(std::uint32_t pass, Control& control) {
     PassMaps maps;
     maps.pass = pass;
+    m_patches->makeRoom();
     if (m_plan.causticMap) buildCaustics(maps, control);
     if (m_plan.globalMap) buildIndirect(maps, control);
     const std::lock_guard lock(m_mutex);
@@ -227,6 +244,7 @@ void PhotonPass::addTo(RenderCounters& counters) const {
         if (held.points) counters.rays += held.points->raysTraced();
     counters.photonsEmitted += m_allKinds.emitted;
     counters.photonsLost += m_allKinds.lost;
+    counters.gatherRaysOfPoint = m_raysOfPoint;
     counters.fluxEmitted += m_global.fluxEmitted;
     counters.fluxAbsorbed += m_global.fluxAbsorbed;
     counters.fluxEscaped += m_global.fluxEscaped;

@@ -82,6 +82,7 @@ class PhotonPass {
     PhotonTraceResult trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
                             Control& control);
     void buildCaustics(PassMaps& maps, Control& control);
+    bool sitesHavePatches() const;
     void buildIndirect(PassMaps& maps, Control& control);
     void aim(Control& control);
     void findRadii(Control& control);
@@ -100,9 +101,10 @@ class PhotonPass {
     // Of the first pass, scene units.
     bool m_haveRadii = false;
     float m_globalRadius = 0.0f, m_descendedRadius = 0.0f;
+    std::uint32_t m_raysOfPoint = 0;       // gather rays; 0 until the radii are known
     std::unique_ptr<AimedEmission> m_aim;  // of caustic photons
     std::unique_ptr<CausticRadius> m_causticRadius;
-    std::unique_ptr<SurfacePatches> m_patches;  // of caustic estimates; filled as the passes go on
+    std::unique_ptr<SurfacePatches> m_patches;  // filled as the passes go on
 
     mutable std::mutex m_mutex;    // of what follows
     std::vector<PassMaps> m_held;  // of the pass begun last and of those added since

@@ -8,9 +8,11 @@
 #include <cmath>
 
 #include "integrator/photons/caustic_map.h"
+#include "integrator/photons/irradiance_sites.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/gather_points.h"
+#include "integrator/transport/lamp_samples.h"
 
 namespace pm {
 
@@ -21,7 +23,7 @@ namespace {
 constexpr std::uint64_t kAutoGlobalPhotons = 30'000;
 constexpr std::uint64_t kAutoCausticPhotons = 150'000;
 constexpr double kLeastOfThose = 0.5, kMostOfThose = 16.0;
-constexpr std::uint32_t kAutoGatherRays = 24;
+constexpr std::uint32_t kAutoGatherRays = 32;
 // Gather points: one for 2.5 x 2.5 pixels, but no more than these in a frame.
 constexpr float kGatherSpacing = 2.5f;
 constexpr double kMostGatherPoints = 1 << 20;
@@ -75,16 +77,20 @@ void estimateCosts(const RenderSettings& settings, Plan& plan) {
     const auto global = static_cast<double>(plan.globalPhotons);
     const auto caustic = static_cast<double>(plan.causticPhotons);
     plan.mapBytes = plan.landingsPerPass() * PhotonMap::kBytesPerPhoton;
-    const double samples = static_cast<double>(settings.window.area()) *
-                           std::pow(4.0, static_cast<double>(settings.aaLevel) - 2.0);
-    plan.processorSecondsPerPass =
-        samples * (kPerSample + (plan.causticMap ? kPerSampleOfCaustics : 0.0)) +
-        global * kPerGlobalPhoton + caustic * kPerCausticPhoton;
-    if (!plan.globalMap) return;
-    plan.mapBytes += GatherPoints::memoryBytes(settings.width, settings.height, plan.gatherSpacing);
-    const double points = static_cast<double>(settings.window.area()) /
-                          static_cast<double>(plan.gatherSpacing * plan.gatherSpacing);
-    plan.processorSecondsPerPass += points * plan.gatherRays * kPerGatherRay;
+    const double samplesOfAPixel = std::pow(4.0, static_cast<double>(settings.aaLevel) - 2.0);
+    double perPixel =
+        samplesOfAPixel * (kPerSample + (plan.causticMap ? kPerSampleOfCaustics : 0.0));
+    if (plan.globalMap) {
+        plan.mapBytes +=
+            GatherPoints::memoryBytes(settings.width, settings.height, plan.gatherSpacing) +
+            IrradianceSites::memoryBytes(plan.globalPhotons * kExpectedArrivals);
+        const double spacing = static_cast<double>(plan.gatherSpacing);
+        perPixel += plan.gatherRays * kPerGatherRay / (spacing * spacing);
+    }
+    const double photons = global * kPerGlobalPhoton + caustic * kPerCausticPhoton;
+    plan.processorSecondsPerPass = static_cast<double>(settings.window.area()) * perPixel + photons;
+    const double framePixels = static_cast<double>(settings.width) * settings.height;
+    plan.processorSecondsPerSample = (perPixel + photons / framePixels) / samplesOfAPixel;
 }
 
 }  // namespace
@@ -104,6 +110,7 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
                                 "few samples miss"});
     if (settings.integrator == IntegratorKind::kPath) {
         plan.reasons.push_back("path tracing: asked for by --integrator path; no photons");
+        plan.lampSamples = 1;
         if (traits.specular && traits.diffuse && traits.pointLights)
             plan.notices.push_back({NoticeCode::kNotCovered,
                                     "caustics of point lights, spots and suns without a disc can't "
@@ -123,6 +130,10 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     plan.reasons.push_back(
         "direct light: next-event estimation, weighted against rays along the diffuse lobe where "
         "lamps fill much of the view");
+    plan.reasons.push_back(
+        fmt::format("lamp samples: 1 to {} at a camera sample's first surface, as many as a pilot "
+                    "finds to pay",
+                    kMostLampSamples));
     if (traits.farLights)
         plan.reasons.push_back(
             "light from afar: seen by rays that meet nothing; its photons enter by the scene's "
@@ -137,20 +148,22 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     plan.tracePhotons = plan.globalMap || plan.causticMap;
     if (plan.globalMap) {
         plan.globalPhotons = photonsOf(settings, kAutoGlobalPhotons);
-        plan.gatherRays = settings.gatherRays > 0 ? settings.gatherRays : kAutoGatherRays;
+        plan.gatherRaysByPilot = settings.gatherRays == 0;
+        plan.gatherRays = plan.gatherRaysByPilot ? kAutoGatherRays : settings.gatherRays;
         plan.gatherSpacing = std::max(
             kGatherSpacing, static_cast<float>(std::sqrt(static_cast<double>(settings.width) *
                                                          settings.height / kMostGatherPoints)));
         plan.reasons.push_back(fmt::format(
             "indirect light: final gathering at a point for every {:.1f} x {:.1f} pixels, {} rays "
-            "each, and the mean of the points near a sample",
-            plan.gatherSpacing, plan.gatherSpacing, plan.gatherRays));
+            "each{}, and the mean of the points near a sample",
+            plan.gatherSpacing, plan.gatherSpacing, plan.gatherRays,
+            plan.gatherRaysByPilot ? " or half, twice, four times as many, as a pilot finds" : ""));
         plan.reasons.push_back(fmt::format(
             "global map: {} photons a pass, its irradiance kept at sites for what the gather rays "
             "meet",
             plan.globalPhotons));
     } else {
-        plan.reasons.push_back("no global map: all surfaces lie in one plane");
+        plan.reasons.push_back("no global map: all surfaces that reflect lie in one plane");
     }
     if (plan.causticMap) {
         plan.causticPhotons = photonsOf(settings, kAutoCausticPhotons);

@@ -24,11 +24,18 @@ struct Plan {
     // Share of the caustic photons that is followed on, for a density estimate of the light
     // descended from caustics; 0: that light is left to the gather rays.
     float descent = 0.0f;
-    float gatherSpacing = 0.0f;          // of gather points on the screen, pixels
-    std::uint32_t gatherRays = 0;        // of each gather point
+    float gatherSpacing = 0.0f;  // of gather points on the screen, pixels
+    // Of each gather point, or where a pilot finds how many pay: half, once, twice or four times
+    // these (gather_pilot.h).
+    std::uint32_t gatherRays = 0;
+    bool gatherRaysByPilot = false;
+    // Lamp samples of a camera sample, see PhotonIntegrator; 0: a pilot finds how many pay.
+    std::uint32_t lampSamples = 0;
     std::uint64_t mapBytes = 0;          // estimated peak of the maps
     double processorSecondsPerPass = 0;  // estimated, to a factor of about two
-    std::vector<std::string> reasons;    // one line each: what and why
+    // The same of a camera sample, its share of the frame's photons and gather points included.
+    double processorSecondsPerSample = 0;
+    std::vector<std::string> reasons;  // one line each: what and why
     std::vector<Notice> notices;
 
     std::uint64_t photonsPerPass() const { return globalPhotons + causticPhotons; }

@@ -35,7 +35,8 @@ PmrBucketInfo BucketPasses::info(std::uint32_t cell, const Rect& rect) const {
 void BucketPasses::begin(std::uint32_t cell, const Rect& rect, EventQueue& events) {
     RenderSettings settings = m_frame.settings;
     settings.window = intersect(rect, settings.window);
-    m_shelf.put(m_frame.placeOf[cell], std::make_shared<FrameStore>(makeFrame(settings)));
+    m_shelf.put(m_frame.placeOf[cell],
+                std::make_shared<FrameStore>(makeFrame(settings, m_frame.sharesNoise)));
     events.bucketStarted(info(cell, rect));
 }
 

@@ -33,6 +33,7 @@ class BucketPasses {
         std::span<const std::uint32_t> order;    // cells
         std::span<const std::uint32_t> placeOf;  // of each cell in it
         int workers = 1;
+        bool sharesNoise = true;  // SampleRule::sharesNoise
     };
     // bucketsHeld: in work or waiting for the host, at most.
     BucketPasses(const Frame& frame, std::uint32_t bucketsHeld);

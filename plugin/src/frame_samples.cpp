@@ -26,11 +26,12 @@ SampleRun samplesFromGroups(const FrameStore::NextSamples& next, std::uint32_t p
 
 }  // namespace
 
-FrameStore makeFrame(const RenderSettings& settings) {
+FrameStore makeFrame(const RenderSettings& settings, bool sharesNoise) {
     const ChannelLayout layout = channelLayout(settings);
     std::optional<SampleRule> rule;
     if (settings.isAdaptive())
-        rule = sampleRule(settings.aaLevel, settings.aaLevelMost, settings.aaThreshold);
+        rule =
+            sampleRule(settings.aaLevel, settings.aaLevelMost, settings.aaThreshold, sharesNoise);
     return {settings.window, layout.count, layout.beauty, layout.biasProbe, layout.emission, rule};
 }
 

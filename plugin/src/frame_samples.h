@@ -12,8 +12,9 @@
 
 namespace pm::plugin {
 
-// The empty frame of a render with these settings. Errors: those of FrameStore.
-FrameStore makeFrame(const RenderSettings& settings);
+// The empty frame of a render with these settings. sharesNoise: SampleRule::sharesNoise, which the
+// plan knows (tracePhotons); of no matter where nothing is rendered. Errors: those of FrameStore.
+FrameStore makeFrame(const RenderSettings& settings, bool sharesNoise);
 
 // What it takes, in bytes.
 std::uint64_t frameMemoryBytes(const RenderSettings& settings);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -11,6 +12,7 @@
 #include "integrator/geometry/triangulate.h"
 #include "integrator/values/error.h"
 #include "plugin/src/call_error.h"
+#include "plugin/src/leave_behind.h"
 #include "plugin/src/memory_limit.h"
 #include "plugin/src/objects.h"
 #include "plugin/src/struct_reader.h"
@@ -23,6 +25,7 @@ namespace {
 // Indices are 32 bits wide and signed inside.
 constexpr std::uint64_t kMaxElements = std::numeric_limits<std::int32_t>::max();
 constexpr std::uint64_t kMaxSlots = 65536;
+constexpr std::uint64_t kIndicesOfALargeMesh = 1'000'000;
 constexpr std::uint32_t kMaxHostTessellationRate = 64;
 constexpr std::uint32_t kDefaultTessellationRate = 4;
 
@@ -34,21 +37,51 @@ void checkArray(const void* array, std::uint64_t count, const char* name) {
         throw argumentError(fmt::format("{} is null, but its count is {}", name, count));
 }
 
-template <typename Element, typename Source>
-std::vector<Element> copyArray(const Source* array, std::uint64_t count, const char* name) {
-    static_assert(sizeof(Element) % sizeof(Source) == 0);
-    checkArray(array, count, name);
-    std::vector<Element> copy(count);
-    if (count > 0) std::memcpy(static_cast<void*>(copy.data()), array, count * sizeof(Element));
-    return copy;
-}
+// The description of a mesh, copied and checked; looks now and then whether to go on.
+class MeshReader {
+  public:
+    explicit MeshReader(const CancelCheck& cancel) : m_cancel(cancel) {}
+
+    PolygonMesh read(const PmrMeshDesc& desc) const;
+
+    template <typename Element, typename Source>
+    std::vector<Element> copyArray(const Source* array, std::uint64_t count,
+                                   const char* name) const {
+        static_assert(sizeof(Element) % sizeof(Source) == 0);
+        checkArray(array, count, name);
+        std::vector<Element> copy;
+        copy.reserve(count);
+        for (std::uint64_t done = 0; done < count; done = copy.size()) {
+            goOn();
+            copy.resize(std::min(count, done + kElementsBetweenLooks));
+            std::memcpy(static_cast<void*>(copy.data() + done),
+                        array + done * (sizeof(Element) / sizeof(Source)),
+                        (copy.size() - done) * sizeof(Element));
+        }
+        return copy;
+    }
+
+  private:
+    static constexpr std::uint64_t kElementsBetweenLooks = 1 << 16;
+
+    void goOn() const { m_cancel.throwIfSet("reading a mesh"); }
+    std::vector<std::int32_t> cornerIndices(const std::uint32_t* given, const PmrMeshDesc& desc,
+                                            std::uint64_t valueCount, const char* name) const;
+    std::vector<std::uint32_t> materialSlots(const PmrMeshDesc& desc,
+                                             std::uint64_t slotCount) const;
+
+    const CancelCheck m_cancel;
+};
 
 // The host's indices; PMR_NO_INDEX becomes -1, as do the numbers beyond 31 bits that no array has.
-std::vector<std::int32_t> cornerIndices(const std::uint32_t* given, const PmrMeshDesc& desc,
-                                        std::uint64_t valueCount, const char* name) {
+std::vector<std::int32_t> MeshReader::cornerIndices(const std::uint32_t* given,
+                                                    const PmrMeshDesc& desc,
+                                                    std::uint64_t valueCount,
+                                                    const char* name) const {
     const std::uint32_t* source = given == nullptr ? desc.indices : given;
     std::vector<std::int32_t> indices(desc.indexCount);
     for (std::uint64_t i = 0; i < desc.indexCount; ++i) {
+        if (i % kElementsBetweenLooks == 0) goOn();
         if (source[i] == PMR_NO_INDEX && given != nullptr) {
             indices[i] = -1;
             continue;
@@ -61,7 +94,8 @@ std::vector<std::int32_t> cornerIndices(const std::uint32_t* given, const PmrMes
     return indices;
 }
 
-std::vector<std::uint32_t> materialSlots(const PmrMeshDesc& desc, std::uint64_t slotCount) {
+std::vector<std::uint32_t> MeshReader::materialSlots(const PmrMeshDesc& desc,
+                                                     std::uint64_t slotCount) const {
     if (desc.materialSlots == nullptr) return {};
     auto slots = copyArray<std::uint32_t>(desc.materialSlots, desc.faceCount, "materialSlots");
     for (std::size_t face = 0; face < slots.size(); ++face) {
@@ -79,7 +113,7 @@ std::uint64_t slotCountOf(const PmrMeshDesc& desc) {
     return desc.slotCount == 0 ? 1 : desc.slotCount;
 }
 
-PolygonMesh toPolygonMesh(const PmrMeshDesc& desc) {
+PolygonMesh MeshReader::read(const PmrMeshDesc& desc) const {
     PolygonMesh mesh;
     mesh.positions = copyArray<Vec3f>(desc.positions, desc.positionCount, "positions");
     checkArray(&desc, desc.faceCount, "faceCount");
@@ -158,9 +192,11 @@ BoundaryInterpolation toBoundary(std::int32_t boundary) {
     }
 }
 
-SubdivisionCage toCage(const PmrCageDesc& desc, const PmrMeshDesc& meshDesc) {
+SubdivisionCage toCage(const PmrCageDesc& desc, const PmrMeshDesc& meshDesc,
+                       const CancelCheck& cancel) {
+    const MeshReader reader(cancel);
     SubdivisionCage cage;
-    cage.mesh = toPolygonMesh(meshDesc);
+    cage.mesh = reader.read(meshDesc);
     cage.scheme = toScheme(desc.scheme);
     cage.boundary = toBoundary(desc.boundary);
     checkArray(desc.creases, desc.creaseCount, "creases");
@@ -172,7 +208,7 @@ SubdivisionCage toCage(const PmrCageDesc& desc, const PmrMeshDesc& meshDesc) {
     checkArray(desc.cornerSharpness, desc.cornerCount, "cornerSharpness");
     for (std::uint64_t i = 0; i < desc.cornerCount; ++i)
         cage.corners.push_back({desc.corners[i], desc.cornerSharpness[i]});
-    cage.holes = copyArray<std::uint32_t>(desc.holes, desc.holeCount, "holes");
+    cage.holes = reader.copyArray<std::uint32_t>(desc.holes, desc.holeCount, "holes");
     return cage;
 }
 
@@ -190,7 +226,15 @@ void refuseTooLarge(const SubdivisionCage& cage, int rate) {
 
 std::shared_ptr<MeshObject> makeMesh(std::shared_ptr<Context> context, const PmrMeshDesc& desc) {
     const std::uint64_t slotCount = slotCountOf(desc);
-    BuiltMesh built = triangulate(toPolygonMesh(desc), context->buildCheck());
+    const CancelCheck cancel = context->buildCheck();
+    auto cut = [mesh = MeshReader(cancel).read(desc)](const CancelCheck& own) {
+        return triangulate(mesh, own);
+    };
+    // Of a large one the arrays alone take long to get and to give back; of many small ones threads
+    // would.
+    BuiltMesh built = desc.indexCount < kIndicesOfALargeMesh
+                          ? cut(cancel)
+                          : runLeavable(cancel, "cutting faces into triangles", std::move(cut));
     return finishMesh(std::move(context), std::move(built), slotCount);
 }
 
@@ -202,10 +246,14 @@ std::shared_ptr<MeshObject> makeCage(std::shared_ptr<Context> context, const Pmr
     const std::uint64_t slotCount = slotCountOf(meshDesc);
     const int rate = static_cast<int>(checkedRate(desc.tessellationRate));
     if (desc.reserved != 0) throw argumentError("PmrCageDesc: reserved must be 0");
-    const SubdivisionCage cage = toCage(desc, meshDesc);
-    refuseTooLarge(cage, rate);
-    WorkerArena arena(context->threads());
-    BuiltMesh built = arena.execute([&] { return tessellate(cage, rate, context->buildCheck()); });
+    BuiltMesh built =
+        runLeavable(context->buildCheck(), "tessellating",
+                    [cage = toCage(desc, meshDesc, context->buildCheck()), rate,
+                     threads = context->threads()](const CancelCheck& cancel) {
+                        refuseTooLarge(cage, rate);
+                        WorkerArena arena(threads);
+                        return arena.execute([&] { return tessellate(cage, rate, cancel); });
+                    });
     return finishMesh(std::move(context), std::move(built), slotCount);
 }
 

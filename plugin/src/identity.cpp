@@ -133,8 +133,8 @@ std::string checksumOf(Feed feed) {
     return hasher.text();
 }
 
-void addTexture(Hasher& hasher, const TexturePicture& picture) {
-    hasher.addArray<std::uint64_t>(texelHash(picture.fileName));
+void addTexture(Hasher& hasher, const TexturePicture& picture, const CancelCheck& cancel) {
+    hasher.addArray<std::uint64_t>(texelHash(picture.fileName, cancel));
     hasher.add(static_cast<int>(picture.wrapS));
     hasher.add(static_cast<int>(picture.wrapT));
     for (const float v : {picture.uvScale.x, picture.uvScale.y, picture.uvOffset.x,
@@ -164,7 +164,8 @@ std::string difference(const std::string& name, const std::string* there, const 
 
 }  // namespace
 
-Identity sceneIdentity(const Scene& scene, const SceneTextures& textures) {
+Identity sceneIdentity(const Scene& scene, const SceneTextures& textures,
+                       const CancelCheck& cancel) {
     const SceneDescription& d = scene.description();
     Identity identity = {{"instruction set", scene.isa()}, {"rendering space", d.renderingSpace}};
     const auto part = [&](const char* name, auto feed) {
@@ -173,7 +174,10 @@ Identity sceneIdentity(const Scene& scene, const SceneTextures& textures) {
     part("colour matrix", [&](Hasher& hasher) { hasher.addArray<double>(d.rgbToXyz); });
     part("geometry", [&](Hasher& hasher) {
         hasher.add(d.instances.size());
-        for (const InstanceDescription& instance : d.instances) addInstance(hasher, instance);
+        for (const InstanceDescription& instance : d.instances) {
+            cancel.throwIfSet("hashing the scene");
+            addInstance(hasher, instance);
+        }
     });
     part("materials", [&](Hasher& hasher) {
         hasher.add(d.materials.size());
@@ -195,7 +199,8 @@ Identity sceneIdentity(const Scene& scene, const SceneTextures& textures) {
         hasher.add(d.camera->pixelAspect);
     });
     part("textures", [&](Hasher& hasher) {
-        for (const TexturePicture* picture : textures.pictures()) addTexture(hasher, *picture);
+        for (const TexturePicture* picture : textures.pictures())
+            addTexture(hasher, *picture, cancel);
     });
     return identity;
 }

@@ -8,6 +8,7 @@
 
 #include "integrator/scene/scene.h"
 #include "integrator/transport/plan.h"
+#include "integrator/values/cancel_check.h"
 #include "plugin/src/scene_textures.h"
 #include "plugin/src/setting_values.h"
 
@@ -25,8 +26,9 @@ struct IdentityPart {
 using Identity = std::vector<IdentityPart>;
 
 // Instruction set, colour space, geometry, materials, texels, lights and camera. Errors:
-// CallError(IO) when a texture can't be read again.
-Identity sceneIdentity(const Scene& scene, const SceneTextures& textures);
+// CallError(IO) when a texture can't be read again; Error(kCancelled) soon after cancel is set.
+Identity sceneIdentity(const Scene& scene, const SceneTextures& textures,
+                       const CancelCheck& cancel);
 
 // Version and build, and every setting that changes pixels, but for the number of passes: a
 // finished render may go on with more of them.

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <string>
 #include <string_view>
 
 #include "plugin/src/call_error.h"
 #include "plugin/src/entry.h"
+#include "plugin/src/leave_behind.h"
 #include "plugin/src/objects.h"
 
 namespace pm::plugin {
@@ -100,7 +102,13 @@ std::shared_ptr<TextureObject> findTexture(const Context& context, PmrTexture ha
 
 std::shared_ptr<TextureObject> makeTexture(std::shared_ptr<Context> context,
                                            const PmrTextureDesc& desc) {
-    TexturePicture picture = context->textures().open(desc);
+    TexturePicture picture = runLeavable(
+        context->buildCheck(), "opening a texture",
+        [context, owned = desc, name = std::string(desc.fileName == nullptr ? "" : desc.fileName)](
+            const CancelCheck&) mutable {
+            owned.fileName = name.c_str();
+            return context->textures().open(owned);
+        });
     return std::make_shared<TextureObject>(std::move(context), std::move(picture));
 }
 

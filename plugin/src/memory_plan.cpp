@@ -7,11 +7,14 @@
 #include <algorithm>
 
 #include "integrator/photons/photon.h"
+#include "integrator/photons/surface_patches.h"
 #include "integrator/transport/frame_renderer.h"
 #include "plugin/include/pm_plugin.h"
 #include "plugin/src/call_error.h"
 #include "plugin/src/frame_samples.h"
+#include "plugin/src/layer_table.h"
 #include "plugin/src/memory_limit.h"
+#include "plugin/src/pixel_reader.h"
 #include "plugin/src/render_photons.h"
 #include "scheduler/available_threads.h"
 #include "scheduler/bucket_errors.h"
@@ -29,6 +32,22 @@ constexpr std::uint64_t kTracedBytesPerPhoton = 2 * sizeof(Photon);
 // Of a cell: its place in two orders, and how long it took, in three copies.
 constexpr std::uint64_t kCellBytes = 2 * sizeof(std::uint32_t) + 3 * sizeof(double);
 
+// Code and libraries of pm_host as measured with next to no scene; a host that is larger knows so.
+constexpr std::uint64_t kProgramBytes = std::uint64_t{150} << 20;
+
+// The layers as floats, which every host has to put somewhere.
+std::uint64_t hostBytes(const SettingValues& values) {
+    std::uint64_t channels = 0;
+    for (const Layer layer : layersOf(values))
+        channels += layerSpecs()[static_cast<std::size_t>(layer)].channelCount;
+    return static_cast<std::uint64_t>(values.window().area()) * channels * sizeof(float);
+}
+
+// Maps of so many passes; patches of surfaces are kept for all of them.
+std::uint64_t mapBytes(const Plan& plan, std::uint64_t passes) {
+    return plan.tracePhotons ? plan.mapBytes * passes + SurfacePatches::kMostBytes : 0;
+}
+
 // Why the passes of a bucket can't all be made before the next one; empty where they can.
 std::string obstacle(const SettingValues& values) {
     if (values.number(Setting::kTimeLimit) > 0) return "timeLimitSeconds";
@@ -45,9 +64,10 @@ std::string obstacle(const SettingValues& values) {
 
 std::string figures(const MemoryNeed& need) {
     return fmt::format(
-        "{:.2f} GiB (scene {:.2f}, frame {:.2f}, photon maps {:.2f}, buckets {:.2f})",
+        "{:.2f} GiB (scene {:.2f}, frame {:.2f}, photon maps {:.2f}, buckets {:.2f}, process "
+        "{:.2f})",
         toGib(need.total()), toGib(need.scene), toGib(need.frame), toGib(need.maps),
-        toGib(need.buckets));
+        toGib(need.buckets), toGib(need.process));
 }
 
 }  // namespace
@@ -71,14 +91,16 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
     };
     MemoryPlan memory;
     memory.limit = memoryLimitBytes(values.number(Setting::kMemoryLimit));
-    memory.whole = {scene.memoryBytes(), frameBytes(settings.window), plan.mapBytes,
+    memory.whole = {scene.memoryBytes(), frameBytes(settings.window), mapBytes(plan, 1),
                     threads * bucketSize * bucketSize *
                             static_cast<std::uint64_t>(layout.count + 1) * sizeof(float) +
-                        grid.cellCount() * sizeof(PmrBucketInfo) * 2};
+                        grid.cellCount() * sizeof(PmrBucketInfo) * 2,
+                    kProgramBytes + hostBytes(values)};
     // Without pixels there is no frame, whatever the delivery.
     const bool photonsOnly = values.integer(Setting::kPhotonsOnly) != 0;
     if (photonsOnly)
-        memory.whole = {scene.memoryBytes(), 0, plan.landingsPerPass() * kTracedBytesPerPhoton, 0};
+        memory.whole = {scene.memoryBytes(), 0, plan.landingsPerPass() * kTracedBytesPerPhoton, 0,
+                        kProgramBytes};
     memory.need = memory.whole;
     if (photonsOnly) return memory;
     const std::string& delivery = values.word(Setting::kDelivery);
@@ -97,7 +119,8 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
         std::min<std::uint64_t>(kBucketsHeldPerThread * threads, grid.cellCount()));
     const auto side = static_cast<std::int32_t>(bucketSize);
     memory.need.frame = memory.bucketsHeld * frameBytes({0, 0, side, side});
-    memory.need.maps = plan.mapBytes * settings.passes;
+    memory.need.maps = mapBytes(plan, settings.passes);
+    memory.need.process = kProgramBytes;
     memory.need.buckets =
         threads * kAtomPixels * static_cast<std::uint64_t>(layout.count + 4) * sizeof(float) +
         grid.cellCount() * kCellBytes + BucketErrors::memoryBytes(grid);

@@ -15,7 +15,8 @@ namespace pm::plugin {
 // What a render needs, in bytes.
 struct MemoryNeed {
     std::uint64_t scene = 0, frame = 0, maps = 0, buckets = 0;
-    std::uint64_t total() const { return scene + frame + maps + buckets; }
+    std::uint64_t process = 0;  // program and libraries, and a host's copy of the layers
+    std::uint64_t total() const { return scene + frame + maps + buckets + process; }
 };
 
 // How a render holds its pixels: the whole frame, one pass after the other over all buckets; or

@@ -41,7 +41,7 @@ MergeObject::Picture::Picture(PieceHead partHead, std::string fileName)
     settings.setInteger("passes", head.passes);
     const RenderSettings render = settings.toRenderSettings();
     layout = channelLayout(render);
-    frame = std::make_unique<FrameStore>(makeFrame(render));
+    frame = std::make_unique<FrameStore>(makeFrame(render, false));
     files.resize(head.bucketCount);
 }
 
@@ -92,6 +92,7 @@ void MergeObject::addPart(const std::string& file) {
 void MergeObject::addBucket(const std::string& file, std::uint32_t index, const Rect& rect,
                             std::span<const std::byte> sums) {
     const std::string& other = m_picture->files.at(index);
+    m_picture->bucketSize = std::max({m_picture->bucketSize, rect.width(), rect.height()});
     if (other.empty()) {
         try {
             FrameStoreBytes::restore(*m_picture->frame, rect, sums);
@@ -155,7 +156,7 @@ std::string MergeObject::statisticsJson() const {
     json["passesDone"] = head.passes;
     json["passesPlanned"] = head.passes;
     addError(picture().frame->estimateError(), json);
-    json["buckets"] = {{"count", head.bucketCount}};
+    json["buckets"] = {{"count", head.bucketCount}, {"sizePixels", picture().bucketSize}};
     json["settings"] = settingsJson(picture().settings);
     return json.dump(2, ' ', false, Json::error_handler_t::replace);
 }

@@ -53,6 +53,7 @@ class MergeObject {
         SettingValues settings;
         ChannelLayout layout;
         std::unique_ptr<FrameStore> frame;
+        std::int32_t bucketSize = 0;     // pixels; of the buckets that are there
         std::vector<std::string> files;  // of which part each bucket is, in order; empty: missing
     };
     const Picture& picture() const;

@@ -17,7 +17,7 @@ constexpr double kForeseenWeight = 0.1;  // of a phase: as much does what was fo
 constexpr double kMostOnTheWay = 0.99;   // of a target that may lie further than foreseen
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 // Passes before the first one that goes by what others have found.
-constexpr std::uint32_t kEvenPasses = 2;
+constexpr std::uint32_t kEvenPasses = 1;
 }  // namespace
 
 std::optional<double> ProgressClock::Phase::cost(double now) const {

@@ -27,8 +27,8 @@ class ProgressClock {
         std::optional<double> passes{};       // by their number
         std::optional<double> seconds{};      // since the clock was made
         std::optional<double> errorPasses{};  // to the error target, as far as can be foreseen
-        // What the buckets of a pass cost from the third on, over those of the first two: a guess
-        // for as long as nothing is measured.
+        // What the buckets of a pass cost from the second on, over those of the first: a guess for
+        // as long as nothing is measured.
         double growth = 1.0;
     };
 

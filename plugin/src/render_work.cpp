@@ -35,7 +35,7 @@ double processorSeconds() {
     return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-// Buckets of adaptive passes over those of the first two, which know nothing yet.
+// Buckets of adaptive passes over those of the first, which knows nothing yet.
 constexpr double kAdaptiveGrowth = 1.25;
 
 ProgressClock::Ends endsOf(const StopRule& rule, bool isAdaptive) {
@@ -77,11 +77,12 @@ RenderWork::RenderWork(std::shared_ptr<const Scene> scene, const Identity& scene
     makeRenderer();
     if (m_memory.byBuckets) {
         m_buckets = std::make_unique<BucketPasses>(
-            BucketPasses::Frame{m_settings, m_grid, m_order, m_orderIndex, m_arena.threads()},
+            BucketPasses::Frame{m_settings, m_grid, m_order, m_orderIndex, m_arena.threads(),
+                                m_plan.tracePhotons},
             m_memory.bucketsHeld);
         return;
     }
-    m_frame = std::make_shared<FrameStore>(makeFrame(m_settings));
+    m_frame = std::make_shared<FrameStore>(makeFrame(m_settings, m_plan.tracePhotons));
     const Scratch scratch{std::vector<float>(static_cast<std::size_t>(kAtomPixels) *
                                              static_cast<std::size_t>(m_layout.count)),
                           std::vector<SampleRun>(kAtomPixels)};

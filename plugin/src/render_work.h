@@ -82,7 +82,7 @@ class RenderWork {
     Progress progress() const;
     RenderCounters counters() const { return m_renderer->counters(); }
     const Scene& scene() const { return *m_scene; }
-    const Plan& plan() const { return m_plan; }
+    const Plan& plan() const { return m_renderer->plan(); }  // with what its pilot found
     const RenderPhotons& photons() const { return m_photons; }
     const MemoryPlan& memory() const { return m_memory; }
     // The pixels that can be read now; by buckets null where no bucket is being delivered.

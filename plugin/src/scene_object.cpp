@@ -13,6 +13,7 @@
 #include "plugin/src/call_error.h"
 #include "plugin/src/entry.h"
 #include "plugin/src/identity.h"
+#include "plugin/src/leave_behind.h"
 #include "plugin/src/light_reader.h"
 #include "plugin/src/transform_reader.h"
 #include "scheduler/worker_arena.h"
@@ -180,16 +181,25 @@ void SceneObject::commit() {
     std::unique_lock lock(m_mutex);
     requireOpen();
     SceneDescription description = m_description;
+    // Their own list: what a cancel leaves behind may still read it when more are added to this.
+    const auto textures = std::make_shared<SceneTextures>(*m_textures);
     if (description.environment)
-        description.environment->texture = m_textures->add(m_environmentTexture);
-    description.textures = m_textures;
+        description.environment->texture = textures->add(m_environmentTexture);
+    description.textures = textures;
     const auto start = std::chrono::steady_clock::now();
-    WorkerArena arena(m_context->threads());
-    auto built = arena.execute([&] {
-        return Scene::build(std::move(description), m_context->isa(), m_context->buildCheck());
-    });
-    m_identity = sceneIdentity(*built, *m_textures);
+    auto [built, identity] = runLeavable(
+        m_context->buildCheck(), "building the scene",
+        [description = std::move(description), textures, threads = m_context->threads(),
+         isa = m_context->isa()](const CancelCheck& cancel) mutable {
+            WorkerArena arena(threads);
+            auto scene =
+                arena.execute([&] { return Scene::build(std::move(description), isa, cancel); });
+            Identity identity = sceneIdentity(*scene, *textures, cancel);
+            return std::pair(std::move(scene), std::move(identity));
+        });
+    m_identity = std::move(identity);
     m_scene = std::move(built);
+    m_textures = textures;
     m_buildSeconds =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     m_description = {};

@@ -16,6 +16,11 @@ namespace pm::plugin {
 // The textures of one scene, numbered. Filled while the scene is built, then const.
 class SceneTextures final : public TextureSource {
   public:
+    SceneTextures() = default;
+    // The same textures, no failures.
+    SceneTextures(const SceneTextures& other) : m_textures(other.m_textures) {}
+    SceneTextures& operator=(const SceneTextures&) = delete;
+
     // The number of a texture here, given on first sight; kNoTexture for null. One thread.
     std::int32_t add(const std::shared_ptr<TextureObject>& texture);
 

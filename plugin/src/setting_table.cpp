@@ -38,12 +38,13 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
      "not cover; with a higher aaLevelMost they are divided where their first two samples differ.",
      "Each level takes four times the time of the one before."},
     {Setting::kAaLevelMost, "aaLevelMost", PMR_SETTING_INTEGER, "", "5", 0, 6, 1, "", true,
-     "The most that a pixel gets whose samples differ, from the third pass on; aaLevel or less: "
+     "The most that a pixel gets whose samples differ, from the second pass on; aaLevel or less: "
      "every pixel gets the same.",
      "Time goes to the pixels that need it; up to 400 bytes a pixel in place of 250."},
     {Setting::kAaThreshold, "aaThreshold", PMR_SETTING_NUMBER, "", "0.01", 0, 1, 1, "", true,
      "A pixel gets samples, from aaLevel to aaLevelMost, until one more in four passes would lower "
-     "its squared relative error by less than this squared; from the fifth pass on, half of this.",
+     "its squared relative error by less than this squared; from the fifth pass on, half of this. "
+     "Without photons, a quarter of either.",
      "Halved, noisy pixels get twice the samples."},
     {Setting::kFilter, "filter", PMR_SETTING_CHOICE, "", "box", 0, 0, 1, "box,gaussian", true,
      "How the frame around a pixel counts in it: box, all of the pixel alike; gaussian, by a "

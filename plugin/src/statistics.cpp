@@ -64,9 +64,13 @@ Json bucketJson(const RenderWork& work, const RenderWork::Progress& progress) {
 
 Json memoryJson(const RenderWork& work, const RenderCounters& counters) {
     const MemoryNeed& need = work.memory().need;
-    return {{"sceneBytes", need.scene},          {"frameBytes", need.frame},
-            {"mapBytes", counters.peakMapBytes}, {"plannedMapBytes", need.maps},
-            {"bucketBytes", need.buckets},       {"peakResidentBytes", peakResidentBytes()}};
+    return {{"sceneBytes", need.scene},
+            {"frameBytes", need.frame},
+            {"mapBytes", counters.peakMapBytes},
+            {"plannedMapBytes", need.maps},
+            {"bucketBytes", need.buckets},
+            {"processBytes", need.process},
+            {"peakResidentBytes", peakResidentBytes()}};
 }
 
 Json warningsJson(const Scene& scene, RenderWork& work) {
@@ -82,13 +86,14 @@ Json warningsJson(const Scene& scene, RenderWork& work) {
     return json;
 }
 
-Json planJson(const Plan& plan) {
+Json planJson(const Plan& plan, const RenderCounters& counters) {
     return {{"tracePhotons", plan.tracePhotons},
             {"globalMap", plan.globalMap},
             {"causticMap", plan.causticMap},
             {"globalPhotonsPerPass", plan.globalPhotons},
-            {"gatherRaysPerPoint", plan.gatherRays},
+            {"gatherRaysPerPoint", counters.gatherRaysOfPoint},
             {"causticPhotonsPerPass", plan.causticPhotons},
+            {"lampSamples", plan.lampSamples},
             {"lines", plan.reasons}};
 }
 
@@ -165,7 +170,7 @@ std::string Render::statisticsJson() const {
     json["counters"]["triangles"] = running->scene().triangleCount();
     json["buckets"] = bucketJson(*running, progress);
     json["memory"] = memoryJson(*running, counters);
-    json["plan"] = planJson(running->plan());
+    json["plan"] = planJson(running->plan(), counters);
     json["warnings"] = warningsJson(running->scene(), *running);
     json["settings"] = settingsJson(settings());
     // Names of files may hold bytes that are no UTF-8; they are replaced rather than thrown at.

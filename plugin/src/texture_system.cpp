@@ -73,15 +73,22 @@ bool isFinite(const Texel& texel) {
 
 }  // namespace
 
-std::array<std::uint64_t, 2> texelHash(const std::string& fileName) {
+std::array<std::uint64_t, 2> texelHash(const std::string& fileName, const CancelCheck& cancel) {
     const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(fileName);
     if (!input) throwUnreadable(fileName, OIIO::geterror());
     const OIIO::ImageSpec& spec = input->spec();
     const std::array<std::int64_t, 4> shape = {spec.width, spec.height, spec.nchannels,
                                                spec.format.basetype};
     std::vector<std::byte> texels(spec.image_bytes(true));
-    if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UNKNOWN, texels.data()))
-        throwUnreadable(fileName, input->geterror());
+    CancelCheck check = cancel;
+    const auto isCancelled = [](void* user, float) {
+        return static_cast<const CancelCheck*>(user)->isSet();
+    };
+    const bool good = input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UNKNOWN,
+                                        texels.data(), OIIO::AutoStride, OIIO::AutoStride,
+                                        OIIO::AutoStride, isCancelled, &check);
+    cancel.throwIfSet("reading texels");
+    if (!good) throwUnreadable(fileName, input->geterror());
     const XXH128_hash_t ofShape = XXH3_128bits(shape.data(), sizeof shape);
     const XXH128_hash_t hash = XXH3_128bits_withSeed(texels.data(), texels.size(), ofShape.low64);
     return {hash.low64, hash.high64};

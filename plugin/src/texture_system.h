@@ -11,6 +11,7 @@
 #include <string>
 
 #include "integrator/scene/texture_source.h"
+#include "integrator/values/cancel_check.h"
 #include "integrator/values/vec.h"
 #include "plugin/include/pm_plugin.h"
 
@@ -31,8 +32,9 @@ struct TexturePicture {
 };
 
 // Checksum (XXH3, 128 bits) of a picture's size, channels and finest level, texel by texel: the
-// same picture in another file or of another date has the same. Throws CallError(IO).
-std::array<std::uint64_t, 2> texelHash(const std::string& fileName);
+// same picture in another file or of another date has the same. Throws CallError(IO);
+// Error(kCancelled) soon after cancel is set.
+std::array<std::uint64_t, 2> texelHash(const std::string& fileName, const CancelCheck& cancel);
 
 // A texture cache of our own: neither its contents nor its options mix with another user of the
 // same library in this process. Options that change values are all set here, so that what the

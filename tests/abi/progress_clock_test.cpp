@@ -96,13 +96,13 @@ TEST(ProgressClock, AnErrorTargetIsForeseen) {
 struct Course {
     double now = 0;
     double photonSeconds = 3, bucketSeconds = 7;
-    double growth = 1;          // of the buckets from the third pass on
+    double growth = 1;          // of the buckets from the second pass on
     std::uint32_t resumed = 0;  // passes
     double share = 0;           // and of the next
     std::uint32_t passes = 6;
 
     double bucketsOf(std::uint32_t pass) const {
-        return pass < 2 ? bucketSeconds : growth * bucketSeconds;
+        return pass < 1 ? bucketSeconds : growth * bucketSeconds;
     }
     double length() const {
         double seconds = 0;
@@ -129,7 +129,7 @@ struct Course {
                 look(clock.buckets(pass, from + (1 - from) * i / kSteps), end - now);
             }
             clock.endPass(photonSeconds, bucketsOf(pass) * (1 - from), {},
-                          pass == 1 ? growth : 1.0);
+                          pass == 0 ? growth : 1.0);
         }
     }
 };
@@ -162,8 +162,8 @@ TEST(ProgressClock, AdaptivePassesAreForeseen) {
     ProgressClock clock({6, {}, {}, 2.5}, true, [&] { return course.now; });
     course.run(clock, [&](const ProgressClock::Reading& reading, double truth) {
         if (course.now < 2) return;
-        // By the guess at first, exactly once the third pass's samples are allotted.
-        const bool isAllotted = course.now > 20.01;
+        // By the guess at first, exactly once the second pass's samples are allotted.
+        const bool isAllotted = course.now > 10.01;
         EXPECT_NEAR(truth, reading.remainingSeconds, isAllotted ? 1e-6 : 0.25 * truth)
             << course.now;
     });

@@ -47,6 +47,30 @@ TEST(Statistics, OfAFinishedRender) {
     EXPECT_EQ(PMR_OK, api().destroyRender(render));
 }
 
+// What is planned decides what is refused: it must hold what is used, and not be far above it.
+TEST(Statistics, MapsTakeNoMoreThanPlanned) {
+    constexpr double kPatches = 32 << 20;  // of surfaces, kept as there is room
+    const BoxHost host;
+    for (const char* photons : {"100", "2000", "20000", "200000"})
+        for (const char* size : {"40", "320"}) {
+            const PmrRender render = host.makeRender({{"passes", "1"},
+                                                      {"photons", photons},
+                                                      {"width", size},
+                                                      {"height", size},
+                                                      {"crop", "0,0,8,8"}});
+            ASSERT_EQ(PMR_OK, api().startRender(render)) << host.lastError();
+            ASSERT_EQ(PMR_OK, api().waitRender(render, -1.0)) << host.lastError();
+            const nlohmann::json memory = statistics(render)["memory"];
+            const auto used = memory["mapBytes"].get<double>();
+            const auto planned = memory["plannedMapBytes"].get<double>();
+            EXPECT_GT(used, 0);
+            EXPECT_LE(used, planned - kPatches) << photons << " photons, " << size << " pixels";
+            EXPECT_LE(planned - kPatches, 8 * used) << photons << " photons, " << size << " pixels";
+            EXPECT_GT(memory["processBytes"].get<double>(), 0);
+            EXPECT_EQ(PMR_OK, api().destroyRender(render));
+        }
+}
+
 // Checksums tell renders apart that have other pixels, and none that have not.
 TEST(Statistics, HashesNameTheRender) {
     using Settings = std::map<std::string, std::string>;

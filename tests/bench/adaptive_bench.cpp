@@ -89,7 +89,7 @@ class AdaptiveBench {
   private:
     RenderSettings settings(std::uint32_t least, std::uint32_t most, double threshold) const;
     Truth truthOf(const AdaptiveScene& adaptive, const std::shared_ptr<const Scene>& scene) const;
-    std::vector<Rival> rivals(const Known& known) const;
+    std::vector<Rival> rivals(const Scene& scene, const Known& known) const;
     void measure(const AdaptiveScene& adaptive);
     void tell(const AdaptiveScene& adaptive, const std::vector<Rival>& rivals);
 
@@ -132,8 +132,9 @@ Truth AdaptiveBench::truthOf(const AdaptiveScene& adaptive,
     return truth;
 }
 
-// The fixed level, the adaptive ways, and the oracle by each of its thresholds.
-std::vector<Rival> AdaptiveBench::rivals(const Known& known) const {
+// The fixed level, the adaptive ways, the same with known spreads, and the oracle by each of its
+// thresholds.
+std::vector<Rival> AdaptiveBench::rivals(const Scene& scene, const Known& known) const {
     std::vector<Rival> result = {{"fixed", {settings(kFixedLevel, 0, 0.01), {}}, {}}};
     for (const std::string& range : m_options.levels) {
         const auto least = static_cast<std::uint32_t>(range[0] - '0');
@@ -143,51 +144,61 @@ std::vector<Rival> AdaptiveBench::rivals(const Known& known) const {
                               {settings(least, most, threshold), {}},
                               {}});
     }
+    for (std::size_t i = 1, adaptives = result.size(); i < adaptives; ++i) {
+        const RenderSettings& s = result[i].way.settings;
+        const SampleRule rule =
+            sampleRule(s.aaLevel, s.aaLevelMost, s.aaThreshold, makePlan(scene, s).tracePhotons);
+        result.push_back(
+            {result[i].name + ", known", {s, samplesBySpread(rule, known.spread)}, {}});
+    }
     const RenderSettings first = result[1].way.settings;
     const SampleRule rule = sampleRule(first.aaLevel, first.aaLevelMost, 0.01);
     for (const double threshold : m_options.oracles)
         result.push_back({fmt::format("oracle, {}", threshold),
                           {settings(kFixedLevel, 0, 0.01),
-                           oracleSamples(known, rule.least, rule.most, threshold)},
+                           alwaysSamples(oracleSamples(known, rule.least, rule.most, threshold))},
                           {}});
     return result;
 }
 
 void AdaptiveBench::tell(const AdaptiveScene& adaptive, const std::vector<Rival>& rivals) {
-    const std::size_t adaptives = rivals.size() - 1 - m_options.oracles.size();
+    const std::size_t adaptives = (rivals.size() - 1 - m_options.oracles.size()) / 2;
     std::vector<std::size_t> all(rivals[0].curves.size());
     for (std::size_t i = 0; i < all.size(); ++i) all[i] = i;
-    const auto bestOracle = [&](const std::vector<double>& gains) {
-        return *std::max_element(gains.begin() + static_cast<std::ptrdiff_t>(adaptives),
-                                 gains.end());
-    };
     for (std::uint32_t passes = 4; passes <= m_options.passes; passes *= 2) {
         const std::vector<double> gains = gainsOf(rivals, passes, all);
-        std::vector<std::vector<double>> resampled(gains.size());
-        std::vector<double> oracle;
-        std::vector<std::vector<double>> shares(adaptives);
+        std::vector<std::vector<double>> resampled;
         std::mt19937_64 random(1);
-        const auto shareOf = [&](const std::vector<double>& g, std::size_t i) {
-            return (g[i] - 1) / (bestOracle(g) - 1);
-        };
         for (int k = 0; k < kResamples; ++k) {
             std::vector<std::size_t> some;
             for (std::size_t i = 0; i < all.size(); ++i) some.push_back(random() % all.size());
-            const std::vector<double> g = gainsOf(rivals, passes, some);
-            for (std::size_t i = 0; i < g.size(); ++i) resampled[i].push_back(g[i]);
-            oracle.push_back(bestOracle(g));
-            for (std::size_t i = 0; i < adaptives; ++i) shares[i].push_back(shareOf(g, i));
+            resampled.push_back(gainsOf(rivals, passes, some));
         }
+        // Of all gains, and of those drawn anew.
+        const auto cell = [&](const auto& value) {
+            std::vector<double> values;
+            for (const std::vector<double>& g : resampled) values.push_back(value(g));
+            return interval(value(gains), values);
+        };
+        const auto best = [&](const std::vector<double>& g) {
+            return *std::max_element(g.begin() + static_cast<std::ptrdiff_t>(2 * adaptives),
+                                     g.end());
+        };
         std::string what;
-        for (std::size_t i = adaptives; i < gains.size(); ++i)
+        for (std::size_t i = 2 * adaptives; i < gains.size(); ++i)
             what += fmt::format(" {}={:.2f}", rivals[i + 1].name, gains[i]);
         fmt::print(stderr, "  {} passes: {}\n", passes, what);
-        for (std::size_t i = 0; i < adaptives; ++i)
-            m_report.row(
-                {adaptive.key, rivals[i + 1].name, std::to_string(passes),
-                 show(meanCurve(rivals[0], all).errors[passes - 1]),
-                 interval(gains[i], resampled[i]), interval(bestOracle(gains), oracle),
-                 bestOracle(gains) < kLeastGain ? "" : interval(shareOf(gains, i), shares[i])});
+        for (std::size_t i = 0; i < adaptives; ++i) {
+            const auto own = [i](const auto& g) { return g[i]; };
+            const auto known = [i, adaptives](const auto& g) { return g[adaptives + i]; };
+            const auto shareOf = [&](const auto& other) {
+                if (other(gains) < kLeastGain) return std::string();
+                return cell([&](const auto& g) { return (own(g) - 1) / (other(g) - 1); });
+            };
+            m_report.row({adaptive.key, rivals[i + 1].name, std::to_string(passes),
+                          show(meanCurve(rivals[0], all).errors[passes - 1]), cell(own),
+                          cell(known), shareOf(known), cell(best), shareOf(best)});
+        }
     }
 }
 
@@ -209,7 +220,7 @@ void AdaptiveBench::measure(const AdaptiveScene& adaptive) {
                "its square {:.3e}; sample {:.4f} s, pass {:.4f} s\n",
                adaptive.key, truthSeconds, truth.ownNoise(), knownSeconds, known.shared, spread,
                square, known.sampleSeconds, known.passSeconds);
-    std::vector<Rival> all = rivals(known);
+    std::vector<Rival> all = rivals(*scene, known);
     std::vector<Way> ways;
     for (const Rival& rival : all) ways.push_back(rival.way);
     for (int seed = 1; seed <= m_options.seeds; ++seed) {
@@ -225,10 +236,11 @@ void AdaptiveBench::run() {
     m_report.paragraph(machineLine());
     m_report.table(
         fmt::format("Processor time of fixed level 3 over that of adaptive samples and of the "
-                    "oracle, to the same true relMSE: {0} x {0} pixels, {1} seeds, 95 % intervals",
+                    "oracles, to the same true relMSE: {0} x {0} pixels, {1} seeds, 95 % intervals",
                     m_options.size, m_options.seeds),
         {"scene", "levels, threshold", "passes of level 3", "relMSE", "fixed / adaptive",
-         "fixed / oracle", "share of the oracle's gain"});
+         "fixed / the same, variance known", "share of that gain", "fixed / oracle by hindsight",
+         "share of that gain"});
     if (!std::filesystem::exists(m_options.peers / "scenes.json"))
         fmt::print(stderr, "neutral scenes: skipped, no scenes.json in the folder of peers\n");
     for (const AdaptiveScene& scene : adaptiveScenes(m_options.peers))

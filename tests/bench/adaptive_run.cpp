@@ -9,10 +9,10 @@
 #include <atomic>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "scheduler/bucket_grid.h"
 #include "scheduler/frame_error.h"
-#include "tests/bench/pass_renderer.h"
 #include "tests/bench/picture_error.h"
 #include "tests/bench/timing.h"
 
@@ -164,6 +164,23 @@ std::vector<std::uint32_t> oracleSamples(const Known& known, std::uint32_t least
     return samples;
 }
 
+PassRenderer::Chooser alwaysSamples(std::vector<std::uint32_t> samples) {
+    return [samples = std::move(samples)](std::uint32_t pass, std::size_t pixel, SampleRun& run) {
+        run = {pass / 2 * samples[pixel], samples[pixel], 0};
+    };
+}
+
+PassRenderer::Chooser samplesBySpread(const SampleRule& rule, std::vector<double> spread) {
+    return
+        [rule, spread = std::move(spread)](std::uint32_t pass, std::size_t pixel, SampleRun& run) {
+            std::uint32_t allotted = pass;
+            while (allotted > 0 && !allotsAfter(allotted)) --allotted;
+            const std::uint32_t samples =
+                allotted > 0 ? samplesOfSpread(rule, allotted, spread[pixel]) : rule.least;
+            run.count = samplesOfNextPass(rule, samples, run.first, pass / 2);
+        };
+}
+
 std::vector<TimedErrors> takeTurns(const std::shared_ptr<const Scene>& scene, const Truth& truth,
                                    const std::vector<Way>& ways, std::uint64_t seed, int threads) {
     constexpr double kLonger = 1.1;
@@ -180,7 +197,7 @@ std::vector<TimedErrors> takeTurns(const std::shared_ptr<const Scene>& scene, co
             RenderSettings settings = ways[i].settings;
             settings.seed = seed;
             renderers[i] = std::make_unique<PassRenderer>(
-                scene, settings, makePlan(*scene, settings), threads, ways[i].samples);
+                scene, settings, makePlan(*scene, settings), threads, ways[i].choose);
         }
         renderers[i]->next();
         spent[i] += processorSeconds() - start;

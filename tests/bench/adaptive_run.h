@@ -11,6 +11,8 @@
 
 #include "integrator/scene/scene.h"
 #include "integrator/transport/render_settings.h"
+#include "scheduler/sample_allotment.h"
+#include "tests/bench/pass_renderer.h"
 
 namespace pm::bench {
 
@@ -44,10 +46,17 @@ Known measureKnown(const std::shared_ptr<const Scene>& scene, const RenderSettin
 std::vector<std::uint32_t> oracleSamples(const Known& known, std::uint32_t least,
                                          std::uint32_t most, double threshold);
 
-// One way to render. samples: of each pixel in every pass; empty: as the settings say.
+// Those in every pass of a fixed level.
+PassRenderer::Chooser alwaysSamples(std::vector<std::uint32_t> samples);
+
+// The samples of an adaptive render that knows each pixel's spread, and otherwise obeys the rule,
+// the first pass with the least included.
+PassRenderer::Chooser samplesBySpread(const SampleRule& rule, std::vector<double> spread);
+
+// One way to render. choose: empty: as the settings say.
 struct Way {
     RenderSettings settings;
-    std::vector<std::uint32_t> samples;
+    PassRenderer::Chooser choose;
 };
 
 // relMSE and processor seconds so far, after each pass.

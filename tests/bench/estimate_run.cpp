@@ -57,7 +57,7 @@ void PassSource::forEachPass(const RenderSettings& settings, const UsePass& useP
 }
 
 std::vector<Judged> PassSource::judged(const RenderSettings& settings) const {
-    FrameStore store = plugin::makeFrame(settings);
+    FrameStore store = plugin::makeFrame(settings, true);
     std::vector<Judged> result;
     forEachPass(settings, [&](std::uint32_t pass, const auto& pixels, const auto& weights) {
         store.addPass(pass, settings.window, pixels, weights);
@@ -71,7 +71,7 @@ std::vector<Judged> PassSource::judged(const RenderSettings& settings) const {
 }
 
 Halves PassSource::halves(const RenderSettings& settings) const {
-    FrameStore even = plugin::makeFrame(settings), odd = plugin::makeFrame(settings);
+    FrameStore even = plugin::makeFrame(settings, true), odd = plugin::makeFrame(settings, true);
     forEachPass(settings, [&](std::uint32_t pass, const auto& pixels, const auto& weights) {
         (pass % 2 == 0 ? even : odd).addPass(pass, settings.window, pixels, weights);
     });

@@ -33,11 +33,11 @@ std::vector<double> channelsOf(const FrameStore& store, std::int32_t first) {
 }
 
 PassRenderer::PassRenderer(std::shared_ptr<const Scene> scene, const RenderSettings& settings,
-                           const Plan& plan, int threads, std::vector<std::uint32_t> samples)
+                           const Plan& plan, int threads, Chooser choose)
     : m_settings(settings),
-      m_samples(std::move(samples)),
+      m_choose(std::move(choose)),
       m_arena(threads),
-      m_frame(plugin::makeFrame(settings)),
+      m_frame(plugin::makeFrame(settings, plan.tracePhotons)),
       m_pass(settings) {
     m_renderer = m_arena.execute(
         [&] { return std::make_unique<FrameRenderer>(std::move(scene), m_settings, plan); });
@@ -67,11 +67,8 @@ void PassRenderer::renderStrips() {
         const auto area = static_cast<std::size_t>(strip.area());
         const std::size_t first = static_cast<std::size_t>(i * kRows) * width;
         std::vector<SampleRun> runs(area);
-        if (m_samples.empty()) plugin::findSamples(m_settings, m_frame, m_passes, strip, runs);
-        for (std::size_t k = 0; k < m_samples.size() && k < area; ++k) {
-            const std::uint32_t count = m_samples[first + k];
-            runs[k] = {m_passes / 2 * count, count, 0};
-        }
+        plugin::findSamples(m_settings, m_frame, m_passes, strip, runs);
+        for (std::size_t k = 0; m_choose && k < area; ++k) m_choose(m_passes, first + k, runs[k]);
         std::ranges::transform(runs, m_pass.weights.begin() + static_cast<std::ptrdiff_t>(first),
                                [](const SampleRun& run) { return run.weight(); });
         m_renderer->renderRegion(

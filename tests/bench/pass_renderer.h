@@ -6,6 +6,7 @@
 #include <tbb/task_arena.h>
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -28,10 +29,14 @@ std::vector<double> channelsOf(const FrameStore& store, std::int32_t first);
 // Threads: one at a time; works in a TBB arena of its own.
 class PassRenderer {
   public:
-    // The sides of the settings' window are multiples of 8 pixels. threads: of the render. samples:
-    // of each pixel in every pass of a render that is not adaptive; empty: as the settings say.
+    // Changes the samples of a pixel, row by row of the frame, in a pass from what the settings
+    // say. Called at once for several pixels.
+    using Chooser = std::function<void(std::uint32_t pass, std::size_t pixel, SampleRun& run)>;
+
+    // The sides of the settings' window are multiples of 8 pixels. threads: of the render. choose:
+    // empty: as the settings say.
     PassRenderer(std::shared_ptr<const Scene> scene, const RenderSettings& settings,
-                 const Plan& plan, int threads, std::vector<std::uint32_t> samples = {});
+                 const Plan& plan, int threads, Chooser choose = {});
 
     // Renders the next pass and adds it to the frame. Returns it, until the next call.
     const Pass& next();
@@ -42,7 +47,7 @@ class PassRenderer {
     void renderStrips();
 
     RenderSettings m_settings;
-    std::vector<std::uint32_t> m_samples;
+    Chooser m_choose;
     tbb::task_arena m_arena;
     std::unique_ptr<FrameRenderer> m_renderer;
     FrameStore m_frame;

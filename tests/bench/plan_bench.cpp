@@ -88,6 +88,11 @@ constexpr Number kNumbers[] = {
          n.plan.gatherRays = times(n.plan.gatherRays, factor);
          return n.plan.globalMap;
      }},
+    {"lamp samples of a camera sample",
+     [](Numbers& n, double factor) {
+         n.plan.lampSamples = times(n.plan.lampSamples, factor);
+         return n.plan.lampSamples > 0;
+     }},
     {"photons to an estimate",
      [](Numbers& n, double factor) {
          n.settings.estimatePhotons = times(n.settings.estimatePhotons, factor);
@@ -152,8 +157,8 @@ class PlanBench {
 
   private:
     void measure(const PlanScene& planScene);
-    Numbers asPlanned(const Scene& scene) const;
-    std::vector<Variant> variants(const Scene& scene) const;
+    Numbers asPlanned(const std::shared_ptr<const Scene>& scene) const;
+    std::vector<Variant> variants(const std::shared_ptr<const Scene>& scene) const;
     Yardstick reference(const std::shared_ptr<const Scene>& scene, std::uint32_t passes) const;
     std::unique_ptr<PassRenderer> begin(const std::shared_ptr<const Scene>& scene,
                                         const Numbers& numbers, std::uint64_t seed) const;
@@ -171,7 +176,7 @@ class PlanBench {
     std::vector<std::vector<std::string>> m_sceneRows;
 };
 
-Numbers PlanBench::asPlanned(const Scene& scene) const {
+Numbers PlanBench::asPlanned(const std::shared_ptr<const Scene>& scene) const {
     RenderSettings settings;
     settings.width = settings.height = m_options.size;
     settings.window = {0, 0, m_options.size, m_options.size};
@@ -179,10 +184,11 @@ Numbers PlanBench::asPlanned(const Scene& scene) const {
     settings.aaLevelMost = kLevelMost;
     settings.aaThreshold = kThreshold;
     settings.passes = m_options.mostPasses;
-    return {settings, makePlan(scene, settings)};
+    // With what the pilot of seed 1 finds.
+    return {settings, FrameRenderer(scene, settings).plan()};
 }
 
-std::vector<Variant> PlanBench::variants(const Scene& scene) const {
+std::vector<Variant> PlanBench::variants(const std::shared_ptr<const Scene>& scene) const {
     const Numbers planned = asPlanned(scene);
     std::vector<Variant> result = {{0, 1, planned, {}, 0, 0}};
     for (std::size_t i = 0; i < std::size(kNumbers); ++i) {
@@ -206,7 +212,7 @@ std::unique_ptr<PassRenderer> PlanBench::begin(const std::shared_ptr<const Scene
 
 Yardstick PlanBench::reference(const std::shared_ptr<const Scene>& scene,
                                std::uint32_t passes) const {
-    Numbers numbers = asPlanned(*scene);
+    Numbers numbers = asPlanned(scene);
     numbers.settings.estimatePhotons = kReferenceEstimate;
     numbers.settings.aaLevel = kReferenceLevel;
     numbers.plan.globalPhotons = times(numbers.plan.globalPhotons, kReferencePhotons);
@@ -298,7 +304,7 @@ void PlanBench::measure(const PlanScene& planScene) {
     const double referenceSeconds = processorSeconds() - start;
     fmt::print(stderr, "  reference: own noise {:.2e}, {:.1f} s\n", yardstick.ownNoise,
                referenceSeconds);
-    std::vector<Variant> all = variants(*scene);
+    std::vector<Variant> all = variants(scene);
     for (int seed = 1; seed <= m_options.seeds; ++seed)
         time(planScene, scene, yardstick, static_cast<std::uint64_t>(seed), all);
     tell(planScene, yardstick, all, referenceSeconds);

@@ -44,9 +44,16 @@ struct Estimates {
     double worst = 0;  // a corrected one's distance from 1
 };
 
+// How the area of a disc is found, as sites do it: by rays of each estimate, or by patches.
+enum class By { kRays, kPatches };
+const char* nameOf(By by) {
+    return by == By::kRays ? "by rays" : "by patches";
+}
+
 // Mean over some turns of the pattern and points from `at` on along `step`.
-Estimates estimate(const Scene& scene, const PhotonMap& map, Vec3d at, Vec3d step) {
-    const IrradianceSites sites(scene, map, kRadius);
+Estimates estimate(const Scene& scene, const PhotonMap& map, By by, Vec3d at, Vec3d step) {
+    const SurfacePatches patches(scene, kRadius);
+    const IrradianceSites sites(scene, map, kRadius, by == By::kPatches ? &patches : nullptr);
     Estimates mean;
     const int n = 16;
     for (int i = 0; i < n; ++i) {
@@ -77,20 +84,23 @@ TEST(Edges, OfAPlate) {
     std::vector<Photon> photons;
     light(photons, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0});
     const PhotonMap map(photons);
-    const Estimates middle = estimate(*scene, map, {0, 0, 0}, {0.01, 0.013, 0});
-    const Estimates edge = estimate(*scene, map, {-0.5, -0.9999, 0}, {0.05, 0, 0});
-    const Estimates corner = estimate(*scene, map, {-0.9999, -0.9999, 0}, {0, 0, 0});
-    report("middle", middle);
-    report("edge", edge);
-    report("corner", corner);
-    EXPECT_NEAR(middle.corrected, 1, 0.02);
-    EXPECT_NEAR(middle.narrow, 1, 0.02);
-    EXPECT_NEAR(edge.corrected, 1, 0.05);
-    EXPECT_NEAR(edge.narrow, 1, 0.05);
-    EXPECT_NEAR(edge.plain, 0.5, 0.03);
-    EXPECT_NEAR(corner.corrected, 1, 0.05);
-    EXPECT_NEAR(corner.narrow, 1, 0.05);
-    EXPECT_NEAR(corner.plain, 0.25, 0.03);
+    for (const By by : {By::kRays, By::kPatches}) {
+        SCOPED_TRACE(nameOf(by));
+        const Estimates middle = estimate(*scene, map, by, {0, 0, 0}, {0.01, 0.013, 0});
+        const Estimates edge = estimate(*scene, map, by, {-0.5, -0.9999, 0}, {0.05, 0, 0});
+        const Estimates corner = estimate(*scene, map, by, {-0.9999, -0.9999, 0}, {0, 0, 0});
+        report("middle", middle);
+        report("edge", edge);
+        report("corner", corner);
+        EXPECT_NEAR(middle.corrected, 1, 0.02);
+        EXPECT_NEAR(middle.narrow, 1, 0.02);
+        EXPECT_NEAR(edge.corrected, 1, 0.05);
+        EXPECT_NEAR(edge.narrow, 1, 0.05);
+        EXPECT_NEAR(edge.plain, 0.5, 0.03);
+        EXPECT_NEAR(corner.corrected, 1, 0.05);
+        EXPECT_NEAR(corner.narrow, 1, 0.05);
+        EXPECT_NEAR(corner.plain, 0.25, 0.03);
+    }
 }
 
 // Where walls meet: their photons belong to them.
@@ -103,21 +113,24 @@ TEST(Edges, OfARoom) {
     light(photons, {-1, -1, -1}, {0, 2, 0}, {0, 0, 2});
     light(photons, {-1, -1, -1}, {0, 0, 2}, {2, 0, 0});
     const PhotonMap map(photons);
-    const Estimates edge = estimate(*scene, map, {-0.9999, -0.5, -1}, {0, 0.05, 0});
-    const Estimates corner = estimate(*scene, map, {-0.9999, -0.9999, -1}, {0, 0, 0});
-    const Estimates near = estimate(*scene, map, {-0.98, -0.5, -1}, {0, 0.05, 0});
-    report("wall", edge);
-    report("wall, .4 radii away", near);
-    report("corner of three walls", corner);
-    EXPECT_NEAR(edge.corrected, 1, 0.05);
-    EXPECT_NEAR(edge.narrow, 1, 0.05);
-    EXPECT_NEAR(edge.plain, 0.5, 0.03);
-    EXPECT_NEAR(near.corrected, 1, 0.05);
-    EXPECT_NEAR(near.narrow, 1, 0.05);
-    EXPECT_LT(near.plain, 0.8);
-    EXPECT_NEAR(corner.corrected, 1, 0.05);
-    EXPECT_NEAR(corner.narrow, 1, 0.05);
-    EXPECT_NEAR(corner.plain, 0.25, 0.03);
+    for (const By by : {By::kRays, By::kPatches}) {
+        SCOPED_TRACE(nameOf(by));
+        const Estimates edge = estimate(*scene, map, by, {-0.9999, -0.5, -1}, {0, 0.05, 0});
+        const Estimates corner = estimate(*scene, map, by, {-0.9999, -0.9999, -1}, {0, 0, 0});
+        const Estimates near = estimate(*scene, map, by, {-0.98, -0.5, -1}, {0, 0.05, 0});
+        report("wall", edge);
+        report("wall, .4 radii away", near);
+        report("corner of three walls", corner);
+        EXPECT_NEAR(edge.corrected, 1, 0.05);
+        EXPECT_NEAR(edge.narrow, 1, 0.05);
+        EXPECT_NEAR(edge.plain, 0.5, 0.03);
+        EXPECT_NEAR(near.corrected, 1, 0.05);
+        EXPECT_NEAR(near.narrow, 1, 0.05);
+        EXPECT_LT(near.plain, 0.8);
+        EXPECT_NEAR(corner.corrected, 1, 0.05);
+        EXPECT_NEAR(corner.narrow, 1, 0.05);
+        EXPECT_NEAR(corner.plain, 0.25, 0.03);
+    }
 }
 
 // A thin wall on a floor that is lit on one side only: nothing comes through beneath it.
@@ -130,15 +143,18 @@ TEST(Edges, NoLightThroughAThinWall) {
     std::vector<Photon> photons;
     light(photons, {0, -1, -0.5}, {1, 0, 0}, {0, 2, 0});
     const PhotonMap map(photons);
-    const Estimates dark = estimate(*scene, map, {-0.02, -0.5, -0.5}, {0, 0.05, 0});
-    const Estimates lit = estimate(*scene, map, {0.02, -0.5, -0.5}, {0, 0.05, 0});
-    report("dark side", dark);
-    report("lit side", lit);
-    EXPECT_EQ(dark.corrected, 0.0);
-    EXPECT_EQ(dark.narrow, 0.0);
-    EXPECT_GT(dark.plain, 0.1);
-    EXPECT_NEAR(lit.corrected, 1, 0.05);
-    EXPECT_NEAR(lit.narrow, 1, 0.05);
+    for (const By by : {By::kRays, By::kPatches}) {
+        SCOPED_TRACE(nameOf(by));
+        const Estimates dark = estimate(*scene, map, by, {-0.02, -0.5, -0.5}, {0, 0.05, 0});
+        const Estimates lit = estimate(*scene, map, by, {0.02, -0.5, -0.5}, {0, 0.05, 0});
+        report("dark side", dark);
+        report("lit side", lit);
+        EXPECT_EQ(dark.corrected, 0.0);
+        EXPECT_EQ(dark.narrow, 0.0);
+        EXPECT_GT(dark.plain, 0.1);
+        EXPECT_NEAR(lit.corrected, 1, 0.05);
+        EXPECT_NEAR(lit.narrow, 1, 0.05);
+    }
 }
 
 // The far side of the wall itself, with photons as they are traced (P1, F8).

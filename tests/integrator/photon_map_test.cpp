@@ -8,8 +8,13 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
+#include <memory>
+#include <numeric>
+#include <utility>
 #include <vector>
 
 #include "integrator/sampling/warps.h"
@@ -147,6 +152,37 @@ TEST(PhotonMap, WarmStartsChangeNothing) {
     }
 }
 
+// The same for leaves that are kept from query to query, where another map may come to lie in the
+// place of one that is gone.
+TEST(PhotonMap, KeptLeavesChangeNothing) {
+    NearestPhotons walking;
+    auto map = std::make_unique<PhotonMap>(inSpace(20'000, 10));
+    const PhotonMap other(inSpace(500, 11));
+    std::size_t found = 0;
+    for (int n = 0; n < 1200; ++n) {
+        if (n % 400 == 399) *map = PhotonMap(inSpace(20'000 - 10 * static_cast<unsigned>(n), 12));
+        const float x = std::abs(static_cast<float>(n % 400 - 200)) / 200;
+        const Vec3f position{x, 0.3f + 0.1f * x * x, 0.01f}, up{0, 0, 1};
+        const PhotonMap& asked = n % 11 == 0 ? other : *map;
+        // The last finds too many leaves to keep.
+        const float radius = n % 50 == 0 ? 0.7f : n % 2 ? 0.02f : 0.03f;
+        const TwoRadii kept = asked.fluxWithin(position, up, radius, walking);
+        const TwoRadii fresh = asked.fluxWithin(position, up, radius);
+        EXPECT_EQ(kept.wide, fresh.wide);
+        EXPECT_EQ(kept.narrow, fresh.narrow);
+        PhotonQuery query{position, up, n % 7 == 0 ? 40u : 12u, n % 5 == 0 ? 0.02f : 10.0f};
+        if (n % 3 == 0) query.leaveOut = 100;
+        NearestPhotons scratch;
+        asked.findNearest(query, scratch);
+        const bool enough = scratch.found().size() == query.count;
+        const float expected = enough ? std::sqrt(scratch.found().front().distanceSquared)
+                                      : std::numeric_limits<float>::infinity();
+        EXPECT_EQ(asked.radiusOf(query, walking), expected);
+        found += enough;
+    }
+    EXPECT_GT(found, 800u);
+}
+
 TEST(PhotonMap, EmptyAndZero) {
     NearestPhotons scratch;
     const PhotonMap map(std::vector<Photon>{});
@@ -154,6 +190,8 @@ TEST(PhotonMap, EmptyAndZero) {
     map.findNearest({{0, 0, 0}, {0, 0, 1}, 5, 10.0f}, scratch);
     EXPECT_TRUE(scratch.found().empty());
     EXPECT_EQ(map.fluxWithin({0, 0, 0}, {0, 0, 1}, 10.0f).wide, Rgb());
+    EXPECT_EQ(map.fluxWithin({0, 0, 0}, {0, 0, 1}, 10.0f, scratch).wide, Rgb());
+    EXPECT_TRUE(std::isinf(map.radiusOf({{0, 0, 0}, {0, 0, 1}, 5, 10.0f}, scratch)));
     EXPECT_GT(map.typicalRadius(50), 0.0f);
     const PhotonMap one(onPlane(1, 1, 0));
     one.findNearest({{0, 0, 0}, {0, 0, 1}, 0, 10.0f}, scratch);
@@ -180,6 +218,37 @@ TEST(PhotonMap, FluxWithinARadius) {
             EXPECT_EQ(flux.narrow.g, static_cast<float>(narrow));
         }
     }
+}
+
+// Fluxes that don't add up exactly: near the sum in double, and the same bits whether four at a
+// time are added or, where each photon is asked for, one at a time.
+TEST(PhotonMap, FluxIsSummedInOneOrder) {
+    std::vector<Photon> photons = inSpace(5000, 13);
+    for (Photon& photon : photons) photon.flux = photon.flux * 0.1f;
+    const PhotonMap map(photons);
+    Random random(14);
+    std::size_t lit = 0;
+    for (int n = 0; n < 300; ++n) {
+        const Vec2f at = random.next2D();
+        const Vec3f position{at.x, at.y, 0.02f}, normal{0, 0, 1};
+        const float radius = 0.2f * random.next();
+        const TwoRadii fast = map.fluxWithin(position, normal, radius);
+        std::array<double, 2> sums{};
+        const TwoRadii slow = map.fluxWithin(position, normal, radius, [&](std::uint32_t index) {
+            const Photon photon = map.photon(index);
+            const float d2 = lengthSquared(photon.position - position);
+            sums[0] += static_cast<double>(photon.flux.b);
+            if (d2 <= 0.5f * (radius * radius)) sums[1] += static_cast<double>(photon.flux.b);
+            return true;
+        });
+        EXPECT_EQ(fast.wide, slow.wide);
+        EXPECT_EQ(fast.narrow, slow.narrow);
+        // 16 of a leaf in float, each sum rounded, all positive.
+        EXPECT_NEAR(fast.wide.b, sums[0], 16 * 0x1p-24 * sums[0]);
+        EXPECT_NEAR(fast.narrow.b, sums[1], 16 * 0x1p-24 * sums[1]);
+        lit += fast.narrow.b > 0;
+    }
+    EXPECT_GT(lit, 200u);
 }
 
 // Ties everywhere: the lowest indices are found, and the search ends once it has them.
@@ -210,6 +279,59 @@ TEST(PhotonMap, ManyPhotonsAtOnePoint) {
     }
     EXPECT_EQ(map.fluxWithin({0.3f, 0.2f, 0.1f}, {0, 0, 1}, 0.1f).wide.r, 100'000.0f);
     EXPECT_GT(map.typicalRadius(50), 0.0f);
+}
+
+// The order of a tree's photons by its definition: the widest side of their box is divided where
+// its first half of leaves is full, equals by their numbers; within a leaf they keep their order.
+void orderOf(const std::vector<Photon>& photons, std::vector<std::uint32_t> part,
+             std::size_t leaves, std::vector<std::uint32_t>& order) {
+    if (leaves == 1) {
+        order.insert(order.end(), part.begin(), part.end());
+        return;
+    }
+    int axis = 0;
+    float widest = -1;
+    for (int a = 0; a < 3; ++a) {
+        const auto [lo, hi] = std::minmax_element(part.begin(), part.end(), [&](auto i, auto j) {
+            return photons[i].position[a] < photons[j].position[a];
+        });
+        const float width = photons[*hi].position[a] - photons[*lo].position[a];
+        if (width > widest) {
+            widest = width;
+            axis = a;
+        }
+    }
+    const auto before = [&](std::uint32_t i, std::uint32_t j) {
+        return std::pair(photons[i].position[axis], i) < std::pair(photons[j].position[axis], j);
+    };
+    const std::size_t leftLeaves = (leaves + 1) / 2;
+    const auto middle = part.begin() + static_cast<std::ptrdiff_t>(16 * leftLeaves);
+    std::nth_element(part.begin(), middle, part.end(), before);
+    std::vector<std::uint32_t> left(part.begin(), middle), right(middle, part.end());
+    std::sort(left.begin(), left.end());
+    std::sort(right.begin(), right.end());
+    orderOf(photons, std::move(left), leftLeaves, order);
+    orderOf(photons, std::move(right), leaves - leftLeaves, order);
+}
+
+TEST(PhotonMap, TheTreeIsAsDefined) {
+    std::vector<std::vector<Photon>> sets = {inSpace(70'000, 15), onPlane(70'000, 16, 64),
+                                             inSpace(15, 17), onPlane(40, 18, 2)};
+    // Nearly all at one place: a bucket holds more than a chunk.
+    sets.push_back(std::vector<Photon>(30'000, photonAt({0.3f, 0.2f, 0.1f})));
+    for (std::size_t i = 0; i < sets.back().size(); i += 1000)
+        sets.back()[i].position = {-0.0f, static_cast<float>(i), 0.0f};
+    for (const std::vector<Photon>& photons : sets) {
+        std::vector<std::uint32_t> all(photons.size()), order;
+        std::iota(all.begin(), all.end(), 0u);
+        orderOf(photons, all, (photons.size() + 15) / 16, order);
+        const PhotonMap map(photons);
+        ASSERT_EQ(order.size(), map.size());
+        for (std::uint32_t i = 0; i < map.size(); ++i) {
+            const Photon photon = map.photon(i);
+            ASSERT_EQ(std::memcmp(&photon, &photons[order[i]], sizeof(Photon)), 0) << i;
+        }
+    }
 }
 
 TEST(PhotonMap, TheSameTreeForAnyThreads) {

@@ -21,10 +21,12 @@ bool hasNotice(const Plan& plan, NoticeCode code) {
     return std::ranges::any_of(plan.notices, [&](const Notice& n) { return n.code == code; });
 }
 
-// A grey floor under a lamp that faces it.
+// A grey floor with a wall, under a lamp that faces the floor.
 SceneMaker litFloor() {
     SceneMaker maker;
-    maker.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, maker.diffuse(Rgb(0.5f)));
+    const auto grey = maker.diffuse(Rgb(0.5f));
+    maker.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, grey);
+    maker.quad({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, grey);
     maker.quad({-0.5, 1, -0.5}, {1, 0, 0}, {0, 0, 1}, maker.diffuse({}, Rgb(1.0f)));
     return maker;
 }
@@ -104,6 +106,33 @@ TEST(Plan, OneFlatSurfaceWantsNoFinalGather) {
     tilted.quad({1, 2, 3}, {1, 0.5, 0.25}, {-0.3, 0.7, 0.1}, grey, 4);
     tilted.pointLight({0, 9, 0}, Rgb(1.0f));
     EXPECT_FALSE(planOf(tilted).tracePhotons);
+}
+
+// A black lamp and black screens over a plane: whatever leaves the plane ends there. A lamp that
+// reflects, glass, or a hole's picture is another matter.
+TEST(Plan, BlackSurfacesPassNothingOn) {
+    const auto planOver = [](const MaterialDescription& above, bool asSphere) {
+        SceneMaker maker;
+        const auto grey = maker.diffuse(Rgb(0.5f));
+        maker.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, grey);
+        maker.quad({-0.2, 1, -0.2}, {0.4, 0, 0}, {0, 0, 0.4}, maker.diffuse({}, Rgb(1.0f)));
+        const auto material = maker.material(above);
+        if (asSphere)
+            maker.sphere({0, 0.5, 0}, 0.2, material);
+        else
+            maker.quad({-0.5, 0.5, 0}, {1, 0, 0}, {0, 0, 0.1}, material);
+        return planOf(maker);
+    };
+    MaterialDescription reflecting, glossy, thin;
+    reflecting.diffuse = Rgb(0.1f);
+    glossy.glossy = Rgb(0.1f);
+    thin.transparency = 0.5f;
+    for (const bool asSphere : {false, true}) {
+        EXPECT_FALSE(planOver({}, asSphere).tracePhotons) << asSphere;
+        EXPECT_TRUE(planOver(reflecting, asSphere).globalMap) << asSphere;
+        EXPECT_TRUE(planOver(glossy, asSphere).causticMap) << asSphere;
+        EXPECT_TRUE(planOver(thin, asSphere).tracePhotons) << asSphere;
+    }
 }
 
 TEST(Plan, PathsThatNoEstimatorCoversAreNamed) {

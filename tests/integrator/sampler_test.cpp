@@ -132,6 +132,19 @@ TEST(Sampler, IsAPureFunctionOfItsArguments) {
     EXPECT_LT(x, 1.0f);
 }
 
+// From one point of a sequence to another is as good as a sampler of its own.
+TEST(Sampler, AnotherPointOfTheSequence) {
+    Sampler used(3, 5, 7, 11);
+    used.next2D();
+    for (const std::uint32_t index : {0u, 1u, 11u, 0x80000001u}) {
+        Sampler other = used.at(index), own(3, 5, 7, index);
+        for (int i = 0; i < 4; ++i) {
+            EXPECT_EQ(other.next1D(), own.next1D()) << index;
+            EXPECT_EQ(other.next2D(), own.next2D()) << index;
+        }
+    }
+}
+
 TEST(PinnedMath, SinCosTurns) {
     double worst = 0;
     for (int i = 0; i <= 1 << 20; ++i) {

@@ -10,6 +10,7 @@
 
 #include "integrator/photons/irradiance_sites.h"
 #include "integrator/photons/photon_tracer.h"
+#include "integrator/photons/surface_patches.h"
 #include "integrator/sampling/warps.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"
@@ -129,8 +130,11 @@ TEST(Sites, TheSameBitsInAnyOrder) {
     const Room room;
     const PhotonMap map(room.photons);
     const auto points = room.points(20'000);
-    const IrradianceSites forward(*room.scene, map, 0.1f), backward(*room.scene, map, 0.1f),
-        parallel(*room.scene, map, 0.1f);
+    // With tables of their own, and with room for a few patches only.
+    const SurfacePatches one(*room.scene, 0.1f), two(*room.scene, 0.1f),
+        three(*room.scene, 0.1f, 10'000);
+    const IrradianceSites forward(*room.scene, map, 0.1f, &one),
+        backward(*room.scene, map, 0.1f, &two), parallel(*room.scene, map, 0.1f, &three);
     std::vector<TwoRadii> expected(points.size()), found(points.size());
     for (std::size_t i = 0; i < points.size(); ++i)
         expected[i] = forward.at(points[i].position, points[i].normal);
@@ -149,18 +153,20 @@ TEST(Sites, TheSameBitsInAnyOrder) {
     expectSame();
 }
 
-// Sites bring neither light nor darkness on the whole: flat and bent surfaces, edges and contacts.
+// Neither sites nor patches bring light or darkness on the whole: flat and bent surfaces, edges and
+// contacts.
 TEST(Sites, KeepTheMean) {
     const Room room;
     const PhotonMap map(room.photons);
+    const SurfacePatches patches(*room.scene, 0.1f);
     double kept = 0, own = 0, difference = 0;
     std::uint32_t pattern = 0;
     for (const float radius : {0.06f, 0.1f, 0.15f}) {
-        const IrradianceSites sites(*room.scene, map, radius);
+        const IrradianceSites sites(*room.scene, map, radius, &patches);
+        const SurfaceEstimate byRays(*room.scene, map, radius);
         for (const Room::Point& p : room.points(4000)) {
             const auto a = static_cast<double>(sites.at(p.position, p.normal).wide.r);
-            const auto b =
-                static_cast<double>(sites.estimate(p.position, p.normal, ++pattern).wide.r);
+            const auto b = static_cast<double>(byRays.at(p.position, p.normal, ++pattern).wide.r);
             kept += a;
             own += b;
             difference += (a - b) * (a - b);

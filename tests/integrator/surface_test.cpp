@@ -181,7 +181,7 @@ double discShare(double distance) {
 
 TEST(Surface, TheSameDiscFromAnyDistance) {
     const double expected = std::numbers::pi / 4 / (1.25 * 1.25);
-    for (const double distance : {10.0, 100.0, 1000.0, 1e5})
+    for (const double distance : {2.5, 6.5, 7.5, 10.0, 100.0, 1000.0, 1e5})
         EXPECT_NEAR(discShare(distance), expected, 3e-4) << distance;
 }
 

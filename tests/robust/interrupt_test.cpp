@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include <chrono>
+#include <cstdlib>
 #include <iostream>
 #include <thread>
 
@@ -109,6 +110,39 @@ TEST_F(Interrupt, beforeTheRenderBegins) {
         EXPECT_FALSE(fs::exists(path("a.exr")));
     }
     EXPECT_GE(interrupted, 2);
+}
+
+// The libraries that read and bake a large picture can't be told to stop; nobody waits for them.
+// PM_TEXELS=8192 takes one of so many columns.
+TEST_F(Interrupt, whileATextureIsBaked) {
+    const char* columns = std::getenv("PM_TEXELS");
+    const int width = columns == nullptr ? 1024 : std::atoi(columns), height = width / 2;
+    std::string texels = fmt::format("P6\n{} {}\n255\n", width, height);
+    for (int i = 0; i < width * height * 3; ++i)
+        texels.push_back(static_cast<char>(i * 31 + i / 977));
+    write("wall.ppm", texels);
+    write("box.mtl", "newmtl light\nKd 0 0 0\nKe 5 5 5\nnewmtl wall\nmap_Kd wall.ppm\n");
+    const std::vector<std::string> arguments{"box.obj", "--explain", "--stats", "s.json"};
+    const auto start = std::chrono::steady_clock::now();
+    ASSERT_EQ(run(arguments).exitCode, 0);
+    const auto whole = std::chrono::steady_clock::now() - start;
+    int interrupted = 0;
+    for (const double share : {0.4, 0.6, 0.8, 0.9}) {
+        std::chrono::steady_clock::time_point told;
+        const Outcome outcome = run(arguments, [&](pid_t child) {
+            std::this_thread::sleep_for(share * whole);
+            told = std::chrono::steady_clock::now();
+            kill(child, SIGTERM);
+        });
+        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - told;
+        if (outcome.exitCode != 143) continue;
+        ++interrupted;
+        std::cout << "at " << share << " of " << std::chrono::duration<double>(whole).count()
+                  << " s: ended " << took.count() << " s after the signal" << std::endl;
+        EXPECT_EQ(nlohmann::json::parse(readText(path("s.json"))).at("stopReason"), "terminated");
+        EXPECT_EQ(textureFolder(), "");
+    }
+    EXPECT_GE(interrupted, 1);
 }
 
 TEST_F(Interrupt, aSecondSignalEndsAtOnce) {

@@ -129,8 +129,11 @@ TEST_F(ReportPage, showsAMergeWithItsStandardError) {
     ASSERT_EQ(merge.exitCode, 0) << merge.err;
     const std::string page = checkedPage("m.html");
     EXPECT_NE(page.find("Done: passes done."), std::string::npos);
-    EXPECT_NE(page.find("No bucket was timed."), std::string::npos);
-    EXPECT_EQ(count(page, "data:image/png;base64,"), 3u);  // picture, standard error, levels
+    // 8 x 8 pixels of one sample in each of two passes.
+    EXPECT_NE(page.find("Samples a bucket. None was timed here"), std::string::npos);
+    EXPECT_NE(page.find("128 samples"), std::string::npos);
+    // Picture, samples, standard error, levels.
+    EXPECT_EQ(count(page, "data:image/png;base64,"), 4u);
     ASSERT_EQ(render({"-o", "a.exr", "--report", "a.html"}).exitCode, 0);
     const std::string whole = checkedPage("a.html");
     for (const char* id : {"stderr", "levels", "brightest"}) {

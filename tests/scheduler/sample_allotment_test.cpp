@@ -25,6 +25,7 @@ constexpr std::size_t kPixels = kAtomPixels;
 constexpr Rect kAtom{0, 0, 8, 8};
 constexpr SampleRule kTwoAtLeast{2, 64, 0.01};
 constexpr SampleRule kRule{1, 64, 0.01};
+constexpr SampleRule kAlone{1, 64, 0.01, false, false};  // the samples of a pass share no noise
 
 using Sample = std::function<float(std::size_t pixel, std::uint32_t half, std::uint32_t index)>;
 
@@ -77,9 +78,9 @@ double rareLightScore(int renders, const std::function<double(std::mt19937_64&)>
 
 // 102,400 pixels: each atom is 64 seeds of a pixel that its neighbours help to decide. The halves
 // decide by the first `seen` samples of each pass.
-double rareLightOfAtoms(std::uint32_t seen) {
-    return rareLightScore(1600, [seen](std::mt19937_64& random) {
-        FrameStore frame(kAtom, kChannels, 0, -1, -1, kRule);
+double rareLightOfAtoms(std::uint32_t seen, const SampleRule& rule = kRule) {
+    return rareLightScore(1600, [seen, &rule](std::mt19937_64& random) {
+        FrameStore frame(kAtom, kChannels, 0, -1, -1, rule);
         for (std::uint32_t pass = 0; pass < 10; ++pass)
             addPass(
                 frame, pass, kAtom,
@@ -97,12 +98,14 @@ double rareLightOfAtoms(std::uint32_t seen) {
 
 TEST(SampleAllotment, rareLightIsNotLost) {
     EXPECT_LT(std::abs(rareLightOfAtoms(kRule.least)), 4.0);
+    EXPECT_LT(std::abs(rareLightOfAtoms(kAlone.least, kAlone)), 4.0);
 }
 
 // A twin: halves that decide for each other by all samples that they have. A half then decides for
 // itself, by way of the other one.
 TEST(SampleAllotment, decidingByAllSamplesWouldLoseRareLight) {
     EXPECT_LT(rareLightOfAtoms(64), -10.0);
+    EXPECT_LT(rareLightOfAtoms(64, kAlone), -10.0);
 }
 
 // The same by one pixel alone, whose halves decide for each other: the neighbours can't hide a
@@ -144,11 +147,11 @@ std::array<SeenSamples, kPixels> evenAtom(double samples, double mean, double de
     return atom;
 }
 
-// What the rule gives all pixels of an even atom.
+// What the rule gives all pixels of an even atom, whose spread is well known.
 std::uint16_t samplesOf(std::uint32_t passes, double mean, double deviation,
                         const SampleRule& rule = kRule) {
     std::array<std::uint16_t, kPixels> samples{};
-    allotSamples(rule, passes, evenAtom(2, mean, deviation), samples);
+    allotSamples(rule, passes, evenAtom(1000, mean, deviation), samples);
     for (const std::uint16_t count : samples) EXPECT_EQ(count, samples[0]);
     return samples[0];
 }
@@ -182,6 +185,67 @@ TEST(SampleAllotment, thresholdIsHalvedFromFourPassesOn) {
         EXPECT_EQ(samplesOf(passes, 2.0, deviation), count) << passes;
 }
 
+// N = 16 (s / (16 T))^(3/4) in four passes, T a quarter of the threshold, from four passes on an
+// eighth.
+TEST(SampleAllotment, wherePassesShareNoNoiseTheRuleIsFiner) {
+    for (const double factor : {0.72, 1.0, 1.4})
+        for (const unsigned count : {2u, 8u, 16u, 32u}) {
+            const double spread = 16 * 0.0025 * std::pow(factor * count / 4.0, 4.0 / 3);
+            EXPECT_EQ(samplesOf(2, 2.0, spread * std::sqrt(4.01), kAlone), count) << factor;
+            EXPECT_EQ(samplesOf(4, 2.0, spread / 2 * std::sqrt(4.01), kAlone), count) << factor;
+        }
+    EXPECT_EQ(samplesOf(2, 2.0, 0.0, kAlone), 1u);
+    EXPECT_EQ(samplesOf(2, 2.0, std::numeric_limits<double>::quiet_NaN(), kAlone), 1u);
+}
+
+// The next pass of a half brings its samples to what its passes would have by now; more than the
+// most it never has, nor fewer than the least.
+TEST(SampleAllotment, wherePassesShareNoNoiseAHalfMakesUpForWhatItLacks) {
+    constexpr SampleRule rule{4, 64, 0.01, false, false};
+    EXPECT_EQ(samplesOfNextPass(rule, 32, 0, 0), 32u);
+    EXPECT_EQ(samplesOfNextPass(rule, 32, 4, 1), 60u);
+    EXPECT_EQ(samplesOfNextPass(rule, 32, 64, 2), 32u);
+    EXPECT_EQ(samplesOfNextPass(rule, 64, 4, 1), 64u);
+    EXPECT_EQ(samplesOfNextPass(rule, 4, 200, 5), 4u);
+    EXPECT_EQ(samplesOfNextPass({4, 64, 0.01}, 32, 4, 1), 32u);
+}
+
+// The same as a frame does it: pass 0 with the least decides for pass 1, pass 1 for pass 2, which
+// makes up for pass 0.
+TEST(SampleAllotment, theFirstPassDecidesForTheSecond) {
+    for (const bool sharesNoise : {true, false}) {
+        const SampleRule rule{4, 64, 0.01, false, sharesNoise};
+        FrameStore frame(kAtom, kChannels, 0, -1, -1, rule);
+        double counts[3];
+        for (std::uint32_t pass = 0; pass < 3; ++pass) {
+            addPass(
+                frame, pass, kAtom,
+                [](std::size_t, std::uint32_t, std::uint32_t index) {
+                    return index % 2 ? 1.0f : 2.0f;
+                },
+                rule.least);
+            counts[pass] = frame.sampleCount(3, 3);
+        }
+        const unsigned allotted = sharesNoise ? 8 : 16;
+        EXPECT_EQ(counts[0], 4);
+        EXPECT_EQ(counts[1], 4 + allotted);
+        EXPECT_EQ(counts[2], counts[1] + (sharesNoise ? 8 : 28));
+    }
+}
+
+// Each pixel has no spread of its own, but they differ.
+TEST(SampleAllotment, pixelsBesideAStepGetSamples) {
+    std::array<SeenSamples, kPixels> atom;
+    for (std::size_t i = 0; i < kPixels; ++i) {
+        const double value = i % 8 < 4 ? 1.0 : 2.0;
+        atom[i] = {4, {4 * value, 4 * value, 4 * value}, 4 * 3 * value * value};
+    }
+    std::array<std::uint16_t, kPixels> samples{};
+    allotSamples(kRule, 2, atom, samples);
+    for (std::size_t i = 0; i < kPixels; ++i)
+        EXPECT_EQ(samples[i] > 1, i % 8 == 3 || i % 8 == 4) << i;
+}
+
 TEST(SampleAllotment, neighboursOfANoisyPixelGetSamplesToo) {
     auto atom = evenAtom(8, 1.0, 0.0);
     atom[3 * 8 + 3].square += 8 * 3 * 0.5;
@@ -210,10 +274,10 @@ TEST(SampleAllotment, oneSampleEachIsComparedWithItsNeighbours) {
     }
 }
 
-TEST(SampleAllotment, isDoneAfterTwoFourEightPasses) {
+TEST(SampleAllotment, isDoneAfterOneTwoFourPasses) {
     for (std::uint32_t passes = 0; passes < 70; ++passes) {
-        const bool expected = passes == 2 || passes == 4 || passes == 8 || passes == 16 ||
-                              passes == 32 || passes == 64;
+        const bool expected = passes == 1 || passes == 2 || passes == 4 || passes == 8 ||
+                              passes == 16 || passes == 32 || passes == 64;
         EXPECT_EQ(allotsAfter(passes), expected) << passes;
     }
 }

@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <cstdint>
+
+#include "integrator/photons/irradiance_sites.h"
+#include "integrator/scene/camera.h"
+#include "integrator/scene/light_sampler.h"
+#include "integrator/scene/scene.h"
+#include "integrator/transport/render_settings.h"
+
+namespace pm {
+
+// How much the gather rays of one point differ: the variance of the radiance that one of them
+// brings to the eye over (r^2 + 0.01), r what the eye sees there of direct and gathered light; mean
+// over places spread over the frame and over the channels. Dimensionless; 0 where nothing is
+// gathered. A function of its arguments and the frame; works in parallel in the calling TBB arena.
+double gatherSpread(const Scene& scene, const Camera& camera, const LightSampler& lights,
+                    const IrradianceSites& sites, const RenderSettings& settings);
+
+// Rays of a gather point that pay at that spread, where `rays` are planned: half of those, or
+// those, or twice or four times as many.
+std::uint32_t gatherRaysFor(double spread, std::uint32_t rays);
+
+}  // namespace pm

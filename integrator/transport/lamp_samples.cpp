@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "integrator/transport/lamp_samples.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "integrator/materials/bsdf.h"
+#include "integrator/sampling/sampler.h"
+#include "integrator/transport/direct_light.h"
+#include "integrator/transport/path_walk.h"
+
+namespace pm {
+
+namespace {
+
+// Pixels to a pilot path where the frame is small, and paths where it is large.
+constexpr double kPixelsOfAPath = 9.0;
+constexpr double kMostPaths = 1024.0;
+constexpr std::uint64_t kPilotSeed = 0x6c616d7073616d70ull;
+
+// Lamp samples of each of a place's two sets: as many as a half of the passes has camera samples
+// when a picture is near a relMSE of 1e-3. What so many leave, spread well, is what counts.
+constexpr std::uint32_t kSet = 8;
+// Processor seconds of a lamp sample, and for each level of the tree where there are many lamps to
+// choose from; measured, docs/decisions.md.
+constexpr double kLampSampleSeconds = 0.2e-6, kLevelSeconds = 0.045e-6;
+// Of indirect light it is known only that there is some: as much as if half of what a place sees
+// were as bright as the frame's places are on average.
+constexpr float kBrightHalf = 0.5f;
+// All other variance of a camera sample: of the light that its gather rays bring this share, if
+// what they find differs as the frame's places do, and of edges and photons so much, over
+// (r^2 + 0.01). Measured; docs/decisions.md.
+constexpr double kGatheredShare = 0.1, kLeastRest = 0.002;
+
+// Where a pilot path ends: direct light by either set, and what it reflects of light all around.
+struct Lit {
+    Rgb a, b, reflected;
+};
+
+Rgb estimate(const Scene& scene, const LightSampler& lights, const Surface& surface,
+             const Bsdf& bsdf, Sampler sampler) {
+    std::uint32_t rays = 0;
+    const DirectRadiance direct =
+        estimateDirect(scene, lights, surface, bsdf, LampStrategy::kBoth, kSet, sampler, rays);
+    return direct.diffuse + direct.glossy;
+}
+
+// At the first lobe that is not delta; black where the path meets none.
+Lit follow(const Scene& scene, const LightSampler& lights, const Ray& ray, Sampler& sampler,
+           std::uint64_t seed, std::uint64_t path) {
+    PathWalk walk(ray);
+    Surface surface;
+    while (scene.intersect(walk.ray, surface)) {
+        const Bsdf bsdf(scene, surface, -walk.ray.direction, Transport::kRadiance, walk.throughput);
+        if (bsdf.isBlackBody()) break;
+        if (bsdf.has(Lobe::kDiffuse) || bsdf.has(Lobe::kGlossy)) {
+            const auto byStream = [&](std::uint64_t stream) {
+                return walk.throughput *
+                       estimate(scene, lights, surface, bsdf, Sampler(seed, stream, path, 0));
+            };
+            return Lit{byStream(1), byStream(2), walk.throughput * bsdf.diffuse()};
+        }
+        BsdfSample sample;
+        const float uLobe = sampler.next1D();
+        if (!bsdf.sample(uLobe, sampler.next2D(), sample) ||
+            !walk.scatter(surface, bsdf, sample, sampler))
+            break;
+    }
+    return {};
+}
+
+std::vector<Lit> lookAround(const Scene& scene, const LightSampler& lights, const Camera& camera,
+                            const RenderSettings& settings) {
+    const double pixels = static_cast<double>(settings.width) * settings.height;
+    const double spacing = std::sqrt(std::max(kPixelsOfAPath, pixels / kMostPaths));
+    const auto columns = static_cast<std::size_t>(std::ceil(settings.width / spacing));
+    const auto rows = static_cast<std::size_t>(std::ceil(settings.height / spacing));
+    const std::uint64_t seed = combineBits(settings.seed, kPilotSeed);
+    std::vector<Lit> found(columns * rows);
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
+        Sampler sampler(seed, 0, i, 0);
+        const Vec2f jitter = sampler.next2D();
+        const double x = static_cast<double>(i % columns) + static_cast<double>(jitter.x);
+        const double y = static_cast<double>(i / columns) + static_cast<double>(jitter.y);
+        found[i] = follow(scene, lights, camera.ray(x * spacing, y * spacing), sampler, seed, i);
+    });
+    return found;
+}
+
+// Variances of a camera sample with one lamp sample over (r^2 + 0.01), means over paths and
+// channels.
+struct Variances {
+    double lamps = 0;  // of a lamp sample, one of kSet
+    double rest = 0;
+};
+
+Variances variancesOf(const std::vector<Lit>& places, bool hasIndirect) {
+    const auto count = static_cast<float>(places.size());
+    Rgb mean;
+    for (const Lit& place : places) mean += (place.a + place.b) * (0.5f / count);
+    const Rgb around = hasIndirect ? mean * kBrightHalf : Rgb{};
+    double lamps = 0, gathered = 0;
+    for (const Lit& place : places)
+        for (int c = 0; c < 3; ++c) {
+            const float direct = 0.5f * (place.a[c] + place.b[c]);
+            const auto r = static_cast<double>(direct + place.reflected[c] * around[c]);
+            const auto noise = static_cast<double>(place.a[c] - place.b[c]);
+            const auto unlike = static_cast<double>(place.reflected[c] * (direct - mean[c]));
+            lamps += kSet * noise * noise / 2 / (r * r + 0.01);
+            gathered += unlike * unlike / (r * r + 0.01);
+        }
+    const double share = 1.0 / (3.0 * static_cast<double>(count));
+    return {lamps * share, kLeastRest + (hasIndirect ? kGatheredShare * gathered * share : 0.0)};
+}
+
+}  // namespace
+
+// With n lamp samples a camera sample takes the time C + n c and has the variance R + V / n; their
+// product, the time to an error, is least at n^2 = V C / (R c).
+std::uint32_t findLampSamples(const Scene& scene, const LightSampler& lights, const Camera& camera,
+                              const RenderSettings& settings, const Plan& plan) {
+    if (lights.empty()) return 1;
+    const Variances variances =
+        variancesOf(lookAround(scene, lights, camera, settings), plan.globalMap);
+    double seconds = kLampSampleSeconds;
+    if (lights.isGuided())
+        seconds += kLevelSeconds * static_cast<double>(std::bit_width(scene.nearLights().size()));
+    const double squared =
+        variances.lamps / variances.rest * plan.processorSecondsPerSample / seconds;
+    std::uint32_t samples = 1;
+    // The nearest power of two: up to sqrt(2) times that.
+    while (samples < kMostLampSamples && squared > 2.0 * samples * samples) samples *= 2;
+    return samples;
+}
+
+}  // namespace pm
