@@ -242,12 +242,9 @@ void FrameStore::nextSamples(std::uint32_t pass, const Rect& rect,
         for (std::int32_t x = rect.x0; x < rect.x1; ++x, ++to) {
             const std::size_t pixel = pixelIndex(x, y);
             const float group = hasGroups() ? m_groups[pixel] : kOwn;
-            const bool isEven = pass % 2 == 0;
             const double even = m_evenWeights[pixel];
-            const auto had = static_cast<std::uint32_t>(isEven ? even : m_weights[pixel] - even);
-            const std::uint32_t evenPasses = m_evenPasses[pixel];
-            *to = {had, samplesOfNextPass(*m_rule, m_allotted[2 * pixel + pass % 2], had,
-                                          isEven ? evenPasses : m_passes[pixel] - evenPasses)};
+            *to = {static_cast<std::uint32_t>(pass % 2 == 0 ? even : m_weights[pixel] - even),
+                   m_allotted[2 * pixel + pass % 2]};
             if (group != kOwn) *to = {0, group == kDivided ? to->count : 0, group != kDivided};
         }
     }

@@ -21,7 +21,7 @@ constexpr double kPassesOfALevel = 4;
 // What one or two passes show is little; from four on the threshold is divided by this.
 constexpr double kFiner = 2;
 // Where the samples of a pass share no noise: the threshold is divided by this as well.
-constexpr double kFinerAlone = 4;
+constexpr double kFinerAlone = 2;
 // Those of level 3 in four passes, which errors are told by then.
 constexpr double kSamplesOfReference = 16;
 // What the neighbours met may be here, too, and not have been met yet: they count as so many
@@ -143,16 +143,6 @@ void allotSamples(const SampleRule& rule, std::uint32_t passes, std::span<const 
             (own + kSamplesOfNeighbours);
         samples[i] = samplesOfSpread(rule, passes, std::sqrt(pooled));
     }
-}
-
-std::uint32_t samplesOfNextPass(const SampleRule& rule, std::uint32_t allotted, std::uint32_t had,
-                                std::uint32_t passes) {
-    // A first pass has nothing to make up for. Where noise is shared, a pass with many more samples
-    // than the others would bring its own back.
-    if (rule.sharesNoise || passes == 0) return allotted;
-    const std::uint64_t due = (std::uint64_t{passes} + 1) * allotted;
-    const std::uint64_t missing = due > had ? due - had : 0;
-    return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(missing, rule.least, rule.most));
 }
 
 }  // namespace pm

@@ -28,10 +28,8 @@ namespace pm {
 // That is so where the samples of a pass share noise, such as that of its photons: more samples
 // don't lower it, more passes do. Where they share none a pixel's passes are as good as one, and
 // all that counts is how many samples a pixel has beside others. So there
-// - the threshold T is a quarter, and pixels may differ more;
-// - N = 16 (s / (16 T))^(3/4), as the squared error falls like N^(-5/3) then, not like 1 / N;
-// - a half that has had fewer samples than its passes would have by what is known now makes up for
-//   it in its next pass.
+// - the threshold T is a half, and pixels may differ more;
+// - N = 16 (s / (16 T))^(3/4), as the squared error falls like N^(-5/3) then, not like 1 / N.
 struct SampleRule {
     std::uint32_t least = 1;  // samples of a pixel in a pass, up to 65535
     std::uint32_t most = 1;   // as well, at least `least`
@@ -73,10 +71,5 @@ std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes, doub
 // does not depend on crop or buckets.
 void allotSamples(const SampleRule& rule, std::uint32_t passes, std::span<const SeenSamples> seen,
                   std::span<std::uint16_t> samples);
-
-// Samples in a half's next pass of a pixel that is allotted so many a pass and has had `had` in
-// `passes` of that half.
-std::uint32_t samplesOfNextPass(const SampleRule& rule, std::uint32_t allotted, std::uint32_t had,
-                                std::uint32_t passes);
 
 }  // namespace pm

@@ -5,7 +5,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -27,9 +26,8 @@ constexpr std::uint64_t kPilotSeed = 0x6c616d7073616d70ull;
 // Lamp samples of each of a place's two sets: as many as a half of the passes has camera samples
 // when a picture is near a relMSE of 1e-3. What so many leave, spread well, is what counts.
 constexpr std::uint32_t kSet = 8;
-// Processor seconds of a lamp sample, and for each level of the tree where there are many lamps to
-// choose from; measured, docs/decisions.md.
-constexpr double kLampSampleSeconds = 0.2e-6, kLevelSeconds = 0.045e-6;
+// Processor seconds of a lamp sample, measured; docs/decisions.md.
+constexpr double kLampSampleSeconds = 0.2e-6;
 // Of indirect light it is known only that there is some: as much as if half of what a place sees
 // were as bright as the frame's places are on average.
 constexpr float kBrightHalf = 0.5f;
@@ -128,11 +126,8 @@ std::uint32_t findLampSamples(const Scene& scene, const LightSampler& lights, co
     if (lights.empty()) return 1;
     const Variances variances =
         variancesOf(lookAround(scene, lights, camera, settings), plan.globalMap);
-    double seconds = kLampSampleSeconds;
-    if (lights.isGuided())
-        seconds += kLevelSeconds * static_cast<double>(std::bit_width(scene.nearLights().size()));
     const double squared =
-        variances.lamps / variances.rest * plan.processorSecondsPerSample / seconds;
+        variances.lamps / variances.rest * plan.processorSecondsPerSample / kLampSampleSeconds;
     std::uint32_t samples = 1;
     // The nearest power of two: up to sqrt(2) times that.
     while (samples < kMostLampSamples && squared > 2.0 * samples * samples) samples *= 2;

@@ -44,7 +44,7 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
     {Setting::kAaThreshold, "aaThreshold", PMR_SETTING_NUMBER, "", "0.01", 0, 1, 1, "", true,
      "A pixel gets samples, from aaLevel to aaLevelMost, until one more in four passes would lower "
      "its squared relative error by less than this squared; from the fifth pass on, half of this. "
-     "Without photons, a quarter of either.",
+     "Without photons, half of either.",
      "Halved, noisy pixels get twice the samples."},
     {Setting::kFilter, "filter", PMR_SETTING_CHOICE, "", "box", 0, 0, 1, "box,gaussian", true,
      "How the frame around a pixel counts in it: box, all of the pixel alike; gaussian, by a "

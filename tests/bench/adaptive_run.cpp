@@ -177,7 +177,7 @@ PassRenderer::Chooser samplesBySpread(const SampleRule& rule, std::vector<double
             while (allotted > 0 && !allotsAfter(allotted)) --allotted;
             const std::uint32_t samples =
                 allotted > 0 ? samplesOfSpread(rule, allotted, spread[pixel]) : rule.least;
-            run.count = samplesOfNextPass(rule, samples, run.first, pass / 2);
+            run.count = samples;
         };
 }
 
