@@ -100,6 +100,10 @@ FrameStore::FrameStore(const Rect& window, std::int32_t channels, std::int32_t b
             m_allotted.assign(2 * pixels, static_cast<std::uint16_t>(rule->least));
             m_seen.resize(2 * pixels);
         }
+        if (rule && rule->isAlone()) {
+            m_passWeights = m_allotted;
+            m_halfWeights.resize(2 * pixels);
+        }
         if (hasGroups()) m_groups.assign(pixels, kUnseen);
         m_bandLocks = std::make_unique<std::mutex[]>(bandCount(window));
     } catch (const std::exception&) {  // bad_alloc, or length_error for sizes beyond any memory
@@ -120,7 +124,7 @@ std::uint64_t FrameStore::memoryBytes(const Rect& window, std::int32_t channels,
          evenChannels(channels, biasProbeFirst, adaptive)) *
             sizeof(double) +
         2 * sizeof(std::uint32_t) +
-        (adaptive ? 2 * (sizeof(std::uint16_t) + sizeof(SeenSamples)) : 0) +
+        (adaptive ? 2 * (2 * sizeof(std::uint16_t) + sizeof(double) + sizeof(SeenSamples)) : 0) +
         (groups ? sizeof(float) : 0);
     return sizeof(FrameStore) + static_cast<std::uint64_t>(wholeAtoms(window).area()) * pixelBytes +
            bandCount(window) * sizeof(std::mutex);
@@ -155,7 +159,9 @@ void FrameStore::addPass(std::uint32_t pass, const Rect& rect, std::span<const f
             if (hasGroups()) noteContribution(pixel, values[channels - 1]);
             addPixel(pixel, values, weight);
             if (pass % 2 == 0) addToEvenPasses(pixel, values, weight);
-            if (isAdaptive()) addSeen(values + m_channels, m_seen[2 * pixel + pass % 2]);
+            if (!isAdaptive()) continue;
+            addSeen(values + m_channels, m_seen[2 * pixel + pass % 2]);
+            addWeightOfPass(pixel, pass);
         }
     }
     if (!isAdaptive() || !allotsAfter(pass + 1)) return;
@@ -168,6 +174,12 @@ void FrameStore::addPass(std::uint32_t pass, const Rect& rect, std::span<const f
 
 std::int32_t FrameStore::passChannels() const {
     return m_channels + ruleChannels(isAdaptive(), hasGroups());
+}
+
+void FrameStore::addWeightOfPass(std::size_t pixel, std::uint32_t pass) {
+    if (m_halfWeights.empty()) return;
+    const std::size_t at = 2 * pixel + pass % 2;
+    m_halfWeights[at] += madeUp(*m_rule, pass, m_halfWeights[at], m_passWeights[at]);
 }
 
 void FrameStore::noteContribution(std::size_t pixel, float contribution) {
@@ -215,7 +227,7 @@ void FrameStore::divideGroups(const Rect& atom) {
 void FrameStore::allot(const Rect& atom, std::uint32_t passes) {
     if (hasGroups()) divideGroups(atom);
     std::array<SeenSamples, kAtomPixels> seen;
-    std::array<std::uint16_t, kAtomPixels> samples{};
+    std::array<std::uint16_t, kAtomPixels> samples{}, weights{};
     // After the first pass the odd ones have seen nothing yet.
     for (int half = passes == 1 ? 1 : 0; half < 2; ++half) {
         std::size_t i = 0;
@@ -227,9 +239,11 @@ void FrameStore::allot(const Rect& atom, std::uint32_t passes) {
         forEachPixel([&](std::size_t pixel) {
             seen[i] = m_seen[2 * pixel + static_cast<std::size_t>(1 - half)];
         });
-        allotSamples(*m_rule, passes, seen, samples);
+        allotSamples(*m_rule, passes, seen, samples, weights);
         forEachPixel([&](std::size_t pixel) {
-            m_allotted[2 * pixel + static_cast<std::size_t>(half)] = samples[i];
+            const std::size_t at = 2 * pixel + static_cast<std::size_t>(half);
+            m_allotted[at] = samples[i];
+            if (!m_passWeights.empty()) m_passWeights[at] = weights[i];
         });
     }
 }
@@ -243,8 +257,9 @@ void FrameStore::nextSamples(std::uint32_t pass, const Rect& rect,
             const std::size_t pixel = pixelIndex(x, y);
             const float group = hasGroups() ? m_groups[pixel] : kOwn;
             const double even = m_evenWeights[pixel];
-            *to = {static_cast<std::uint32_t>(pass % 2 == 0 ? even : m_weights[pixel] - even),
-                   m_allotted[2 * pixel + pass % 2]};
+            const double had = pass % 2 == 0 ? even : m_weights[pixel] - even;
+            const double count = madeUp(*m_rule, pass, had, m_allotted[2 * pixel + pass % 2]);
+            *to = {static_cast<std::uint32_t>(had), static_cast<std::uint32_t>(count)};
             if (group != kOwn) *to = {0, group == kDivided ? to->count : 0, group != kDivided};
         }
     }

@@ -15,6 +15,7 @@
 #include "integrator/values/rect.h"
 #include "scheduler/frame_error.h"
 #include "scheduler/sample_allotment.h"
+#include "scheduler/zeroed_vector.h"
 
 namespace pm {
 
@@ -33,11 +34,12 @@ namespace pm {
 //
 // Adaptive renders give a pixel more samples in the even passes by what its odd passes show, and
 // the reverse (see SampleRule). There the sums of the even passes are kept for all channels, and
-//     mean = (n_even mean_even + n_odd mean_odd) / (n_even + n_odd),   n the passes with samples:
-// weights that no sample decides on, so that this has no bias. Its variance is then that of a
-// sample, M2 / (n - 1), times the sum over the halves of (n_half / n)^2 / W_half. An atom's samples
-// are allotted as soon as its pass 0, 1, 3, 7, ... is there, so the store holds whole atoms, also
-// those that the window cuts.
+//     mean = (v_even mean_even + v_odd mean_odd) / (v_even + v_odd),
+// v what the passes with samples weigh: 1 each, or by SampleRule where passes share no noise:
+// weights that no sample of the pixel decides on, so that this has no bias. Its variance is then
+// that of a sample, M2 / (n - 1), times the sum over the halves of (v_half / v)^2 / W_half. An
+// atom's samples are allotted as soon as its pass 0, 1, 3, 7, ... is there, so the store holds
+// whole atoms, also those that the window cuts.
 //
 // At level 0 such a render begins with groups of 2 x 2 pixels: a group's samples count for each of
 // its pixels. Where those of a group differ, in what they show or by their spread (isDivided), it
@@ -70,8 +72,11 @@ class FrameStore {
 
     const Rect& window() const { return m_window; }
     std::int32_t channels() const { return m_channels; }
+    // Of adaptive renders.
+    const std::optional<SampleRule>& rule() const { return m_rule; }
 
-    // Bytes that a store of this size takes.
+    // Bytes that a store of this size takes; if adaptive, with a rule that isAlone(), others a
+    // little less.
     static std::uint64_t memoryBytes(const Rect& window, std::int32_t channels,
                                      std::int32_t biasProbeFirst = -1, bool adaptive = false,
                                      bool groups = false);
@@ -150,6 +155,12 @@ class FrameStore {
     bool isAdaptive() const { return m_rule.has_value(); }
     bool hasGroups() const { return m_rule && m_rule->groups; }
     std::int32_t passChannels() const;
+    // What the even and odd passes of a pixel weigh in its mean, if adaptive.
+    struct Halves {
+        double even = 0, odd = 0;
+    };
+    Halves halves(std::size_t pixel) const;
+    void addWeightOfPass(std::size_t pixel, std::uint32_t pass);
     void allot(const Rect& atom, std::uint32_t passes);
     void divideGroups(const Rect& atom);
     void noteContribution(std::size_t pixel, float contribution);
@@ -173,17 +184,21 @@ class FrameStore {
     std::int32_t m_emissionFirst{};
     std::optional<SampleRule> m_rule;
 
-    std::vector<double> m_sums;           // sum w_k x_k, for each pixel and channel
-    std::vector<double> m_weights;        // W, for each pixel
-    std::vector<double> m_deviations;     // M2, for each pixel and beauty channel
-    std::vector<std::uint32_t> m_passes;  // n, for each pixel
+    ZeroedVector<double> m_sums;           // sum w_k x_k, for each pixel and channel
+    ZeroedVector<double> m_weights;        // W, for each pixel
+    ZeroedVector<double> m_deviations;     // M2, for each pixel and beauty channel
+    ZeroedVector<std::uint32_t> m_passes;  // n, for each pixel
     // Of even passes. Sums: for each pixel those of beauty, then of the probe; all if adaptive.
-    std::vector<double> m_evenSums, m_evenWeights;
-    std::vector<std::uint32_t> m_evenPasses;
+    ZeroedVector<double> m_evenSums, m_evenWeights;
+    ZeroedVector<std::uint32_t> m_evenPasses;
     // If adaptive: for each pixel of even passes, then of odd ones, the samples a pass and what was
     // seen.
     std::vector<std::uint16_t> m_allotted;
-    std::vector<SeenSamples> m_seen;
+    ZeroedVector<SeenSamples> m_seen;
+    // If the rule isAlone(), in the same order: what a pass weighs in the pixel's mean, and the sum
+    // of what those weighed that were made.
+    std::vector<std::uint16_t> m_passWeights;
+    ZeroedVector<double> m_halfWeights;
     // If there are groups: of each pixel the contribution that its group's samples have shown so
     // far, or one of the numbers above.
     std::vector<float> m_groups;

@@ -33,6 +33,8 @@ void FrameStoreBytes::forEachArray(Store& store, Visit visit) {
     visit(store.m_evenPasses);
     visit(store.m_allotted);
     visit(store.m_seen);
+    visit(store.m_passWeights);
+    visit(store.m_halfWeights);
     visit(store.m_groups);
 }
 

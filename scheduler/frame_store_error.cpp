@@ -87,8 +87,8 @@ void FrameStore::readMeans(std::int32_t y, std::vector<NeighbourRows::Pixel>& ro
 void FrameStore::visitError(std::int32_t x, std::int32_t y, const NeighbourRows& rows,
                             const ErrorVisitor& visit) const {
     const std::size_t pixel = pixelIndex(x, y);
-    const double evenPasses = m_evenPasses[pixel], oddPasses = m_passes[pixel] - evenPasses;
-    if (evenPasses == 0 || oddPasses == 0) return;
+    const Halves weights = halves(pixel);
+    if (weights.even == 0 || weights.odd == 0) return;
     const double weight = m_weights[pixel], even = m_evenWeights[pixel], odd = weight - even;
     const auto meanEven = [&](std::int32_t channel) { return evenSum(pixel, channel) / even; };
     const auto meanOdd = [&](std::int32_t channel) {
@@ -97,7 +97,7 @@ void FrameStore::visitError(std::int32_t x, std::int32_t y, const NeighbourRows&
         return (sum - evenSum(pixel, channel)) / odd;
     };
     // The halves' shares in the mean; see mean().
-    const double share = isAdaptive() ? evenPasses / (evenPasses + oddPasses) : even / weight;
+    const double share = isAdaptive() ? weights.even / (weights.even + weights.odd) : even / weight;
     PixelMeans means;
     for (std::int32_t i = 0; i < kBeautyChannels; ++i) {
         const auto to = static_cast<std::size_t>(i);

@@ -17,13 +17,20 @@
 
 namespace pm {
 
+FrameStore::Halves FrameStore::halves(std::size_t pixel) const {
+    if (!m_halfWeights.empty()) return {m_halfWeights[2 * pixel], m_halfWeights[2 * pixel + 1]};
+    const double even = m_evenPasses[pixel];
+    return {even, m_passes[pixel] - even};
+}
+
 double FrameStore::mean(std::size_t pixel, std::int32_t channel) const {
     const double weight = m_weights[pixel];
     if (!(weight > 0.0)) return 0.0;
     const double sum =
         m_sums[pixel * static_cast<std::size_t>(m_channels) + static_cast<std::size_t>(channel)];
-    const double even = m_evenPasses[pixel], odd = m_passes[pixel] - m_evenPasses[pixel];
-    if (!isAdaptive() || even == 0.0 || odd == 0.0) return sum / weight;
+    if (!isAdaptive()) return sum / weight;
+    const auto [even, odd] = halves(pixel);
+    if (even == 0.0 || odd == 0.0) return sum / weight;
     const double evenWeight = m_evenWeights[pixel], ofEven = evenSum(pixel, channel);
     return (even * (ofEven / evenWeight) + odd * ((sum - ofEven) / (weight - evenWeight))) /
            (even + odd);
@@ -35,10 +42,10 @@ double FrameStore::varianceOfMean(std::size_t pixel, std::int32_t beautyChannel)
     // Rounding can leave a tiny negative sum where all passes agree; NaN is to stay NaN.
     const double deviation = m2 < 0.0 ? 0.0 : m2;
     const double ofSample = deviation / static_cast<double>(m_passes[pixel] - 1);
-    const double even = m_evenPasses[pixel], all = m_passes[pixel];
-    if (!isAdaptive() || even == 0.0 || even == all) return ofSample / m_weights[pixel];
+    const auto [even, odd] = halves(pixel);
+    if (!isAdaptive() || even == 0.0 || odd == 0.0) return ofSample / m_weights[pixel];
     const double evenWeight = m_evenWeights[pixel], oddWeight = m_weights[pixel] - evenWeight;
-    const double evenShare = even / all, oddShare = (all - even) / all;
+    const double evenShare = even / (even + odd), oddShare = odd / (even + odd);
     return ofSample * (evenShare * evenShare / evenWeight + oddShare * oddShare / oddWeight);
 }
 

@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "scheduler/atom_noise.h"
+
 namespace pm {
 
 // Dynamic anti-aliasing: how many samples a pixel gets in each pass, by how much its samples
@@ -13,9 +15,9 @@ namespace pm {
 //
 // A pixel that decides by the samples it then keeps loses rare light. So even passes decide for odd
 // ones and the reverse: the two share no random number, and the weight of a half in the mean is its
-// number of passes, whatever its samples (FrameStore). Of the half that decides only those samples
-// count that it has in any case, at the least level: how many more it has was decided by the half
-// that it decides for.
+// number of passes, whatever its samples (FrameStore; but see the last point). Of the half that
+// decides only those samples count that it has in any case, at the least level: how many more it
+// has was decided by the half that it decides for.
 //
 // The rule: of N samples in four passes whose relative spread is s, one more lowers the squared
 // relative error by s^2 / N^2. A pixel gets samples until that is less than threshold^2, so
@@ -26,18 +28,31 @@ namespace pm {
 // than another is not to have some more.
 //
 // That is so where the samples of a pass share noise, such as that of its photons: more samples
-// don't lower it, more passes do. Where they share none a pixel's passes are as good as one, and
-// all that counts is how many samples a pixel has beside others. So there
-// - the threshold T is a half, and pixels may differ more;
-// - N = 16 (s / (16 T))^(3/4), as the squared error falls like N^(-5/3) then, not like 1 / N.
+// don't lower it, more passes do. Where they share none (isAlone) a pixel's passes are as good as
+// one, and all that counts is how many samples a pixel has beside others. So there
+// - the threshold T falls: a third of it for the second pass, a twelfth for the third and fourth,
+// then
+//   a 24th; N = 16 (s / (16 T))^(3/4), as the squared error falls like N^(-5/3), not like 1/N;
+// - noise that is even gets samples that are even: few samples tell little of one pixel's spread,
+//   but much of the spread of an atom's 64. What a pixel differs by from them counts only as far as
+//   the pixels differ more than normal noise would make them (AtomNoise);
+// - s^2 is lowered by how much less than s^2 / N the means of N samples vary between pixels: a
+//   low-discrepancy sequence cures smooth light by itself;
+// - there are steps between the powers of two, 3/2 of them, and the passes of a half make up for
+//   what earlier ones lacked (madeUp);
+// - passes weigh in a pixel's mean by what the rule allots by other pixels alone: the pixel's own
+//   samples have no part in it, and those of others are independent, so there is no bias.
 struct SampleRule {
     std::uint32_t least = 1;  // samples of a pixel in a pass, up to 65535
-    std::uint32_t most = 1;   // as well, at least `least`
+    std::uint32_t most = 1;   // as well, at least `least`; of a half's passes in the mean
     double threshold = 0.01;  // > 0
     // At first, pixels are taken together in groups of 2 x 2, on even coordinates.
     bool groups = false;
     // The samples of a pass share noise.
     bool sharesNoise = true;
+
+    // Pixels have samples of their own in each pass, which share no noise.
+    bool isAlone() const { return !sharesNoise && least > 0; }
 };
 
 // The rule for levels from least to most, 0 to 6. Of levels 0, where it begins with groups, and 1,
@@ -47,14 +62,6 @@ SampleRule sampleRule(std::uint32_t leastLevel, std::uint32_t mostLevel, double 
 
 // Errors: kInvalidArgument for numbers that are not allowed.
 void checkSampleRule(const SampleRule& rule);
-
-// What one half of the passes, the even or the odd ones, has seen of a pixel by the samples that it
-// has in any case.
-struct SeenSamples {
-    double samples = 0;  // their number
-    double sums[3]{};    // of the beauty
-    double square = 0;   // sum over samples and channels of the beauty squared
-};
 
 // Whether samples are allotted anew after so many passes: 1, 2, 4, 8, ...
 bool allotsAfter(std::uint32_t passes);
@@ -66,10 +73,17 @@ bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSample
 // Samples a pass of a pixel of this relative spread, after so many passes.
 std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes, double spread);
 
+// What a pixel gets in a pass, where it is allotted so much for each pass of that half and has had
+// `had` in those before: if isAlone(), what is lacking to that, at least the least, at most twice
+// what is allotted. Of samples, and of the weights of passes.
+double madeUp(const SampleRule& rule, std::uint32_t pass, double had, double allotted);
+
 // Samples a pass of the pixels of one atom of 8 x 8, row by row, after so many passes, by what the
 // other half of them has seen. A pixel's neighbours count where they are in the atom: so a picture
-// does not depend on crop or buckets.
-void allotSamples(const SampleRule& rule, std::uint32_t passes, std::span<const SeenSamples> seen,
-                  std::span<std::uint16_t> samples);
+// does not depend on crop or buckets. weights, if isAlone(): what such a pass weighs in the mean of
+// a pixel, by the same rule but without what that pixel itself has seen.
+void allotSamples(const SampleRule& rule, std::uint32_t passes,
+                  std::span<const SeenSamples, kAtomPixels> seen, std::span<std::uint16_t> samples,
+                  std::span<std::uint16_t> weights = {});
 
 }  // namespace pm

@@ -23,6 +23,12 @@ std::string oneLine(std::string text) {
     return text;
 }
 
+const std::vector<float>& valuesOf(const Picture& picture, std::string_view name) {
+    static const std::vector<float> kNone;
+    const auto found = std::ranges::find(picture.channels, name, &Channel::name);
+    return found == picture.channels.end() ? kNone : found->values;
+}
+
 std::vector<std::string> channelNames(std::string_view list) {
     std::vector<std::string> names;
     while (true) {
@@ -150,12 +156,8 @@ const std::string* renderingSpaceOf(const Picture& picture) {
 }
 
 bool isBlackThoughHit(const Picture& picture) {
-    const auto channel = [&](std::string_view name) -> const std::vector<float>& {
-        static const std::vector<float> kNone;
-        const auto found = std::ranges::find(picture.channels, name, &Channel::name);
-        return found == picture.channels.end() ? kNone : found->values;
-    };
-    const auto &r = channel("R"), &g = channel("G"), &b = channel("B"), &a = channel("A");
+    const auto &r = valuesOf(picture, "R"), &g = valuesOf(picture, "G"),
+               &b = valuesOf(picture, "B"), &a = valuesOf(picture, "A");
     if (r.size() != a.size() || g.size() != a.size() || b.size() != a.size()) return false;
     std::size_t covered = 0, lit = 0;
     for (std::size_t i = 0; i < a.size(); ++i) {
@@ -164,6 +166,11 @@ bool isBlackThoughHit(const Picture& picture) {
         if (r[i] != 0.0f || g[i] != 0.0f || b[i] != 0.0f) ++lit;
     }
     return covered > 0 && 100 * lit <= covered;
+}
+
+bool showsNothing(const Picture& picture) {
+    const std::vector<float>& coverage = valuesOf(picture, "A");
+    return !coverage.empty() && std::ranges::none_of(coverage, [](float a) { return a > 0.0f; });
 }
 
 }  // namespace pm::host

@@ -34,4 +34,7 @@ const std::string* renderingSpaceOf(const Picture& picture);
 // Whether something is covered (A above 0) and, but for one pixel in a hundred, exactly black.
 bool isBlackThoughHit(const Picture& picture);
 
+// Whether nothing is covered: A is there, and 0 everywhere.
+bool showsNothing(const Picture& picture);
+
 }  // namespace pm::host

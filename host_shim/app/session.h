@@ -17,6 +17,8 @@
 
 namespace pm::host {
 
+class MaterialBuilder;
+
 // One rendering from files to files, or one merging of parts.
 class Session {
   public:
@@ -29,10 +31,13 @@ class Session {
     int render();
     void checkBeforeReading();
     void readReference(const ColourPipeline& colour);
+    void buildScene(const ColourPipeline& colour, const PluginContext& context,
+                    MaterialBuilder& materials, PluginScene& scene);
     int renderScene(const ColourPipeline& colour, const PluginContext& context);
     int merge();
     void checkBeforeMerging();
     PmrContextDesc contextDesc(const Plugin& plugin);
+    // What comes after the render (session_pictures.cpp).
     int finishPhotons(PmrStatus status);
     int finish(const PictureSource& source, PmrStatus status, const ColourPipeline& colour,
                const std::optional<DisplayTransform>& display);

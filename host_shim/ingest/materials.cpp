@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <sstream>
 
 namespace pm::host {
@@ -121,7 +122,8 @@ class MaterialReader {
         for (float& channel : m_material.emission) {
             if (channel >= 0 && std::isfinite(channel)) continue;
             note(Warning::kMaterialValue, "Ke",
-                 fmt::format("Ke {} is below 0; 0 is taken", channel));
+                 fmt::format("Ke {} is not in [0, {}]; 0 is taken", channel,
+                             std::numeric_limits<float>::max()));
             channel = 0;
         }
         const bool saysNothing = !given("Kd") && !given("Ks") && !given("Ke") && !given("Tf") &&
@@ -253,7 +255,8 @@ class MaterialReader {
     void dropDiffuse(const char* kind) {
         // Boxes in common use give their spheres a Kd of 0.01; that much is not worth a line.
         constexpr float kWorthALine = 0.02f;
-        if (*std::ranges::max_element(m_material.diffuse) > kWorthALine) {
+        const bool isGiven = given("Kd") || m_material.diffuseTexture;
+        if (isGiven && *std::ranges::max_element(m_material.diffuse) > kWorthALine) {
             note(Warning::kMaterialPart, "Kd",
                  fmt::format("the diffuse part of a {} is not rendered and left out", kind));
         }

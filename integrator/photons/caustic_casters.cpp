@@ -270,11 +270,6 @@ class CasterTree {
 
 }  // namespace
 
-bool castsCaustics(const MaterialDescription& material) {
-    return material.kind != MaterialKind::kSurface || !isBlack(material.glossy) ||
-           material.transparency > 0.0f || material.opacityTexture != kNoTexture;
-}
-
 std::vector<Caster> findCasters(const Scene& scene, std::span<const EmissionPoint> viewpoints,
                                 const CancelCheck& cancel) {
     std::vector<Item> items = castingItems(scene, cancel);

@@ -12,7 +12,9 @@
 namespace pm {
 
 // Whether light can leave a surface of this material other than diffusely, which makes it caustic.
-bool castsCaustics(const MaterialDescription& material);
+inline bool castsCaustics(const MaterialDescription& material) {
+    return !isDiffuseAtMost(material);
+}
 
 // Casters that together hold every surface of the scene that casts caustics, at most kMostCasters:
 // as many as make the solid angle they fill, seen from the viewpoints, clearly smaller. Empty when

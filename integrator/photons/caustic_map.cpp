@@ -28,7 +28,7 @@ PilotRadius::PilotRadius(std::vector<Photon> pilot, std::uint32_t estimatePhoton
       m_count(std::max(kFewestPilotPhotons, estimatePhotons / kPilotShare)),
       m_typical(m_pilot.size() > m_count ? m_pilot.typicalRadius(m_count) : fallback) {}
 
-float CausticRadius::at(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const {
+float PilotRadius::at(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const {
     const float largest = kLargestRadius * m_typical;
     const float radius = m_pilot.radiusOf({position, normal, m_count, largest}, scratch);
     // Photons in one point leave no area to divide by.

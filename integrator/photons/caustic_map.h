@@ -25,26 +25,19 @@ class PilotRadius {
     PilotRadius(std::vector<Photon> pilot, std::uint32_t estimatePhotons, float fallback,
                 const CancelCheck& cancel = {});
 
-    // What half of the pilot's photons need; scene units, > 0.
+    // One for all places: what half of the pilot's photons need; scene units, > 0.
     float typical() const { return m_typical; }
 
-    const PhotonMap& photons() const { return m_pilot; }
+    // From place to place: narrow where light is focused, wide where it is thin; scene units, > 0.
+    float at(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const;
 
-  protected:
+    const PhotonMap& photons() const { return m_pilot; }
+    std::uint64_t memoryBytes() const { return m_pilot.memoryBytes(); }
+
+  private:
     PhotonMap m_pilot;
     std::uint32_t m_count;
     float m_typical;
-};
-
-// From point to point: narrow where light is focused, wide where it is thin.
-class CausticRadius : public PilotRadius {
-  public:
-    using PilotRadius::PilotRadius;
-
-    // Radius for the first pass, scene units, > 0.
-    float at(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const;
-
-    std::uint64_t memoryBytes() const { return m_pilot.memoryBytes(); }
 };
 
 // Caustics of one pass, estimated straight at the surfaces that the camera sees.
@@ -54,7 +47,7 @@ class CausticMap {
     // radiusFactor: this pass's radii over the first pass's. radius and patches must outlive this.
     // patches: null where all discs are to be taken as whole. Throws Error(kCancelled) soon after
     // cancel is set.
-    CausticMap(std::vector<Photon> photons, const CausticRadius& radius, float radiusFactor,
+    CausticMap(std::vector<Photon> photons, const PilotRadius& radius, float radiusFactor,
                const SurfacePatches* patches = nullptr, const CancelCheck& cancel = {})
         : m_map(std::move(photons), cancel),
           m_radius(radius),
@@ -70,7 +63,7 @@ class CausticMap {
 
   private:
     PhotonMap m_map;
-    const CausticRadius& m_radius;
+    const PilotRadius& m_radius;
     float m_radiusFactor;
     const SurfacePatches* m_patches;
 };

@@ -2,12 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/photons/irradiance_sites.h"
 
-#include <sys/mman.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <new>
 
 #include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
@@ -23,7 +20,6 @@ constexpr float kSiteCosine = 0.8f;
 // ... and evenly: then the way is at right angles to the sum of both normals, within this.
 constexpr float kSiteFlatness = 0.2f;
 constexpr std::size_t kFewestSlots = 1 << 16, kMostSlots = 1 << 22, kMostProbes = 16;
-constexpr std::size_t kHugePage = std::size_t{2} << 20;
 
 std::size_t slotsFor(std::size_t photons) {
     return std::bit_ceil(std::clamp(photons, kFewestSlots, kMostSlots));
@@ -46,27 +42,8 @@ IrradianceSites::IrradianceSites(const Scene& scene, const PhotonMap& map, float
                                  const SurfacePatches* patches)
     : m_estimate(scene, map, radius, patches),
       m_cells(scene, kCellSize * radius, originOf(map, radius)),
-      m_slotCount(slotsFor(map.size())) {
-    allocate();
-}
-
-void IrradianceSites::Unmap::operator()(void* p) const {
-    munmap(p, bytes);
-}
-
-// Slots are asked for in no order: in small pages the processor would have to look up the place of
-// most of these anew.
-void IrradianceSites::allocate() {
-    std::size_t size = m_slotCount * sizeof(Slot), space = size + kHugePage;
-    void* first = mmap(nullptr, space, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
-    if (first == MAP_FAILED) throw std::bad_alloc();
-    m_memory = std::unique_ptr<void, Unmap>(first, Unmap{space});
-    first = std::align(kHugePage, size, first, space);
-#if defined(MADV_HUGEPAGE)
-    madvise(first, size, MADV_HUGEPAGE);  // a wish: nothing is lost where it isn't granted
-#endif
-    m_slots = static_cast<Slot*>(first);
-}
+      m_slotCount(slotsFor(map.size())),
+      m_slots(makeBigZeroedArray<Slot>(m_slotCount)) {}
 
 IrradianceSites::Value IrradianceSites::compute(const Cell& cell, std::uint64_t hash) const {
     Value value;

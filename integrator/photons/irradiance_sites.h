@@ -5,9 +5,8 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
-#include <memory>
-#include <vector>
 
+#include "integrator/photons/big_array.h"
 #include "integrator/photons/photon_map.h"
 #include "integrator/photons/surface_cells.h"
 #include "integrator/photons/surface_estimate.h"
@@ -57,11 +56,6 @@ class IrradianceSites {
         std::array<std::atomic<float>, 12> value;
         std::atomic<std::uint32_t> ready;
     };
-    struct Unmap {
-        std::size_t bytes;
-        void operator()(void* p) const;
-    };
-    void allocate();
 
     Slot* slotOf(std::uint64_t hash) const;
     Value compute(const Cell& cell, std::uint64_t hash) const;
@@ -69,10 +63,10 @@ class IrradianceSites {
 
     SurfaceEstimate m_estimate;
     SurfaceCells m_cells;
-    // Open addressing by the cell's hash; all zero where nobody has asked yet.
+    // Open addressing by the cell's hash; all zero where nobody has asked yet. Slots are asked for
+    // in no order: hence large pages.
     std::size_t m_slotCount;
-    std::unique_ptr<void, Unmap> m_memory;
-    Slot* m_slots = nullptr;
+    BigArray<Slot> m_slots;
 };
 
 }  // namespace pm

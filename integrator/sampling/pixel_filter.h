@@ -22,6 +22,9 @@ enum class PixelFilter {
 // As in PBRT, fourth edition, whose density is 0 at the cut; here it is 1.1 % of the greatest.
 inline constexpr double kGaussianSigma = 0.5;   // pixels
 inline constexpr double kGaussianRadius = 1.5;  // pixels
+// Share of a normal variable beyond 3 standard deviations, on one side.
+inline constexpr double kBeyondCut = 0.0013498980316300946;
+static_assert(kGaussianRadius == 3 * kGaussianSigma);
 
 // The number that a standard normal variable is below with probability 1/2 + q, q within +-0.4999;
 // relative error below 1e-6, of sign and symmetry none [2, PPND7].
@@ -43,11 +46,18 @@ inline double standardNormalQuantile(double q) {
 inline double placeInPixel(PixelFilter filter, float u) {
     const auto uniform = static_cast<double>(u);
     if (filter == PixelFilter::kBox) return uniform;
-    // Share of a normal variable beyond 3 standard deviations, on one side.
-    static_assert(kGaussianRadius == 3 * kGaussianSigma);
-    constexpr double kBeyondCut = 0.0013498980316300946;
     return 0.5 +
            kGaussianSigma * standardNormalQuantile((uniform - 0.5) * (1.0 - 2.0 * kBeyondCut));
+}
+
+// Density of that place, over the pixel's width.
+inline double densityInPixel(PixelFilter filter, double place) {
+    if (filter == PixelFilter::kBox) return place >= 0 && place < 1 ? 1.0 : 0.0;
+    const double z = (place - 0.5) / kGaussianSigma;
+    if (!(std::abs(z) <= kGaussianRadius / kGaussianSigma)) return 0.0;
+    constexpr double kOverRootTwoPi = 0.3989422804014327;
+    return kOverRootTwoPi / kGaussianSigma / (1.0 - 2.0 * kBeyondCut) *
+           pinnedExp2(-0.5 * std::numbers::log2e * z * z);
 }
 
 }  // namespace pm

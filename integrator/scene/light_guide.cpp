@@ -248,18 +248,25 @@ const float* LightGuide::table(const Receiver& receiver) const {
     return m_tables.data() + std::size_t{cell->axis} * m_clusters.size();
 }
 
-std::uint32_t LightGuide::choose(const Receiver& receiver, double& u, float& probability) const {
-    const float* cumulative = table(receiver);
-    if (!cumulative) return m_tree.choose(LightTree::kRoot, receiver, u, probability);
-    const float* last = cumulative + m_clusters.size() - 1;
-    const float* chosen = std::upper_bound(
-        cumulative, last, u, [](double x, float sum) { return x < static_cast<double>(sum); });
-    const float below = chosen == cumulative ? 0.0f : chosen[-1];
-    const float share = *chosen - below;
-    probability *= share;
-    u = std::min((u - static_cast<double>(below)) / static_cast<double>(share), 1.0 - 0x1p-53);
-    return m_tree.choose(m_clusters[static_cast<std::size_t>(chosen - cumulative)], receiver, u,
-                         probability);
+void LightGuide::choose(const Receiver& receiver, std::span<LightDescent> descents) const {
+    const float* const cumulative = table(receiver);
+    for (LightDescent& descent : descents) {
+        descent.node = LightTree::kRoot;
+        if (!cumulative) continue;
+        // The first that is above u, without a branch that none can foresee.
+        const float* chosen = cumulative;
+        for (std::size_t left = m_clusters.size() - 1; left > 0;) {
+            const std::size_t half = (left + 1) / 2;
+            chosen += descent.u >= static_cast<double>(chosen[half - 1]) ? half : 0;
+            left -= half;
+        }
+        const float below = chosen == cumulative ? 0.0f : chosen[-1];
+        const float share = *chosen - below;
+        descent.node = m_clusters[static_cast<std::size_t>(chosen - cumulative)];
+        descent.probability *= share;
+        descent.u = (descent.u - static_cast<double>(below)) / static_cast<double>(share);
+    }
+    m_tree.choose(receiver, descents);
 }
 
 float LightGuide::probability(const Receiver& receiver, std::uint32_t light) const {

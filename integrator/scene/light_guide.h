@@ -31,8 +31,8 @@ class LightGuide {
     // the result is the same bits for any number of threads.
     LightGuide(const LightTree& tree, std::span<const Receiver> receivers, const Look& look);
 
-    // As LightTree's of those names, over all lights.
-    std::uint32_t choose(const Receiver& receiver, double& u, float& probability) const;
+    // As LightTree's of those names, over all lights, whatever nodes the descents name.
+    void choose(const Receiver& receiver, std::span<LightDescent> descents) const;
     float probability(const Receiver& receiver, std::uint32_t light) const;
 
     std::uint64_t memoryBytes() const;

@@ -5,6 +5,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <vector>
@@ -53,9 +54,17 @@ double refined(Vec2f u) {
     return static_cast<double>(u.x) + static_cast<double>(bits >> 40) * 0x1p-48;
 }
 
+float toBelowOne(double x) {
+    return std::min(static_cast<float>(x), 1.0f - 0x1p-24f);
+}
+
+// Choices of guided lights that are made side by side.
+constexpr std::size_t kMostAtOnce = 16;
+
 // Random numbers for trials, which nothing else uses.
 constexpr std::uint64_t kTrialSeed = 0x6c69676874677565ull;
 constexpr std::uint64_t kNoNode = ~std::uint64_t{0};
+constexpr const char* kLooking = "looking which lamps reach where";
 
 // Shadow rays that look which lights are hidden.
 constexpr std::size_t kSightingsOfAPlace = 32;
@@ -74,24 +83,27 @@ LightSampler::LightSampler(const Scene& scene)
                             kLeastFarShare, kMostFarShare);
 }
 
-void LightSampler::learn(std::span<const LitPlace> places, std::uint64_t seed) {
+void LightSampler::learn(std::span<const LitPlace> places, std::uint64_t seed,
+                         const CancelCheck& cancel) {
     if (!isGuided() || places.empty()) return;
     std::vector<Receiver> receivers;
     receivers.reserve(places.size());
     for (const LitPlace& place : places) receivers.push_back(receiverAt(place.surface, place.side));
     const std::uint64_t key = combineBits(seed, kTrialSeed);
-    m_tree->learn(look(places, key));
+    m_tree->learn(look(places, key, cancel));
     m_guide = std::make_unique<const LightGuide>(
         *m_tree, receivers, [&](std::size_t place, std::uint32_t node, std::uint32_t number) {
+            cancel.throwIfSet(kLooking);
             return lookFrom(places[place], node, Sampler(key, node, place, number).next2D());
         });
 }
 
-std::vector<Sighting> LightSampler::look(std::span<const LitPlace> places,
-                                         std::uint64_t key) const {
+std::vector<Sighting> LightSampler::look(std::span<const LitPlace> places, std::uint64_t key,
+                                         const CancelCheck& cancel) const {
     const std::size_t count = std::min(kSightingsOfAPlace * places.size(), kMostSightings);
     std::vector<std::optional<Sighting>> found(count);
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        cancel.throwIfSet(kLooking);
         const std::size_t place = i % places.size(), number = i / places.size();
         Sampler sampler(key, kNoNode, place, static_cast<std::uint32_t>(number));
         found[i] = lookFrom(places[place], LightTree::kRoot, sampler.next2D());
@@ -105,36 +117,69 @@ std::vector<Sighting> LightSampler::look(std::span<const LitPlace> places,
 std::optional<Sighting> LightSampler::lookFrom(const LitPlace& place, std::uint32_t node,
                                                Vec2f u) const {
     const Receiver receiver = receiverAt(place.surface, place.side);
-    double x = refined(u);
-    float probability = 1.0f;
-    const std::uint32_t light = m_tree->choose(node, receiver, x, probability);
-    u.x = std::min(static_cast<float>(x), 1.0f - 0x1p-24f);
+    LightDescent descent{refined(u), node};
+    m_tree->choose(receiver, {&descent, 1});
+    u.x = toBelowOne(descent.u);
     LightSample sample;
-    if (!sampleOn(m_scene.lights()[light], probability, place.surface, u, sample) ||
+    if (!this->sample({u, descent.node, descent.probability}, place.surface, sample) ||
         !(dot(sample.direction, receiver.normal) > 0.0f))
         return std::nullopt;
-    return Sighting{light, !m_scene.occluded(sample.shadowRay)};
+    return Sighting{descent.node, !m_scene.occluded(sample.shadowRay)};
 }
 
-std::uint32_t LightSampler::choose(const Surface& surface, const Vec3f& side, Vec2f& u,
-                                   float& probability) const {
-    if (!isGuided()) return m_choice.chooseAndStretch(u.x, probability);
-    const Receiver receiver = receiverAt(surface, side);
-    double x = refined(u);
-    const auto farShare = static_cast<double>(m_farShare);
-    if (x < farShare) {
-        u.x = std::min(static_cast<float>(x / farShare), 1.0f - 0x1p-24f);
-        const std::uint32_t far = m_farChoice.chooseAndStretch(u.x, probability);
-        probability *= m_farShare;
-        return static_cast<std::uint32_t>(m_scene.nearLights().size()) + far;
+void LightSampler::choose(const Surface& surface, const Vec3f& side,
+                          std::span<ChosenLight> chosen) const {
+    if (!isGuided()) {
+        for (ChosenLight& one : chosen)
+            one.light = m_choice.chooseAndStretch(one.u.x, one.probability);
+        return;
     }
-    x = (x - farShare) / (1.0 - farShare);
-    probability = 1.0f - m_farShare;
-    const std::uint32_t light = m_guide
-                                    ? m_guide->choose(receiver, x, probability)
-                                    : m_tree->choose(LightTree::kRoot, receiver, x, probability);
-    u.x = std::min(static_cast<float>(x), 1.0f - 0x1p-24f);
-    return light;
+    const Receiver receiver = receiverAt(surface, side);
+    if (chosen.size() == 1) {
+        chooseGuided<1>(receiver, chosen);
+        return;
+    }
+    while (!chosen.empty()) {
+        const std::size_t count = std::min(chosen.size(), kMostAtOnce);
+        chooseGuided<kMostAtOnce>(receiver, chosen.first(count));
+        chosen = chosen.subspan(count);
+    }
+}
+
+template <std::size_t kMost>
+void LightSampler::chooseGuided(const Receiver& receiver, std::span<ChosenLight> chosen) const {
+    std::array<LightDescent, kMost> descents;
+    std::array<ChosenLight*, kMost> chosenNear;
+    std::size_t near = 0;
+    const auto farShare = static_cast<double>(m_farShare);
+    for (ChosenLight& one : chosen) {
+        const double x = refined(one.u);
+        if (x < farShare) {
+            one.u.x = toBelowOne(x / farShare);
+            one.light = static_cast<std::uint32_t>(m_scene.nearLights().size()) +
+                        m_farChoice.chooseAndStretch(one.u.x, one.probability);
+            one.probability *= m_farShare;
+        } else {
+            descents[near] = {(x - farShare) / (1.0 - farShare), LightTree::kRoot,
+                              1.0f - m_farShare};
+            chosenNear[near++] = &one;
+        }
+    }
+    const std::span<LightDescent> ready(descents.data(), near);
+    if (m_guide) {
+        m_guide->choose(receiver, ready);
+    } else {
+        m_tree->choose(receiver, ready);
+    }
+    for (std::size_t i = 0; i < near; ++i) {
+        ChosenLight& one = *chosenNear[i];
+        one.u.x = toBelowOne(descents[i].u);
+        one.light = descents[i].node;
+        one.probability = descents[i].probability;
+        if (kMost > 1) __builtin_prefetch(&m_scene.lights()[one.light]);
+    }
+    if (kMost == 1) return;  // no time to fetch anything in
+    for (const ChosenLight& one : chosen) m_scene.prefetch(m_scene.lights()[one.light]);
 }
 
 float LightSampler::probability(const Surface& surface, const Vec3f& side,
@@ -166,13 +211,16 @@ Rgb LightSampler::frontRadiance(const Surface& surface) const {
 bool LightSampler::sample(const Surface& surface, const Vec3f& side, Vec2f uPoint,
                           LightSample& sample) const {
     if (empty()) return false;
-    float probability;
-    const std::uint32_t light = choose(surface, side, uPoint, probability);
-    return sampleOn(m_scene.lights()[light], probability, surface, uPoint, sample);
+    ChosenLight chosen{uPoint};
+    choose(surface, side, {&chosen, 1});
+    return this->sample(chosen, surface, sample);
 }
 
-bool LightSampler::sampleOn(const Light& light, float probability, const Surface& surface,
-                            Vec2f uPoint, LightSample& sample) const {
+bool LightSampler::sample(const ChosenLight& chosen, const Surface& surface,
+                          LightSample& sample) const {
+    const Light& light = m_scene.lights()[chosen.light];
+    const float probability = chosen.probability;
+    const Vec2f uPoint = chosen.u;
     switch (light.kind) {
         case Light::Kind::kTriangle:
             return sampleTriangle(surface, light, probability, uPoint, sample);

@@ -15,6 +15,7 @@
 #include "integrator/scene/light_tree.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/surface.h"
+#include "integrator/values/cancel_check.h"
 #include "integrator/values/rgb.h"
 #include "integrator/values/vec.h"
 
@@ -29,6 +30,13 @@ struct LightSample {
                                  // choice's probability alone
     bool isPoint = false;        // point light, spot, parallel light: no other strategy can find it
     Ray shadowRay;               // to be tested with Scene::occluded
+};
+
+// A light to be sampled at a surface.
+struct ChosenLight {
+    Vec2f u;  // random numbers, for the point on it
+    std::uint32_t light = 0;
+    float probability = 0.0f;  // of the choice
 };
 
 // A photon as it leaves a light.
@@ -66,10 +74,19 @@ class LightSampler {
 
     // Learns by shadow rays which lights reach `places`, the places where most samples will be
     // asked for. Nothing happens without many lights or without places. A function of scene, places
-    // and seed; works in parallel in the calling TBB arena.
-    void learn(std::span<const LitPlace> places, std::uint64_t seed);
+    // and seed; works in parallel in the calling TBB arena. Throws Error(kCancelled) soon after
+    // cancel is set; then this must not be used any more.
+    void learn(std::span<const LitPlace> places, std::uint64_t seed,
+               const CancelCheck& cancel = {});
 
-    // False when the chosen point can't shine on the surface.
+    // Chooses a light for each `chosen` by the first number of its u, in [0, 1)^2, which then says
+    // where in the light's share it lay. Several of a surface take less time together.
+    // side: any direction on the side of the surface that is lit.
+    void choose(const Surface& surface, const Vec3f& side, std::span<ChosenLight> chosen) const;
+    // A point on the light that choose() chose for the surface. False when it can't shine there.
+    bool sample(const ChosenLight& chosen, const Surface& surface, LightSample& sample) const;
+
+    // Both. False when the chosen point can't shine on the surface.
     // side: any direction on the side of the surface that is lit; without it, the front.
     // u: of the light by its first number, of the point on it by both.
     bool sample(const Surface& surface, const Vec3f& side, Vec2f u, LightSample& sample) const;
@@ -111,13 +128,13 @@ class LightSampler {
     std::uint64_t memoryBytes() const;
 
   private:
-    std::uint32_t choose(const Surface& surface, const Vec3f& side, Vec2f& u,
-                         float& probability) const;
+    // Of up to kMost lights.
+    template <std::size_t kMost>
+    void chooseGuided(const Receiver& receiver, std::span<ChosenLight> chosen) const;
     float probability(const Surface& surface, const Vec3f& side, std::uint32_t light) const;
-    std::vector<Sighting> look(std::span<const LitPlace> places, std::uint64_t key) const;
+    std::vector<Sighting> look(std::span<const LitPlace> places, std::uint64_t key,
+                               const CancelCheck& cancel) const;
     std::optional<Sighting> lookFrom(const LitPlace& place, std::uint32_t node, Vec2f u) const;
-    bool sampleOn(const Light& light, float probability, const Surface& surface, Vec2f u,
-                  LightSample& sample) const;
     bool sampleTriangle(const Surface& surface, const Light& light, float probability, Vec2f u,
                         LightSample& sample) const;
     bool sampleSphere(const Surface& surface, const Light& light, float probability, Vec2f u,

@@ -15,13 +15,13 @@ namespace {
 // With more lights than a processor's near memory has nodes for, a leaf holds a run of lights ...
 constexpr std::size_t kMostSingle = 4096;
 constexpr std::size_t kRun = 6;
-// ... and a longer one with very many: nodes are no more than about twice this, some 8 MB.
+// ... and a longer one with very many: nodes are no more than about twice this, some 32 MB.
 constexpr std::size_t kMostLeaves = 1 << 16;
 // A node is divided in the middle of its longest axis, unless one part then has less than this
 // share of the lights: the tree stays shallow.
 constexpr std::size_t kLeastShare = 8;
-// Cosines count at least this: bounds are rounded, and shading normals lean.
-constexpr float kLeastCosine = 0.02f;
+// Of a leaf's choices this share is made evenly, so that no light is forgotten.
+constexpr double kEvenShare = 1e-4;
 
 // So many sightings is what is known of the node above worth; and no light counts as hidden more
 // often than all but this.
@@ -66,14 +66,6 @@ Bounds boundsOf(const Scene& scene, const Light& light) {
     return b;
 }
 
-// Share of one light in the power of it and those after it, which `rest` becomes. Those get
-// something however much `rest` was rounded.
-float shareOfRest(float power, float& rest) {
-    const float share = rest > 0.0f ? std::min(0.9999f, power / rest) : 0.5f;
-    rest -= power;
-    return share;
-}
-
 float sineOf(float cosine) {
     return std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
 }
@@ -93,6 +85,7 @@ class LightTree::Builder {
         tree.m_visibility.assign(lights.size(), 1.0f);
         tree.m_positions.resize(lights.size());
         for (std::uint32_t i = 0; i < lights.size(); ++i) tree.m_positions[tree.m_order[i]] = i;
+        sumUpLeaves();
     }
 
   private:
@@ -126,21 +119,20 @@ class LightTree::Builder {
             anyDirection |= b.anyDirection;
             power += m_tree.m_scene->lights()[light].powerMean;
         }
-        Node node{};
-        node.centre = Vec3f((lo + hi) * 0.5);
-        node.radius = static_cast<float>(0.5 * length(hi - lo));
-        node.power = static_cast<float>(power);
-        node.strength = node.power;
+        Node node;
+        LightBounds& bounds = node.bounds;
+        bounds.centre = Vec3f((lo + hi) * 0.5);
+        bounds.radius = static_cast<float>(0.5 * length(hi - lo));
+        node.power = bounds.strength = static_cast<float>(power);
         node.begin = static_cast<std::uint32_t>(begin);
-        node.cosSpread = 0.0f;
-        node.sinSpread = 1.0f;
         if (!anyDirection && lengthSquared(normals) > 0.0f) {
-            node.axis = normalize(normals);
-            node.cosSpread = 1.0f;
+            const Vec3f axis = normalize(normals);
+            float cosSpread = 1.0f;
             for (const std::uint32_t light : lights)
-                node.cosSpread = std::min(node.cosSpread, dot(node.axis, m_bounds[light].axis));
-            node.cosSpread = std::max(0.0f, node.cosSpread);
-            node.sinSpread = sineOf(node.cosSpread);
+                cosSpread = std::min(cosSpread, dot(axis, m_bounds[light].axis));
+            cosSpread = std::max(0.0f, cosSpread);
+            bounds.axis = axis * cosSpread;
+            bounds.sinSpread = sineOf(cosSpread);
         }
         return node;
     }
@@ -173,13 +165,59 @@ class LightTree::Builder {
         return begin + (end - begin) / 2;
     }
 
+    void sumUpLeaves() {
+        m_tree.m_cumulative.resize(m_tree.m_order.size());
+        for (std::uint32_t node = 0; node < m_tree.m_nodes.size(); ++node) {
+            if (m_tree.m_nodes[node].right != 0) continue;
+            const std::uint32_t begin = m_tree.m_nodes[node].begin, end = m_tree.end(node);
+            const auto powerAt = [&](std::uint32_t at) {
+                return m_tree.m_scene->lights()[m_tree.m_order[at]].powerMean;
+            };
+            double power = 0, sum = 0;
+            for (std::uint32_t at = begin; at < end; ++at) power += powerAt(at);
+            const double even = (power > 0 ? kEvenShare : 1.0) / (end - begin);
+            for (std::uint32_t at = begin; at < end; ++at) {
+                sum += even;
+                if (power > 0) sum += (1.0 - kEvenShare) * powerAt(at) / power;
+                m_tree.m_cumulative[at] = at + 1 == end ? 1.0f : static_cast<float>(sum);
+            }
+        }
+    }
+
     LightTree& m_tree;
     std::vector<Bounds> m_bounds;
     std::size_t m_run = 1;
 };
 
 LightTree::LightTree(const Scene& scene) : m_scene(&scene) {
-    if (!scene.nearLights().empty()) Builder(*this);
+    if (scene.nearLights().empty()) return;
+    Builder(*this);
+    makeQuads();
+}
+
+void LightTree::makeQuads() {
+    m_quads.clear();
+    m_entries.assign(m_nodes.size(), 0);
+    std::uint32_t quads = 0;
+    for (std::size_t i = 0; i < m_nodes.size(); ++i)
+        m_entries[i] = m_nodes[i].right == 0 ? kLeaf | m_nodes[i].begin : quads++;
+    m_quads.resize(quads);
+    for (std::uint32_t i = 0; i < m_nodes.size(); ++i) {
+        if (m_nodes[i].right == 0) continue;
+        std::size_t group = 0;
+        const auto add = [&](std::uint32_t node) {
+            m_quads[m_entries[i]].set(group++, m_nodes[node].bounds, m_nodes[node].begin,
+                                      m_entries[node]);
+        };
+        for (const std::uint32_t child : {i + 1, m_nodes[i].right}) {
+            if (m_nodes[child].right == 0) {
+                add(child);
+            } else {
+                add(child + 1);
+                add(m_nodes[child].right);
+            }
+        }
+    }
 }
 
 LightTree::Seen LightTree::sum(std::uint32_t node, std::span<const Seen> lights,
@@ -205,7 +243,7 @@ void LightTree::weaken(std::uint32_t node, float visibleAbove, std::span<const S
     const float visible = (nodes[node].visible + kPriorSightings * visibleAbove) /
                           (nodes[node].tried + kPriorSightings);
     const float atLeast = std::max(visible, kLeastVisible);
-    m_nodes[node].strength = m_nodes[node].power * std::sqrt(atLeast);
+    m_nodes[node].bounds.strength = m_nodes[node].power * std::sqrt(atLeast);
     if (m_nodes[node].right == 0) {
         std::fill(m_visibility.begin() + m_nodes[node].begin, m_visibility.begin() + end(node),
                   atLeast);
@@ -224,36 +262,21 @@ void LightTree::learn(std::span<const Sighting> sightings) {
     }
     sum(kRoot, lights, nodes);
     weaken(kRoot, 0.5f, nodes);
-}
-
-// After [1], section 4, with simpler bounds of the cosines: of what may arrive from the ball's
-// points, as if they were as far away as its centre.
-float LightTree::importance(const Node& node, const Receiver& receiver) const {
-    const Vec3f toCentre = node.centre - receiver.position;
-    const float d2 = lengthSquared(toCentre), r2 = node.radius * node.radius;
-    if (!(d2 > r2)) return node.strength / std::max(r2, std::numeric_limits<float>::min());
-    const float d = std::sqrt(d2), inverse = 1.0f / d;
-    const float in = (dot(receiver.normal, toCentre) + node.radius) * inverse;
-    // cos(a - b) <= cos a cos b + sin b
-    const float out =
-        (node.radius - dot(node.axis, toCentre) * node.cosSpread) * inverse + node.sinSpread;
-    return node.strength * std::clamp(in, kLeastCosine, 1.0f) *
-           std::clamp(out, kLeastCosine, 1.0f) * (inverse * inverse);
+    makeQuads();
 }
 
 float LightTree::importance(std::uint32_t node, const Receiver& receiver, int levels) const {
     const std::uint32_t right = m_nodes[node].right;
-    if (levels == 0 || right == 0) return importance(m_nodes[node], receiver);
+    if (levels == 0 || right == 0) {
+        LightQuad quad;
+        quad.set(0, m_nodes[node].bounds, 0, 0);
+        return quad.importances(receiver)[0];
+    }
+    if (levels == 2) {
+        const LightQuad::Four found = m_quads[m_entries[node]].importances(receiver);
+        return (found[0] + found[1]) + (found[2] + found[3]);
+    }
     return importance(node + 1, receiver, levels - 1) + importance(right, receiver, levels - 1);
-}
-
-float LightTree::leftProbability(std::uint32_t node, const Receiver& receiver) const {
-    const float left = importance(m_nodes[node + 1], receiver);
-    const float right = importance(m_nodes[m_nodes[node].right], receiver);
-    const float share = left / (left + right);
-    // Neither child is ever out of reach; the comparison is false for NaN.
-    constexpr float kLeast = 1e-4f;
-    return share >= kLeast ? std::min(share, 1.0f - kLeast) : share >= 0.0f ? kLeast : 0.5f;
 }
 
 std::uint32_t LightTree::end(std::uint32_t leaf) const {
@@ -262,56 +285,48 @@ std::uint32_t LightTree::end(std::uint32_t leaf) const {
                                      : static_cast<std::uint32_t>(m_order.size());
 }
 
-float LightTree::powerAt(std::uint32_t position) const {
-    return static_cast<float>(m_scene->lights()[m_order[position]].powerMean);
+void LightTree::choose(const Receiver& receiver, std::span<LightDescent> descents) const {
+    for (LightDescent& descent : descents) {
+        descent.node = m_entries[descent.node];
+        if ((descent.node & kLeaf) == 0) __builtin_prefetch(&m_quads[descent.node]);
+    }
+    for (bool any = true; any;) {
+        any = false;
+        for (LightDescent& descent : descents) {
+            if ((descent.node & kLeaf) != 0) continue;
+            const LightQuad& quad = m_quads[descent.node];
+            descent.node = quad.next[quad.choose(receiver, descent.u, descent.probability)];
+            any = true;
+        }
+    }
+    for (LightDescent& descent : descents) chooseInLeaf(descent);
 }
 
-std::uint32_t LightTree::choose(std::uint32_t node, const Receiver& receiver, double& u,
-                                float& probability) const {
-    while (m_nodes[node].right != 0) {
-        const float left = leftProbability(node, receiver);
-        const bool goLeft = u < static_cast<double>(left);
-        const float taken = goLeft ? left : 1.0f - left;
-        u = (goLeft ? u : u - static_cast<double>(left)) / static_cast<double>(taken);
-        probability *= taken;
-        node = goLeft ? node + 1 : m_nodes[node].right;
-    }
-    std::uint32_t at = m_nodes[node].begin;
-    const std::uint32_t last = end(node) - 1;
-    for (float rest = m_nodes[node].power; at < last; ++at) {
-        const float share = shareOfRest(powerAt(at), rest);
-        const auto s = static_cast<double>(share);
-        if (u < s) {
-            probability *= share;
-            u /= s;
-            break;
-        }
-        probability *= 1.0f - share;
-        u = (u - s) / (1.0 - s);
-    }
-    u = std::min(u, 1.0 - 0x1p-53);
-    return m_order[at];
+void LightTree::chooseInLeaf(LightDescent& descent) const {
+    constexpr double kBelowOne = 1.0 - 0x1p-53;
+    const double u = std::min(descent.u, kBelowOne);
+    std::uint32_t at = descent.node & ~kLeaf;
+    float below = 0.0f;
+    for (; u >= static_cast<double>(m_cumulative[at]); ++at) below = m_cumulative[at];
+    const float share = m_cumulative[at] - below;
+    descent.node = m_order[at];
+    descent.probability *= share;
+    descent.u = std::min((u - static_cast<double>(below)) / static_cast<double>(share), kBelowOne);
 }
 
 float LightTree::probability(std::uint32_t node, const Receiver& receiver,
                              std::uint32_t light) const {
     const std::uint32_t position = m_positions[light];
     float product = 1.0f;
-    while (m_nodes[node].right != 0) {
-        const float left = leftProbability(node, receiver);
-        const std::uint32_t right = m_nodes[node].right;
-        const bool goLeft = position < m_nodes[right].begin;
-        product *= goLeft ? left : 1.0f - left;
-        node = goLeft ? node + 1 : right;
+    std::uint32_t entry = m_entries[node];
+    while ((entry & kLeaf) == 0) {
+        const LightQuad& quad = m_quads[entry];
+        const std::size_t group = quad.groupOf(position);
+        product *= quad.share(receiver, group);
+        entry = quad.next[group];
     }
-    const std::uint32_t last = end(node) - 1;
-    float rest = m_nodes[node].power;
-    for (std::uint32_t at = m_nodes[node].begin; at < last; ++at) {
-        const float share = shareOfRest(powerAt(at), rest);
-        if (at == position) return product * share;
-        product *= 1.0f - share;
-    }
-    return product;
+    const bool isFirst = position == (entry & ~kLeaf);
+    return product * (m_cumulative[position] - (isFirst ? 0.0f : m_cumulative[position - 1]));
 }
 
 std::vector<std::uint32_t> LightTree::cut(std::size_t most) const {
@@ -321,7 +336,7 @@ std::vector<std::uint32_t> LightTree::cut(std::size_t most) const {
     while (nodes.size() < most) {
         const auto worth = [&](std::uint32_t n) {
             const Node& node = m_nodes[n];
-            return node.right == 0 ? -1.0f : node.strength * node.radius;
+            return node.right == 0 ? -1.0f : node.bounds.strength * node.bounds.radius;
         };
         const auto widest =
             std::max_element(nodes.begin(), nodes.end(),
@@ -335,8 +350,9 @@ std::vector<std::uint32_t> LightTree::cut(std::size_t most) const {
 }
 
 std::uint64_t LightTree::memoryBytes() const {
-    return m_nodes.size() * sizeof(Node) +
-           m_order.size() * (2 * sizeof(std::uint32_t) + sizeof(float));
+    return m_nodes.size() * (sizeof(Node) + sizeof(std::uint32_t)) +
+           m_quads.size() * sizeof(LightQuad) +
+           m_order.size() * (2 * sizeof(std::uint32_t) + 2 * sizeof(float));
 }
 
 }  // namespace pm

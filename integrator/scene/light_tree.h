@@ -7,17 +7,11 @@
 #include <span>
 #include <vector>
 
+#include "integrator/scene/light_quad.h"
 #include "integrator/scene/scene.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
-
-// Where light is asked for: a point, and the shading normal on the side that is lit; unit, scene's
-// own coordinates.
-struct Receiver {
-    Vec3f position;
-    Vec3f normal;
-};
 
 // What was found between a place and a point on a light that could shine on it.
 struct Sighting {
@@ -25,12 +19,18 @@ struct Sighting {
     bool visible = false;
 };
 
+// The choice of a light, on its way.
+struct LightDescent {
+    double u = 0.0;          // random number in [0, 1); then where in the light's share it lay
+    std::uint32_t node = 0;  // of the tree, below which to choose; then the light
+    float probability = 1.0f;
+};
+
 // A binary tree over the lights by place; those that are infinitely far are not in it. A light is
-// chosen by going down it, at each node towards a child in proportion to what may arrive from
-// there, if nothing is in between, and to how often something is. The lights' order in the tree is
-// a curve through space: neighbours in it are neighbours in space. [1] Conty Estevez & Kulla,
-// "Importance Sampling of Many Lights with Adaptive Tree Splitting", 2018. Threads: const functions
-// from any, at once.
+// chosen by going down it two levels at a time, towards one of four grandchildren in proportion to
+// what may arrive from there, if nothing is in between, and to how often something is. The lights'
+// order in the tree is a curve through space: neighbours in it are neighbours in space.
+// Threads: const functions from any, at once.
 class LightTree {
   public:
     LightTree() = default;
@@ -41,10 +41,9 @@ class LightTree {
     // Learns which lights are hidden from most places: lamps in closed boxes, of rooms next door.
     void learn(std::span<const Sighting> sightings);
 
-    // Chooses below `node`. Returns the light; multiplies its probability into `probability`; u, in
-    // [0, 1), becomes where in the light's share it lay.
-    std::uint32_t choose(std::uint32_t node, const Receiver& receiver, double& u,
-                         float& probability) const;
+    // Chooses a light for each of the descents, on its own; multiplies the light's probability into
+    // theirs. Side by side, since one waits for memory and divisions most of the time.
+    void choose(const Receiver& receiver, std::span<LightDescent> descents) const;
     // The probability with which choose() below `node` takes `light`, which must be there.
     float probability(std::uint32_t node, const Receiver& receiver, std::uint32_t light) const;
 
@@ -68,15 +67,10 @@ class LightTree {
 
   private:
     struct Node {
-        Vec3f centre;  // of a ball that holds the lights
-        float radius;
-        Vec3f axis;       // of a cone that holds their normals
-        float cosSpread;  // of the cone's half angle; 0 and more than a right angle are the same
-        float sinSpread;
-        float power;          // W
-        float strength;       // power, less where the lights are mostly hidden
-        std::uint32_t begin;  // first light in the tree's order
-        std::uint32_t right;  // the left child follows its parent; 0: no children
+        LightBounds bounds;
+        float power = 0.0f;       // W
+        std::uint32_t begin = 0;  // first light in the tree's order
+        std::uint32_t right = 0;  // the left child follows its parent; 0: no children
     };
     class Builder;
     // What was seen of the lights below a node.
@@ -86,16 +80,21 @@ class LightTree {
     Seen sum(std::uint32_t node, std::span<const Seen> lights, std::vector<Seen>& nodes) const;
     void weaken(std::uint32_t node, float visibleAbove, std::span<const Seen> nodes);
 
-    float importance(const Node& node, const Receiver& receiver) const;
-    float leftProbability(std::uint32_t node, const Receiver& receiver) const;
+    void makeQuads();
     std::uint32_t end(std::uint32_t leaf) const;
-    float powerAt(std::uint32_t position) const;
+    void chooseInLeaf(LightDescent& descent) const;
 
     const Scene* m_scene = nullptr;
     std::vector<Node> m_nodes;
+    std::vector<LightQuad> m_quads;  // the grandchildren of each node that has children
+    // Of the nodes: the number of its quad; of a leaf kLeaf and the place of its first light.
+    std::vector<std::uint32_t> m_entries;
+    static constexpr std::uint32_t kLeaf = 1u << 31;
     std::vector<std::uint32_t> m_order;      // lights
     std::vector<std::uint32_t> m_positions;  // of the lights in m_order
-    std::vector<float> m_visibility;         // in that order
+    // In that order, within each leaf: shares by power, summed up; the last is 1.
+    std::vector<float> m_cumulative;
+    std::vector<float> m_visibility;  // in that order
 };
 
 }  // namespace pm

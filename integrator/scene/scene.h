@@ -67,10 +67,12 @@ class Scene {
 
     // True when all that reflects or lets light through are triangles in one plane (to rounding),
     // so that no light goes from one surface by way of another.
-    bool isFlat() const;
+    bool isFlat() const { return m_isFlat; }
 
     // A point on an area light's primitive, uniform over its area, as a Surface.
     Surface pointOnLight(const Light& light, Vec2f u) const;
+    // Asks for what pointOnLight() reads first to be at hand soon.
+    void prefetch(const Light& light) const;
     // The sphere of a sphere light (or of any sphere shape), scene's own coordinates.
     SphereShape sphere(std::uint32_t shape) const;
 
@@ -93,6 +95,7 @@ class Scene {
         Vec3d vertex, e1, e2;
     };
     struct Facet;
+    bool findFlat(const CancelCheck& cancel) const;
     void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, const Corner& corner,
                            double b1, double b2, Surface& surface) const;
     void surfaceOnSphere(const ShapeRecord& shape, const Vec3d& direction, Surface& surface) const;
@@ -109,6 +112,7 @@ class Scene {
     double m_radius = 0;
     std::uint64_t m_triangleCount = 0;
     double m_triangleArea = 0;  // of all
+    bool m_isFlat = false;
     RayTracer m_tracer;  // last: it refers to the shapes' arrays and is destroyed before them
 };
 

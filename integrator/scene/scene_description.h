@@ -44,11 +44,15 @@ struct MaterialDescription {
     std::int32_t opacityTexture = kNoTexture;
 };
 
+// Whether light can leave the material in no other way than diffusely, whatever its textures.
+inline bool isDiffuseAtMost(const MaterialDescription& material) {
+    return material.kind == MaterialKind::kSurface && isBlack(material.glossy) &&
+           material.transparency == 0.0f && material.opacityTexture == kNoTexture;
+}
+
 // Whether light that meets the material goes nowhere from there, whatever its textures.
 inline bool isBlackBody(const MaterialDescription& material) {
-    return material.kind == MaterialKind::kSurface && isBlack(material.diffuse) &&
-           isBlack(material.glossy) && material.transparency == 0.0f &&
-           material.opacityTexture == kNoTexture;
+    return isDiffuseAtMost(material) && isBlack(material.diffuse);
 }
 
 // An analytic sphere in object space; its front is outside. Under a transform it must stay a

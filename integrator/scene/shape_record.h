@@ -10,7 +10,8 @@ namespace pm {
 struct Scene::Facet {
     Vec3f normal;  // geometric, unit, out of the front
     // What surfaceOffset takes for the farthest vertex's distance: the longest edge, which no point
-    // has farther to a vertex, and more of slivers; scene units.
+    // has farther to a vertex, and more of slivers; less where the triangle's box is flat; scene
+    // units.
     float reach;
 
     Facet(const Corner& corner, bool mirrored);

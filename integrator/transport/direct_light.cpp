@@ -3,6 +3,7 @@
 #include "integrator/transport/direct_light.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 
 #include "integrator/sampling/warps.h"
@@ -11,21 +12,33 @@ namespace pm {
 
 namespace {
 
-// By one of `samples` lamp samples, to be divided by their number.
-DirectRadiance byLampSample(const Scene& scene, const LightSampler& lights, const Surface& surface,
-                            const Bsdf& bsdf, LampStrategy diffuse, float samples, Vec2f u,
-                            std::uint32_t& rays) {
+// Lamps are chosen so many at a time, where there are several samples.
+constexpr std::uint32_t kAtOnce = 16;
+
+// What estimateDirect is asked for.
+struct Question {
+    const Scene& scene;
+    const LightSampler& lights;
+    const Surface& surface;
+    const Bsdf& bsdf;
+    LampStrategy diffuse;
+    std::uint32_t samples;
+};
+
+// By one of the lamp samples, to be divided by their number.
+DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, std::uint32_t& rays) {
+    const Bsdf& bsdf = asked.bsdf;
+    const auto samples = static_cast<float>(asked.samples);
     DirectRadiance result;
     LightSample light;
-    if (!lights.sample(surface, bsdf.facingGeometricNormal(), u, light) ||
-        !(light.pdfSolidAngle > 0.0f))
+    if (!asked.lights.sample(chosen, asked.surface, light) || !(light.pdfSolidAngle > 0.0f))
         return result;
     const auto contribution = [&](Lobe lobe) {
         if (!bsdf.has(lobe)) return Rgb{};
         const Rgb value = bsdf.evaluate(lobe, light.direction);
         if (isBlack(value)) return Rgb{};
-        const bool alone =
-            light.isPoint || (lobe == Lobe::kDiffuse && diffuse == LampStrategy::kNextEventOnly);
+        const bool alone = light.isPoint || (lobe == Lobe::kDiffuse &&
+                                             asked.diffuse == LampStrategy::kNextEventOnly);
         const float weight = alone ? 1.0f
                                    : powerHeuristic(samples * light.pdfSolidAngle,
                                                     bsdf.pdfSolidAngle(lobe, light.direction));
@@ -35,8 +48,26 @@ DirectRadiance byLampSample(const Scene& scene, const LightSampler& lights, cons
     result.glossy = contribution(Lobe::kGlossy);
     if (isBlack(result.diffuse) && isBlack(result.glossy)) return result;
     ++rays;
-    if (scene.occluded(light.shadowRay)) return {};
+    if (asked.scene.occluded(light.shadowRay)) return {};
     return result;
+}
+
+// Sum over all samples, whose lamps are chosen kMost at a time.
+template <std::uint32_t kMost>
+DirectRadiance sumOfSamples(const Question& asked, const Sampler& sampler, std::uint32_t& rays) {
+    DirectRadiance sum;
+    std::array<ChosenLight, kMost> chosen;
+    const std::span<ChosenLight> turn(chosen.data(), std::min(asked.samples, kMost));
+    for (std::uint32_t next = 0; next < asked.samples;) {
+        for (ChosenLight& one : turn) one.u = sampler.part(asked.samples, next++).next2D();
+        asked.lights.choose(asked.surface, asked.bsdf.facingGeometricNormal(), turn);
+        for (const ChosenLight& one : turn) {
+            const DirectRadiance part = byLampSample(asked, one, rays);
+            sum.diffuse += part.diffuse;
+            sum.glossy += part.glossy;
+        }
+    }
+    return sum;
 }
 
 }  // namespace
@@ -44,15 +75,13 @@ DirectRadiance byLampSample(const Scene& scene, const LightSampler& lights, cons
 DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
                               const Surface& surface, const Bsdf& bsdf, LampStrategy diffuse,
                               std::uint32_t samples, Sampler& sampler, std::uint32_t& rays) {
+    const Question asked{scene, lights, surface, bsdf, diffuse, samples};
     DirectRadiance sum;
-    const auto number = static_cast<float>(samples);
-    for (std::uint32_t i = 0; i < samples; ++i) {
-        const DirectRadiance one = byLampSample(scene, lights, surface, bsdf, diffuse, number,
-                                                sampler.part(samples, i).next2D(), rays);
-        sum.diffuse += one.diffuse;
-        sum.glossy += one.glossy;
-    }
+    if (!lights.empty())
+        sum = samples == 1 ? sumOfSamples<1>(asked, sampler, rays)
+                           : sumOfSamples<kAtOnce>(asked, sampler, rays);
     sampler.skip();
+    const auto number = static_cast<float>(samples);
     return {sum.diffuse / number, sum.glossy / number};
 }
 

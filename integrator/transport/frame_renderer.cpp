@@ -3,7 +3,6 @@
 #include "integrator/transport/frame_renderer.h"
 
 #include <algorithm>
-#include <array>
 #include <iterator>
 #include <mutex>
 #include <utility>
@@ -17,8 +16,9 @@
 #include "integrator/transport/path_integrator.h"
 #include "integrator/transport/photon_integrator.h"
 #include "integrator/transport/photon_pass.h"
+#include "integrator/transport/pixel_sums.h"
 #include "integrator/transport/seen_lamps.h"
-#include "integrator/values/error.h"
+#include "integrator/values/cancel_check.h"
 
 namespace pm {
 
@@ -26,8 +26,6 @@ namespace {
 
 // A render at level l has 4^(l-1) samples a pixel in this many passes.
 constexpr std::uint32_t kPassesOfALevel = 4;
-// Far above that of any picture, and a float.
-constexpr double kLargestSquare = 1e36;
 
 std::uint64_t pixelKey(std::int32_t x, std::int32_t y) {
     return static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32 |
@@ -52,23 +50,14 @@ struct Place {
     double x, y;
 };
 
-// Sums over a pixel's samples, in double and in sample order.
-struct PixelSums {
-    std::array<double, 3> emission{}, direct{}, caustic{}, indirect{}, biasProbe{}, albedo{},
-        normal{};
-    double coverage = 0, depth = 0;
-    std::array<double, 5> seen{};  // as ChannelLayout::seen
-};
+// Paths of each camera sample towards each small image of a lamp that its pixel may show.
+constexpr std::uint32_t kPathsOfImage = 16;
 
-template <typename Triple>
-void add(std::array<double, 3>& sum, const Triple& value) {
-    for (int c = 0; c < 3; ++c) sum[static_cast<std::size_t>(c)] += static_cast<double>(value[c]);
-}
-
-// ChannelLayout::contribution of a sample; 0 where it met nothing.
-float contributionOf(const SampleRadiance& s) {
-    if (s.coverage == 0.0f) return 0.0f;
-    return static_cast<float>(1 + (combineBits(s.firstShape, s.firstMaterial) >> 40));
+bool mayShow(const Cell& cell, PixelFilter filter, const LampImage& image) {
+    const double reach = filter == PixelFilter::kBox ? 0.0 : kGaussianRadius - 0.5;
+    const auto [halfX, halfY] = image.halfSize();
+    return std::abs(image.centre[0] - cell.x - 0.5) < halfX + 0.5 + reach &&
+           std::abs(image.centre[1] - cell.y - 0.5) < halfY + 0.5 + reach;
 }
 
 // Of a pixel's group of 2 x 2, the first; also below 0.
@@ -76,32 +65,7 @@ std::int32_t firstOfGroup(std::int32_t coordinate) {
     return coordinate & ~1;
 }
 
-void addSeen(const Rgb& beauty, PixelSums& sums) {
-    ++sums.seen[0];
-    for (int c = 0; c < 3; ++c) {
-        const auto value = static_cast<double>(beauty[c]);
-        sums.seen[static_cast<std::size_t>(c) + 1] += value;
-        sums.seen[4] += value * value;
-    }
-}
-
 }  // namespace
-
-ChannelLayout channelLayout(const RenderSettings& settings) {
-    ChannelLayout layout;
-    const auto place = [&](bool wanted, std::int32_t size) {
-        if (!wanted) return -1;
-        layout.count += size;
-        return layout.count - size;
-    };
-    layout.albedo = place(settings.wantAlbedo, 3);
-    layout.normal = place(settings.wantNormal, 3);
-    layout.depth = place(settings.wantDepth, 1);
-    layout.biasProbe = place(settings.integrator == IntegratorKind::kPhoton, 3);
-    layout.seen = place(settings.isAdaptive(), 5);
-    layout.contribution = place(settings.isAdaptive() && settings.hasGroups(), 1);
-    return layout;
-}
 
 SampleRun fixedSamples(const RenderSettings& settings, std::int32_t x, std::int32_t y,
                        std::uint32_t pass) {
@@ -128,36 +92,66 @@ struct FrameRenderer::Impl {
           settings(settings_),
           layout(channelLayout(settings_)),
           plan(std::move(plan_)),
-          camera(*scene, settings_.width, settings_.height),
-          lights(*scene),
-          photons(*scene, camera, lights, plan, settings),
-          seenLamps(*scene, lights, camera, settings_.width, settings_.height) {
-        if (lights.isGuided()) lights.learn(findLitPlaces(*scene, camera, settings), settings.seed);
-        if (plan.lampSamples == 0)
-            plan.lampSamples = findLampSamples(*scene, lights, camera, settings, plan);
-    }
+          camera(*scene, settings_.width, settings_.height) {}
 
+    // What it takes time to make.
+    struct Prepared {
+        LightSampler lights;
+        PhotonPass photons;
+        SeenLamps seenLamps;
+
+        explicit Prepared(const Impl& impl)
+            : lights(*impl.scene),
+              photons(*impl.scene, impl.camera, lights, impl.plan, impl.settings),
+              seenLamps(*impl.scene, lights, impl.camera, impl.settings.width,
+                        impl.settings.height) {}
+    };
+
+    void prepare(const std::atomic<bool>& cancelled);
+    PhotonPass& photonsOfPass(std::uint32_t pass, const std::atomic<bool>& cancelled);
     Place placeInCell(const Cell& cell, Vec2f u) const;
+    Rgb lampsSeen(std::uint32_t pass, const Cell& cell, std::uint32_t index, std::uint32_t paths,
+                  std::uint32_t& rays) const;
     SampleRadiance sample(std::uint32_t pass, const Cell& cell, Sampler sampler,
                           std::uint32_t index, NearestPhotons& scratch) const;
     void renderCell(std::uint32_t pass, const Cell& cell, SampleRun run, float* pixel,
                     NearestPhotons& scratch, RenderCounters& local) const;
-    void writePixel(const PixelSums& sums, std::uint32_t samples, float* pixel) const;
 
-    std::shared_ptr<const Scene> scene;
-    RenderSettings settings;
-    ChannelLayout layout;
+    const std::shared_ptr<const Scene> scene;
+    const RenderSettings settings;
+    const ChannelLayout layout;
     Plan plan;
-    Camera camera;
-    LightSampler lights;
-    PhotonPass photons;
-    SeenLamps seenLamps;
+    const Camera camera;
+    const PhotonSource* photonSource = nullptr;
+    std::unique_ptr<Prepared> prepared;
     std::uint32_t lastPass = 0;  // begun or added
     bool badValuesReported = false;
-    mutable std::mutex mutex;  // of what follows
+    mutable std::mutex mutex;  // of what follows, and for others than the passes of `prepared`
     mutable RenderCounters counters;
     std::vector<Notice> notices;
 };
+
+void FrameRenderer::Impl::prepare(const std::atomic<bool>& cancelled) {
+    if (prepared) return;
+    const CancelCheck cancel(cancelled);
+    auto made = std::make_unique<Prepared>(*this);
+    LightSampler& lights = made->lights;
+    if (lights.isGuided())
+        lights.learn(findLitPlaces(*scene, camera, settings, cancel), settings.seed, cancel);
+    if (plan.lampSamples == 0)
+        plan.lampSamples = findLampSamples(*scene, lights, camera, settings, plan, cancel);
+    if (photonSource) made->photons.readFrom(*photonSource);
+    const std::lock_guard lock(mutex);
+    counters.lampSamples = plan.lampSamples;
+    prepared = std::move(made);
+}
+
+PhotonPass& FrameRenderer::Impl::photonsOfPass(std::uint32_t pass,
+                                               const std::atomic<bool>& cancelled) {
+    prepare(cancelled);
+    lastPass = pass;
+    return prepared->photons;
+}
 
 Place FrameRenderer::Impl::placeInCell(const Cell& cell, Vec2f u) const {
     const double side = cell.isGroup ? 2.0 : 1.0;
@@ -165,24 +159,60 @@ Place FrameRenderer::Impl::placeInCell(const Cell& cell, Vec2f u) const {
             cell.y + side * placeInPixel(settings.filter, u.y)};
 }
 
+// The class of paths of SeenLamps, in sequences of its own: paths over the filter and, where lamps
+// have small images, towards each of these. Weighted by the balance heuristic (Veach 1997, eq. 9.8)
+// the sum has the same mean wherever images are looked for.
+Rgb FrameRenderer::Impl::lampsSeen(std::uint32_t pass, const Cell& cell, std::uint32_t index,
+                                   std::uint32_t paths, std::uint32_t& rays) const {
+    const SeenLamps& lamps = prepared->seenLamps;
+    std::vector<LampImage> images;
+    // A group is a preview, and twice as wide.
+    if (!cell.isGroup)
+        for (const LampImage& image : lamps.images(cell.x, cell.y))
+            if (mayShow(cell, settings.filter, image)) images.push_back(image);
+    const SeenLamps::Effort effort = images.empty() ? SeenLamps::Effort{} : SeenLamps::kOfImages;
+    Rgb sum;
+    const auto add = [&](const Place& place, Sampler& sampler) {
+        double weight = 1.0 / paths;
+        if (!images.empty()) {
+            const double density = densityInPixel(settings.filter, place.x - cell.x) *
+                                   densityInPixel(settings.filter, place.y - cell.y);
+            if (!(density > 0)) return;
+            double all = paths * density;
+            for (const LampImage& image : images)
+                if (image.holds(place.x, place.y)) all += kPathsOfImage / image.area();
+            weight = density / all;
+        }
+        sum += lamps.along(camera.ray(place.x, place.y), sampler, rays, effort) *
+               static_cast<float>(weight);
+    };
+    for (std::uint32_t i = 0; i < paths; ++i) {
+        Sampler sampler(settings.seed, streamOf(pass, cell) + 8, pixelKey(cell.x, cell.y),
+                        index * paths + i);
+        add(placeInCell(cell, sampler.next2D()), sampler);
+    }
+    for (std::size_t k = 0; k < images.size(); ++k)
+        for (std::uint32_t i = 0; i < kPathsOfImage; ++i) {
+            Sampler sampler(settings.seed, streamOf(pass, cell) + 16 + 8 * k,
+                            pixelKey(cell.x, cell.y), index * kPathsOfImage + i);
+            const auto [x, y] = images[k].at(sampler.next2D());
+            add({x, y}, sampler);
+        }
+    return sum;
+}
+
 SampleRadiance FrameRenderer::Impl::sample(std::uint32_t pass, const Cell& cell, Sampler sampler,
                                            std::uint32_t index, NearestPhotons& scratch) const {
     const Place place = placeInCell(cell, sampler.next2D());
     const Ray ray = camera.ray(place.x, place.y);
     if (settings.integrator == IntegratorKind::kPath)
-        return PathIntegrator(*scene, lights).sample(ray, sampler);
-    const std::uint32_t lampPaths = seenLamps.paths(cell.x, cell.y);
-    SampleRadiance result = PhotonIntegrator(*scene, lights, photons.maps(pass), plan.lampSamples)
-                                .sample({static_cast<float>(place.x), static_cast<float>(place.y)},
-                                        ray, sampler, scratch, lampPaths == 0);
-    // By a sequence of their own in the pixel.
-    for (std::uint32_t i = 0; i < lampPaths; ++i) {
-        Sampler lampSampler(settings.seed, streamOf(pass, cell) + 8, pixelKey(cell.x, cell.y),
-                            index * lampPaths + i);
-        const Place seen = placeInCell(cell, lampSampler.next2D());
-        result.emission += seenLamps.along(camera.ray(seen.x, seen.y), lampSampler, result.rays) /
-                           static_cast<float>(lampPaths);
-    }
+        return PathIntegrator(*scene, prepared->lights).sample(ray, sampler);
+    const std::uint32_t lampPaths = prepared->seenLamps.paths(cell.x, cell.y);
+    SampleRadiance result =
+        PhotonIntegrator(*scene, prepared->lights, prepared->photons.maps(pass), plan.lampSamples)
+            .sample({static_cast<float>(place.x), static_cast<float>(place.y)}, ray, sampler,
+                    scratch, lampPaths == 0);
+    if (lampPaths > 0) result.emission += lampsSeen(pass, cell, index, lampPaths, result.rays);
     return result;
 }
 
@@ -195,51 +225,16 @@ void FrameRenderer::Impl::renderCell(std::uint32_t pass, const Cell& cell, Sampl
         const std::uint32_t index = run.first + i;
         const SampleRadiance s = sample(pass, cell, cellSampler.at(index), index, scratch);
         local.rays += s.rays;
-        if (!isFinite(s.emission) || !isFinite(s.direct) || !isFinite(s.caustic) ||
-            !isFinite(s.indirect) || !isFinite(s.biasProbe)) {
+        if (!PixelSums::accepts(s)) {
             ++local.badSamples;
             continue;
         }
-        add(sums.emission, s.emission);
-        add(sums.direct, s.direct);
-        add(sums.caustic, s.caustic);
-        add(sums.indirect, s.indirect);
-        add(sums.biasProbe, s.biasProbe);
-        if (i < run.seen) addSeen(s.emission + s.direct + s.caustic + s.indirect, sums);
-        if (layout.contribution >= 0) pixel[layout.contribution] = contributionOf(s);
-        sums.coverage += static_cast<double>(s.coverage);
-        if (s.coverage == 0.0f) continue;
-        add(sums.albedo, s.albedo);
-        add(sums.normal, s.normal);
-        sums.depth += static_cast<double>(camera.depth(s.firstPosition));
+        const double depth =
+            s.coverage == 0.0f ? 0.0 : static_cast<double>(camera.depth(s.firstPosition));
+        sums.add(s, depth, i < run.seen);
     }
     local.cameraSamples += run.count;
-    writePixel(sums, run.count, pixel);
-}
-
-void FrameRenderer::Impl::writePixel(const PixelSums& sums, std::uint32_t samples,
-                                     float* pixel) const {
-    const double scale = 1.0 / samples;
-    const auto put = [&](std::int32_t offset, const std::array<double, 3>& sum) {
-        if (offset < 0) return;
-        for (std::size_t c = 0; c < 3; ++c)
-            pixel[static_cast<std::size_t>(offset) + c] = static_cast<float>(sum[c] * scale);
-    };
-    put(layout.direct, sums.direct);
-    put(layout.indirect, sums.indirect);
-    put(layout.caustic, sums.caustic);
-    put(layout.emission, sums.emission);
-    put(layout.biasProbe, sums.biasProbe);
-    for (std::size_t i = 0; i < sums.seen.size() && layout.seen >= 0; ++i)
-        pixel[static_cast<std::size_t>(layout.seen) + i] =
-            static_cast<float>(std::min(sums.seen[i], kLargestSquare));
-    put(layout.albedo, sums.albedo);
-    put(layout.normal, sums.normal);
-    pixel[layout.alpha] = static_cast<float>(sums.coverage * scale);
-    if (layout.depth >= 0) pixel[layout.depth] = static_cast<float>(sums.depth * scale);
-    for (int c = 0; c < 3; ++c)
-        pixel[layout.beauty + c] = pixel[layout.direct + c] + pixel[layout.indirect + c] +
-                                   pixel[layout.caustic + c] + pixel[layout.emission + c];
+    sums.write(layout, run.count, pixel);
 }
 
 FrameRenderer::FrameRenderer(std::shared_ptr<const Scene> scene, const RenderSettings& settings,
@@ -259,26 +254,30 @@ ChannelLayout FrameRenderer::layout() const {
     return m_impl->layout;
 }
 
+void FrameRenderer::prepare(const std::atomic<bool>& cancelled) {
+    m_impl->prepare(cancelled);
+}
+
 void FrameRenderer::readPhotons(const PhotonSource& source) {
-    m_impl->photons.readFrom(source);
+    m_impl->photonSource = &source;
+    if (m_impl->prepared) m_impl->prepared->photons.readFrom(source);
 }
 
 void FrameRenderer::tracePass(std::uint32_t pass, PhotonSink& sink,
                               const std::atomic<bool>& cancelled,
                               const std::function<void(double)>& progress) {
-    m_impl->photons.traceInto(sink, pass, cancelled, progress);
+    m_impl->prepare(cancelled);
+    m_impl->prepared->photons.traceInto(sink, pass, cancelled, progress);
 }
 
 void FrameRenderer::beginPass(std::uint32_t pass, const std::atomic<bool>& cancelled,
                               const std::function<void(double)>& progress) {
-    m_impl->lastPass = pass;
-    m_impl->photons.begin(pass, cancelled, progress);
+    m_impl->photonsOfPass(pass, cancelled).begin(pass, cancelled, progress);
 }
 
 void FrameRenderer::addPass(std::uint32_t pass, const std::atomic<bool>& cancelled,
                             const std::function<void(double)>& progress) {
-    m_impl->lastPass = pass;
-    m_impl->photons.add(pass, cancelled, progress);
+    m_impl->photonsOfPass(pass, cancelled).add(pass, cancelled, progress);
 }
 
 void FrameRenderer::renderRegion(const Rect& region, std::span<const SampleRun> runs,
@@ -336,7 +335,7 @@ void FrameRenderer::renderRegion(const Rect& region, std::span<float> pixels,
 RenderCounters FrameRenderer::counters() const {
     const std::lock_guard lock(m_impl->mutex);
     RenderCounters sum = m_impl->counters;
-    m_impl->photons.addTo(sum);
+    if (m_impl->prepared) m_impl->prepared->photons.addTo(sum);
     return sum;
 }
 
@@ -349,7 +348,8 @@ std::vector<Notice> FrameRenderer::takeNotices() {
                                    "number is in the statistics"});
     }
     std::vector<Notice> notices = std::exchange(m_impl->notices, {});
-    std::ranges::move(m_impl->photons.takeNotices(), std::back_inserter(notices));
+    if (m_impl->prepared)
+        std::ranges::move(m_impl->prepared->photons.takeNotices(), std::back_inserter(notices));
     return notices;
 }
 

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "integrator/transport/channel_layout.h"
 #include "integrator/transport/plan.h"
 #include "integrator/transport/render_settings.h"
 #include "integrator/values/notice.h"
@@ -20,30 +21,6 @@ namespace pm {
 class PhotonSink;
 class PhotonSource;
 class Scene;
-
-// Where each layer stands in a pixel's floats. A layer that is not wanted has offset -1.
-struct ChannelLayout {
-    std::int32_t beauty = 0;     // 3: radiance, the sum of the four parts below
-    std::int32_t alpha = 3;      // 1: coverage
-    std::int32_t direct = 4;     // 3
-    std::int32_t indirect = 7;   // 3
-    std::int32_t caustic = 10;   // 3
-    std::int32_t emission = 13;  // 3
-    std::int32_t albedo = -1;    // 3: premultiplied by coverage
-    std::int32_t normal = -1;    // 3: world, premultiplied by coverage
-    std::int32_t depth = -1;     // 1: along the view axis, scene units, premultiplied by coverage
-    // 3: beauty with the radii of all estimates narrowed by sqrt(2), minus beauty; what shows bias
-    std::int32_t biasProbe = -1;
-    // 5, the last: of the samples that adaptive renders decide by (SampleRun::seen) the number, the
-    // sums of the beauty's channels, and the sum over samples and channels of their squares.
-    std::int32_t seen = -1;
-    // 1, after those and where groups may be divided (RenderSettings::hasGroups): what a group's
-    // sample shows, a whole number below 2^25 that is another for another object or material.
-    std::int32_t contribution = -1;
-    std::int32_t count = 16;  // floats a pixel
-};
-
-ChannelLayout channelLayout(const RenderSettings& settings);
 
 // The samples that a pixel gets in one pass: a run of its low-discrepancy sequence. Even passes
 // have one sequence, odd passes another.
@@ -74,6 +51,7 @@ struct RenderCounters {
     std::uint64_t photonsLost = 0;  // ended for a numerical reason
     // Gather rays of each gather point, all passes alike; 0 before the first or without points.
     std::uint32_t gatherRaysOfPoint = 0;
+    std::uint32_t lampSamples = 0;  // of a camera sample; 0 before the first pass
     // Flux over all passes and channels, W: emitted = absorbed + escaped + lost.
     double fluxEmitted = 0, fluxAbsorbed = 0, fluxEscaped = 0, fluxLost = 0;
     double photonSeconds = 0, mapSeconds = 0;
@@ -84,15 +62,23 @@ struct RenderCounters {
 // A picture is a function of scene, settings and plan only.
 class FrameRenderer {
   public:
-    // plan: makePlan()'s of this scene and these settings, or that with other numbers in it. Throws
-    // Error when the settings and the scene don't fit (no camera, ...).
+    // plan: makePlan()'s of this scene and these settings, or that with other numbers in it. Takes
+    // no time to speak of: see prepare(). Throws Error when the settings and the scene don't fit
+    // (no camera, ...).
     FrameRenderer(std::shared_ptr<const Scene> scene, const RenderSettings& settings, Plan plan);
     // By makePlan().
     FrameRenderer(std::shared_ptr<const Scene> scene, const RenderSettings& settings);
     ~FrameRenderer();
 
+    // With the pilot's number of lamp samples once it is prepared.
     const Plan& plan() const;
     ChannelLayout layout() const;
+
+    // What the first pass begins with where nobody did it before: the choice of lamps is built and
+    // learns which of them reach where, and a pilot finds the plan's lamp samples. In parallel in
+    // the calling TBB arena. Throws Error(kCancelled) soon after `cancelled` is set, and may be
+    // asked again then.
+    void prepare(const std::atomic<bool>& cancelled);
 
     // Before the first pass: from now on photons are read from `source` in place of being traced.
     // It must outlive this, and hold what tracePass() wrote of the same lights, surfaces and plan.

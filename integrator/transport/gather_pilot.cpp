@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/transport/gather_pilot.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -15,14 +13,14 @@
 #include "integrator/sampling/warps.h"
 #include "integrator/transport/direct_light.h"
 #include "integrator/transport/final_gather.h"
-#include "integrator/transport/path_walk.h"
+#include "integrator/transport/pilot_paths.h"
 
 namespace pm {
 
 namespace {
 
 // Paths through the frame, and rays and lamp samples at the end of each.
-constexpr std::int32_t kColumns = 24, kRows = 24;
+constexpr std::size_t kColumns = 24, kRows = 24;
 constexpr std::uint32_t kRays = 16, kLampSamples = 4;
 constexpr std::uint64_t kSeed = 0x6761746865727069ull;
 // As in relMSE.
@@ -49,43 +47,12 @@ struct Moments {
 
 class GatherPilot {
   public:
-    GatherPilot(const Scene& scene, const Camera& camera, const LightSampler& lights,
-                const IrradianceSites& sites, const RenderSettings& settings)
-        : m_scene(scene),
-          m_camera(camera),
-          m_lights(lights),
-          m_sites(sites),
-          m_settings(settings) {}
+    GatherPilot(const Scene& scene, const LightSampler& lights, const IrradianceSites& sites)
+        : m_scene(scene), m_lights(lights), m_sites(sites) {}
 
-    // Of the path through that part of the frame.
-    double spreadOf(std::int32_t column, std::int32_t row) const {
-        Sampler sampler(combineBits(m_settings.seed, kSeed), 0,
-                        static_cast<std::uint64_t>(row * kColumns + column), 0);
-        const Vec2f jitter = sampler.next2D();
-        const auto across = [](std::int32_t cell, float shift, std::int32_t cells,
-                               std::int32_t pixels) {
-            return (cell + static_cast<double>(shift)) * pixels / cells;
-        };
-        PathWalk path(m_camera.ray(across(column, jitter.x, kColumns, m_settings.width),
-                                   across(row, jitter.y, kRows, m_settings.height)));
-        while (true) {
-            Surface surface;
-            if (!m_scene.intersect(path.ray, surface)) return 0;
-            const Bsdf bsdf(m_scene, surface, -path.ray.direction, Transport::kRadiance,
-                            path.throughput);
-            if (bsdf.isBlackBody()) return 0;
-            BsdfSample sample;
-            const float uLobe = sampler.next1D();
-            const bool valid = bsdf.sample(uLobe, sampler.next2D(), sample);
-            if (sample.lobe == Lobe::kDiffuse)
-                return spreadAt(surface, bsdf, path.throughput, sampler);
-            if (!valid || !path.scatter(surface, bsdf, sample, sampler)) return 0;
-        }
-    }
-
-  private:
-    double spreadAt(const Surface& surface, const Bsdf& bsdf, const Rgb& throughput,
-                    Sampler& sampler) const {
+    // Of a point that the path leaves by the diffuse lobe.
+    double spreadAt(const PilotStop& stop) const {
+        const auto& [surface, bsdf, throughput, lobe, sampler] = stop;
         std::uint32_t rays = 0;
         const Rgb direct = estimateDirect(m_scene, m_lights, surface, bsdf,
                                           LampStrategy::kNextEventOnly, kLampSamples, sampler, rays)
@@ -110,24 +77,26 @@ class GatherPilot {
         return std::min(spread / 3, kLargestSpread);
     }
 
+  private:
     const Scene& m_scene;
-    const Camera& m_camera;
     const LightSampler& m_lights;
     const IrradianceSites& m_sites;
-    const RenderSettings& m_settings;
 };
 
 }  // namespace
 
 double gatherSpread(const Scene& scene, const Camera& camera, const LightSampler& lights,
-                    const IrradianceSites& sites, const RenderSettings& settings) {
-    const GatherPilot pilot(scene, camera, lights, sites, settings);
-    std::vector<double> spreads(static_cast<std::size_t>(kColumns) * kRows);
-    tbb::parallel_for(std::int32_t{0}, kRows, [&](std::int32_t row) {
-        for (std::int32_t column = 0; column < kColumns; ++column)
-            spreads[static_cast<std::size_t>(row * kColumns + column)] =
-                pilot.spreadOf(column, row);
-    });
+                    const IrradianceSites& sites, const RenderSettings& settings,
+                    const CancelCheck& cancel) {
+    const GatherPilot pilot(scene, lights, sites);
+    const FrameLattice lattice = FrameLattice::fixed(settings, kColumns, kRows);
+    std::vector<double> spreads(lattice.size());
+    followPilotPaths(scene, camera, lattice, combineBits(settings.seed, kSeed), cancel,
+                     [&](std::size_t path, const PilotStop& stop) {
+                         if (stop.next != Lobe::kDiffuse) return true;
+                         spreads[path] = pilot.spreadAt(stop);
+                         return false;
+                     });
     double sum = 0;
     for (const double spread : spreads) sum += spread;
     return sum / static_cast<double>(spreads.size());

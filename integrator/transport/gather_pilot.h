@@ -9,6 +9,7 @@
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/render_settings.h"
+#include "integrator/values/cancel_check.h"
 
 namespace pm {
 
@@ -16,8 +17,10 @@ namespace pm {
 // brings to the eye over (r^2 + 0.01), r what the eye sees there of direct and gathered light; mean
 // over places spread over the frame and over the channels. Dimensionless; 0 where nothing is
 // gathered. A function of its arguments and the frame; works in parallel in the calling TBB arena.
+// Throws Error(kCancelled) soon after cancel is set.
 double gatherSpread(const Scene& scene, const Camera& camera, const LightSampler& lights,
-                    const IrradianceSites& sites, const RenderSettings& settings);
+                    const IrradianceSites& sites, const RenderSettings& settings,
+                    const CancelCheck& cancel = {});
 
 // Rays of a gather point that pay at that spread, where `rays` are planned: half of those, or
 // those, or twice or four times as many.

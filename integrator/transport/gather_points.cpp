@@ -153,14 +153,19 @@ GatherPoints::Value GatherPoints::compute(std::size_t index, std::uint64_t& rays
     TwoRadii total{irradiance(0), irradiance(3)};
     if (m_request.descended)
         total += descended(point.position, geometricNormal, clearance,
+                           descendedRadius(point.position, geometricNormal),
                            static_cast<std::uint32_t>(index));
     return {total, static_cast<float>(lamps) / static_cast<float>(count), clearance};
 }
 
+float GatherPoints::descendedRadius(const Vec3f& position, const Vec3f& normal) const {
+    NearestPhotons scratch;
+    return m_request.descendedRadius->at(position, normal, scratch) * m_request.radiusFactor;
+}
+
 // Narrower in corners and gaps, where this light, too, changes within their width.
 TwoRadii GatherPoints::descended(const Vec3f& position, const Vec3f& normal, float clearance,
-                                 std::uint32_t pattern) const {
-    const float radius = m_request.descended->radius();
+                                 float radius, std::uint32_t pattern) const {
     return m_request.descended
         ->withRadius(std::clamp(kDescendedReach * clearance, kNarrowestDescended * radius, radius))
         .at(position, normal, pattern);
@@ -168,8 +173,9 @@ TwoRadii GatherPoints::descended(const Vec3f& position, const Vec3f& normal, flo
 
 TwoRadii GatherPoints::descendedAt(const Place& place, std::uint32_t pattern) const {
     if (!m_request.descended) return {};
-    const float clearance = probe(place, m_request.descended->radius() / kDescendedReach);
-    return descended(place.position, place.geometricNormal, clearance, pattern);
+    const float radius = descendedRadius(place.position, place.geometricNormal);
+    const float clearance = probe(place, radius / kDescendedReach);
+    return descended(place.position, place.geometricNormal, clearance, radius, pattern);
 }
 
 void GatherPoints::fill(std::size_t index) const {

@@ -8,6 +8,7 @@
 #include <memory>
 #include <vector>
 
+#include "integrator/photons/caustic_map.h"
 #include "integrator/photons/irradiance_sites.h"
 #include "integrator/photons/surface_estimate.h"
 #include "integrator/scene/camera.h"
@@ -39,6 +40,8 @@ class GatherPoints {
         std::uint32_t pass = 0;
         // Light that the gather rays leave out and that is estimated at each point; may be null.
         const SurfaceEstimate* descended = nullptr;
+        // Its radii in the first pass, from place to place; null where `descended` is.
+        const PilotRadius* descendedRadius = nullptr;
     };
     // A place that a camera path came to.
     struct Place {
@@ -115,7 +118,8 @@ class GatherPoints {
     std::size_t findNear(const Place& place, std::array<Near, kMostNear>& near) const;
     void fill(std::size_t index) const;
     float probe(const Place& place, float farthest) const;
-    TwoRadii descended(const Vec3f& position, const Vec3f& normal, float clearance,
+    float descendedRadius(const Vec3f& position, const Vec3f& normal) const;
+    TwoRadii descended(const Vec3f& position, const Vec3f& normal, float clearance, float radius,
                        std::uint32_t pattern) const;
     Value compute(std::size_t index, std::uint64_t& rays) const;
 

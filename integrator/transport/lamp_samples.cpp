@@ -2,24 +2,19 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/transport/lamp_samples.h"
 
-#include <tbb/parallel_for.h>
-
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <vector>
 
 #include "integrator/materials/bsdf.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/transport/direct_light.h"
-#include "integrator/transport/path_walk.h"
+#include "integrator/transport/pilot_paths.h"
 
 namespace pm {
 
 namespace {
 
-// Pixels to a pilot path where the frame is small, and paths where it is large.
-constexpr double kPixelsOfAPath = 9.0;
+// Pilot paths of the frame.
 constexpr double kMostPaths = 1024.0;
 constexpr std::uint64_t kPilotSeed = 0x6c616d7073616d70ull;
 
@@ -49,45 +44,22 @@ Rgb estimate(const Scene& scene, const LightSampler& lights, const Surface& surf
     return direct.diffuse + direct.glossy;
 }
 
-// At the first lobe that is not delta; black where the path meets none.
-Lit follow(const Scene& scene, const LightSampler& lights, const Ray& ray, Sampler& sampler,
-           std::uint64_t seed, std::uint64_t path) {
-    PathWalk walk(ray);
-    Surface surface;
-    while (scene.intersect(walk.ray, surface)) {
-        const Bsdf bsdf(scene, surface, -walk.ray.direction, Transport::kRadiance, walk.throughput);
-        if (bsdf.isBlackBody()) break;
-        if (bsdf.has(Lobe::kDiffuse) || bsdf.has(Lobe::kGlossy)) {
-            const auto byStream = [&](std::uint64_t stream) {
-                return walk.throughput *
-                       estimate(scene, lights, surface, bsdf, Sampler(seed, stream, path, 0));
-            };
-            return Lit{byStream(1), byStream(2), walk.throughput * bsdf.diffuse()};
-        }
-        BsdfSample sample;
-        const float uLobe = sampler.next1D();
-        if (!bsdf.sample(uLobe, sampler.next2D(), sample) ||
-            !walk.scatter(surface, bsdf, sample, sampler))
-            break;
-    }
-    return {};
-}
-
+// At the first lobe of each path that is not delta; black where it meets none.
 std::vector<Lit> lookAround(const Scene& scene, const LightSampler& lights, const Camera& camera,
-                            const RenderSettings& settings) {
-    const double pixels = static_cast<double>(settings.width) * settings.height;
-    const double spacing = std::sqrt(std::max(kPixelsOfAPath, pixels / kMostPaths));
-    const auto columns = static_cast<std::size_t>(std::ceil(settings.width / spacing));
-    const auto rows = static_cast<std::size_t>(std::ceil(settings.height / spacing));
+                            const RenderSettings& settings, const CancelCheck& cancel) {
+    const FrameLattice lattice = FrameLattice::squares(settings, kMostPaths);
     const std::uint64_t seed = combineBits(settings.seed, kPilotSeed);
-    std::vector<Lit> found(columns * rows);
-    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t i) {
-        Sampler sampler(seed, 0, i, 0);
-        const Vec2f jitter = sampler.next2D();
-        const double x = static_cast<double>(i % columns) + static_cast<double>(jitter.x);
-        const double y = static_cast<double>(i / columns) + static_cast<double>(jitter.y);
-        found[i] = follow(scene, lights, camera.ray(x * spacing, y * spacing), sampler, seed, i);
-    });
+    std::vector<Lit> found(lattice.size());
+    followPilotPaths(
+        scene, camera, lattice, seed, cancel, [&](std::size_t path, const PilotStop& stop) {
+            if (!stop.bsdf.has(Lobe::kDiffuse) && !stop.bsdf.has(Lobe::kGlossy)) return true;
+            const auto byStream = [&](std::uint64_t stream) {
+                return stop.throughput * estimate(scene, lights, stop.surface, stop.bsdf,
+                                                  Sampler(seed, stream, path, 0));
+            };
+            found[path] = {byStream(1), byStream(2), stop.throughput * stop.bsdf.diffuse()};
+            return false;
+        });
     return found;
 }
 
@@ -122,10 +94,11 @@ Variances variancesOf(const std::vector<Lit>& places, bool hasIndirect) {
 // With n lamp samples a camera sample takes the time C + n c and has the variance R + V / n; their
 // product, the time to an error, is least at n^2 = V C / (R c).
 std::uint32_t findLampSamples(const Scene& scene, const LightSampler& lights, const Camera& camera,
-                              const RenderSettings& settings, const Plan& plan) {
+                              const RenderSettings& settings, const Plan& plan,
+                              const CancelCheck& cancel) {
     if (lights.empty()) return 1;
     const Variances variances =
-        variancesOf(lookAround(scene, lights, camera, settings), plan.globalMap);
+        variancesOf(lookAround(scene, lights, camera, settings, cancel), plan.globalMap);
     const double squared =
         variances.lamps / variances.rest * plan.processorSecondsPerSample / kLampSampleSeconds;
     std::uint32_t samples = 1;

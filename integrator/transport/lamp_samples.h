@@ -9,6 +9,7 @@
 #include "integrator/scene/scene.h"
 #include "integrator/transport/plan.h"
 #include "integrator/transport/render_settings.h"
+#include "integrator/values/cancel_check.h"
 
 namespace pm {
 
@@ -16,9 +17,11 @@ namespace pm {
 // kMostLampSamples. A pilot at places spread over the frame finds how noisy they are; the more, and
 // the dearer the rest of a camera sample by the plan's estimate, the more of them pay. It enters no
 // picture. A function of scene, settings and seed, not of crop, passes or threads. The lights must
-// have learnt already; works in parallel in the calling TBB arena.
+// have learnt already; works in parallel in the calling TBB arena. Throws Error(kCancelled) soon
+// after cancel is set.
 std::uint32_t findLampSamples(const Scene& scene, const LightSampler& lights, const Camera& camera,
-                              const RenderSettings& settings, const Plan& plan);
+                              const RenderSettings& settings, const Plan& plan,
+                              const CancelCheck& cancel = {});
 
 constexpr std::uint32_t kMostLampSamples = 16;
 

@@ -81,8 +81,15 @@ std::uint64_t PhotonPass::PassMaps::memoryBytes() const {
            bytesOf(caustic);
 }
 
+// Patches grow as a pass is rendered.
+std::uint64_t PhotonPass::peakMapBytes() const {
+    if (m_held.empty()) return m_peakMapBytes;
+    return std::max(m_peakMapBytes, m_heldBytes + m_patches->memoryBytes());
+}
+
 void PhotonPass::dropMaps() {
     const std::lock_guard lock(m_mutex);
+    m_peakMapBytes = peakMapBytes();
     for (const PassMaps& held : m_held)
         if (held.points) m_gatherRays += held.points->raysTraced();
     m_held.clear();
@@ -140,23 +147,25 @@ void PhotonPass::findRadii(Control& control) {
         m_raysOfPoint = m_plan.gatherRays;
         if (m_plan.gatherRaysByPilot) {
             const IrradianceSites sites(m_scene, pilot.photons(), m_globalRadius);
-            m_raysOfPoint = gatherRaysFor(
-                gatherSpread(m_scene, m_camera, m_lights, sites, m_settings), m_plan.gatherRays);
+            m_raysOfPoint =
+                gatherRaysFor(gatherSpread(m_scene, m_camera, m_lights, sites, m_settings, check),
+                              m_plan.gatherRays);
         }
     }
     if (m_plan.causticMap) {
         if (!m_source) aim(control);
         PhotonTraceResult pilot =
             trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), 0, control);
-        m_causticRadius = std::make_unique<CausticRadius>(std::move(pilot.photons), estimatePhotons,
-                                                          fallback, check);
+        m_causticRadius = std::make_unique<PilotRadius>(std::move(pilot.photons), estimatePhotons,
+                                                        fallback, check);
         if (m_plan.descent > 0.0f)
-            m_descendedRadius = PilotRadius(std::move(pilot.descended),
-                                            kDescendedPhotons * estimatePhotons, fallback, check)
-                                    .typical();
+            m_descendedRadius = std::make_unique<PilotRadius>(
+                std::move(pilot.descended), kDescendedPhotons * estimatePhotons, fallback, check);
     }
+    // By the sites' radius, so that they know nothing of caustics.
+    const bool byCaustics = m_causticRadius && !m_plan.globalMap;
     m_patches = std::make_unique<SurfacePatches>(
-        m_scene, m_causticRadius ? m_causticRadius->typical() : m_globalRadius);
+        m_scene, byCaustics ? m_causticRadius->typical() : m_globalRadius);
     m_haveRadii = true;
 }
 
@@ -171,7 +180,7 @@ void PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
     if (m_plan.descent > 0.0f) {
         maps.descendedPhotons = std::make_unique<PhotonMap>(std::move(traced.descended), check);
         maps.descended = std::make_unique<SurfaceEstimate>(m_scene, *maps.descendedPhotons,
-                                                           m_descendedRadius * factor);
+                                                           m_descendedRadius->typical() * factor);
     }
     const std::lock_guard lock(m_mutex);
     m_mapSeconds += watch.seconds();
@@ -193,8 +202,8 @@ void PhotonPass::buildIndirect(PassMaps& maps, Control& control) {
     maps.sites = std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor,
                                                    sitesHavePatches() ? m_patches.get() : nullptr);
     const GatherPoints::Request request{
-        m_settings.width, m_settings.height, m_plan.gatherSpacing, m_raysOfPoint, factor,
-        m_settings.seed,  maps.pass,         maps.descended.get()};
+        m_settings.width, m_settings.height, m_plan.gatherSpacing, m_raysOfPoint,          factor,
+        m_settings.seed,  maps.pass,         maps.descended.get(), m_descendedRadius.get()};
     maps.points =
         std::make_unique<GatherPoints>(m_scene, m_camera, *maps.sites, request, control.cancelled);
     if (control.cancelled.load()) throw Error(Status::kCancelled, "cancelled while gathering");
@@ -205,14 +214,19 @@ void PhotonPass::buildIndirect(PassMaps& maps, Control& control) {
 void PhotonPass::buildMaps(std::uint32_t pass, Control& control) {
     PassMaps maps;
     maps.pass = pass;
-    m_patches->makeRoom();
+    {
+        const std::lock_guard lock(m_mutex);
+        m_peakMapBytes = peakMapBytes();
+        m_patches->makeRoom();
+    }
     if (m_plan.causticMap) buildCaustics(maps, control);
     if (m_plan.globalMap) buildIndirect(maps, control);
     const std::lock_guard lock(m_mutex);
     m_held.push_back(std::move(maps));
-    std::uint64_t bytes = m_causticRadius ? m_causticRadius->memoryBytes() : 0;
-    for (const PassMaps& held : m_held) bytes += held.memoryBytes();
-    m_peakMapBytes = std::max(m_peakMapBytes, bytes);
+    m_heldBytes = 0;
+    for (const auto* const radius : {m_causticRadius.get(), m_descendedRadius.get()})
+        if (radius) m_heldBytes += radius->memoryBytes();
+    for (const PassMaps& held : m_held) m_heldBytes += held.memoryBytes();
 }
 
 void PhotonPass::count(PhotonKind kind, const PhotonBalance& balance) {
@@ -221,10 +235,14 @@ void PhotonPass::count(PhotonKind kind, const PhotonBalance& balance) {
     if (kind == PhotonKind::kGlobal) m_global += balance;
     if (kind == PhotonKind::kCaustic) m_storedCaustic += balance.stored;
     // Notices come once a render, from its pilots, not once a pass.
-    if (balance.stored == 0 && kind == PhotonKind::kGlobalPilot)
+    if (kind == PhotonKind::kGlobalPilot) m_noGlobalPhotons = balance.stored == 0;
+    const bool noCaustics = kind == PhotonKind::kCausticPilot && balance.stored == 0;
+    // Behind glass all light is descended from caustics.
+    const bool noOthers = m_plan.descent > 0.0f ? noCaustics : kind == PhotonKind::kGlobalPilot;
+    if (m_noGlobalPhotons && noOthers)
         m_notices.push_back({NoticeCode::kNoPhotons,
                              "0 photons reached a diffuse surface, so there is no indirect light"});
-    if (balance.stored == 0 && kind == PhotonKind::kCausticPilot)
+    if (noCaustics)
         m_notices.push_back(
             {NoticeCode::kNoCausticPhotons,
              "0 photons reached a diffuse surface by way of another, so there is no "
@@ -253,7 +271,7 @@ void PhotonPass::addTo(RenderCounters& counters) const {
     counters.photonsStoredCaustic += m_storedCaustic;
     counters.photonSeconds += m_photonSeconds;
     counters.mapSeconds += m_mapSeconds;
-    counters.peakMapBytes = std::max(counters.peakMapBytes, m_peakMapBytes);
+    counters.peakMapBytes = std::max(counters.peakMapBytes, peakMapBytes());
 }
 
 std::vector<Notice> PhotonPass::takeNotices() {

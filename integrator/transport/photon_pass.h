@@ -90,6 +90,7 @@ class PhotonPass {
     void count(PhotonKind kind, const PhotonBalance& balance);
 
     void dropMaps();
+    std::uint64_t peakMapBytes() const;  // m_mutex held
 
     const Scene& m_scene;
     const Camera& m_camera;
@@ -100,17 +101,19 @@ class PhotonPass {
     bool m_pilotsAreKept = false;            // by the sink
     // Of the first pass, scene units.
     bool m_haveRadii = false;
-    float m_globalRadius = 0.0f, m_descendedRadius = 0.0f;
+    float m_globalRadius = 0.0f;
     std::uint32_t m_raysOfPoint = 0;       // gather rays; 0 until the radii are known
     std::unique_ptr<AimedEmission> m_aim;  // of caustic photons
-    std::unique_ptr<CausticRadius> m_causticRadius;
+    std::unique_ptr<PilotRadius> m_causticRadius, m_descendedRadius;
     std::unique_ptr<SurfacePatches> m_patches;  // filled as the passes go on
 
     mutable std::mutex m_mutex;    // of what follows
     std::vector<PassMaps> m_held;  // of the pass begun last and of those added since
     PhotonBalance m_allKinds, m_global;
-    std::uint64_t m_storedCaustic = 0, m_peakMapBytes = 0;
-    std::uint64_t m_gatherRays = 0;  // of the passes whose maps were dropped
+    std::uint64_t m_storedCaustic = 0;
+    std::uint64_t m_heldBytes = 0, m_peakMapBytes = 0;  // the first without patches
+    std::uint64_t m_gatherRays = 0;                     // of the passes whose maps were dropped
+    bool m_noGlobalPhotons = false;                     // of the pilot
     double m_photonSeconds = 0, m_mapSeconds = 0;
     std::vector<Notice> m_notices;
 };

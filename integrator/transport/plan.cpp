@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrator/photons/caustic_casters.h"
 #include "integrator/photons/caustic_map.h"
 #include "integrator/photons/irradiance_sites.h"
 #include "integrator/scene/light_sampler.h"
@@ -51,8 +52,7 @@ SceneTraits findTraits(const Scene& scene) {
             const bool glossy = (surface && !isBlack(m.glossy)) ||
                                 (m.kind == MaterialKind::kMirror && m.glossyExponent > 0.0f);
             traits.glossy |= glossy;
-            traits.specular |=
-                !surface || glossy || m.transparency > 0.0f || m.opacityTexture != kNoTexture;
+            traits.specular |= castsCaustics(m);
         }
     traits.lights = !scene.lights().empty();
     for (const Light& light : scene.lights())
@@ -93,40 +93,16 @@ void estimateCosts(const RenderSettings& settings, Plan& plan) {
     plan.processorSecondsPerSample = (perPixel + photons / framePixels) / samplesOfAPixel;
 }
 
-}  // namespace
+void planPaths(const SceneTraits& traits, Plan& plan) {
+    plan.reasons.push_back("path tracing: asked for by --integrator path; no photons");
+    plan.lampSamples = 1;
+    if (traits.specular && traits.diffuse && traits.pointLights)
+        plan.notices.push_back({NoticeCode::kNotCovered,
+                                "caustics of point lights, spots and suns without a disc can't "
+                                "be found by path tracing"});
+}
 
-Plan makePlan(const Scene& scene, const RenderSettings& settings) {
-    Plan plan;
-    const SceneTraits traits = findTraits(scene);
-    if (traits.glossy && traits.pointLights)
-        plan.notices.push_back({NoticeCode::kNotCovered,
-                                "light of point lights, spots and suns without a disc that reaches "
-                                "a glossy lobe by way of a mirror, glass or another glossy surface "
-                                "is not rendered"});
-    if (settings.hasGroups())
-        plan.notices.push_back({NoticeCode::kNotCovered,
-                                "anti-aliasing begins at level 0: where 2 x 2 pixels share their "
-                                "samples, the estimated error covers neither the blur nor what "
-                                "few samples miss"});
-    if (settings.integrator == IntegratorKind::kPath) {
-        plan.reasons.push_back("path tracing: asked for by --integrator path; no photons");
-        plan.lampSamples = 1;
-        if (traits.specular && traits.diffuse && traits.pointLights)
-            plan.notices.push_back({NoticeCode::kNotCovered,
-                                    "caustics of point lights, spots and suns without a disc can't "
-                                    "be found by path tracing"});
-        return plan;
-    }
-    const bool everything = settings.plan == PlanKind::kEverything;
-    if (everything) plan.reasons.push_back("everything: asked for by --plan everything");
-    if (!traits.lights && !everything) {
-        plan.reasons.push_back("no photons: nothing emits");
-        return plan;
-    }
-    if (!traits.diffuse && !everything) {
-        plan.reasons.push_back("no photons: no surface reflects diffusely, paths are followed");
-        return plan;
-    }
+void planDirectLight(const Scene& scene, const SceneTraits& traits, Plan& plan) {
     plan.reasons.push_back(
         "direct light: next-event estimation, weighted against rays along the diffuse lobe where "
         "lamps fill much of the view");
@@ -143,44 +119,88 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
             "lamps: {}, so each place has its own choice of them, by a tree and by which of them "
             "a few thousand places see",
             scene.lights().size()));
+}
+
+void planGlobalMap(const RenderSettings& settings, Plan& plan) {
+    plan.globalPhotons = photonsOf(settings, kAutoGlobalPhotons);
+    plan.gatherRaysByPilot = settings.gatherRays == 0;
+    plan.gatherRays = plan.gatherRaysByPilot ? kAutoGatherRays : settings.gatherRays;
+    plan.gatherSpacing = std::max(
+        kGatherSpacing, static_cast<float>(std::sqrt(static_cast<double>(settings.width) *
+                                                     settings.height / kMostGatherPoints)));
+    plan.reasons.push_back(fmt::format(
+        "indirect light: final gathering at a point for every {:.1f} x {:.1f} pixels, {} rays "
+        "each{}, and the mean of the points near a sample",
+        plan.gatherSpacing, plan.gatherSpacing, plan.gatherRays,
+        plan.gatherRaysByPilot ? " or half, twice, four times as many, as a pilot finds" : ""));
+    plan.reasons.push_back(fmt::format(
+        "global map: {} photons a pass, its irradiance kept at sites for what the gather rays "
+        "meet",
+        plan.globalPhotons));
+}
+
+void planCausticMap(const RenderSettings& settings, const SceneTraits& traits, Plan& plan) {
+    plan.causticPhotons = photonsOf(settings, kAutoCausticPhotons);
+    plan.reasons.push_back(
+        fmt::format("caustic map: {} photons a pass, aimed, {}", plan.causticPhotons,
+                    traits.specular ? "since the scene has surfaces that are not diffuse"
+                                    : "though every surface is diffuse"));
+    if (!plan.globalMap) return;
+    plan.descent = kAutoDescent;
+    plan.reasons.push_back(fmt::format(
+        "light descended from caustics: {:.0f} % of their photons are followed on, for a "
+        "wide density estimate; gather rays would have to find the caustics",
+        plan.descent * 100.0f));
+}
+
+void planMaps(const RenderSettings& settings, const SceneTraits& traits, bool everything,
+              Plan& plan) {
     plan.globalMap = !traits.flat || everything;
     plan.causticMap = (traits.specular && !traits.flat) || everything;
     plan.tracePhotons = plan.globalMap || plan.causticMap;
-    if (plan.globalMap) {
-        plan.globalPhotons = photonsOf(settings, kAutoGlobalPhotons);
-        plan.gatherRaysByPilot = settings.gatherRays == 0;
-        plan.gatherRays = plan.gatherRaysByPilot ? kAutoGatherRays : settings.gatherRays;
-        plan.gatherSpacing = std::max(
-            kGatherSpacing, static_cast<float>(std::sqrt(static_cast<double>(settings.width) *
-                                                         settings.height / kMostGatherPoints)));
-        plan.reasons.push_back(fmt::format(
-            "indirect light: final gathering at a point for every {:.1f} x {:.1f} pixels, {} rays "
-            "each{}, and the mean of the points near a sample",
-            plan.gatherSpacing, plan.gatherSpacing, plan.gatherRays,
-            plan.gatherRaysByPilot ? " or half, twice, four times as many, as a pilot finds" : ""));
-        plan.reasons.push_back(fmt::format(
-            "global map: {} photons a pass, its irradiance kept at sites for what the gather rays "
-            "meet",
-            plan.globalPhotons));
-    } else {
+    if (plan.globalMap)
+        planGlobalMap(settings, plan);
+    else
         plan.reasons.push_back("no global map: all surfaces that reflect lie in one plane");
+    if (plan.causticMap)
+        planCausticMap(settings, traits, plan);
+    else
+        plan.reasons.push_back(traits.specular
+                                   ? "no caustic map: all surfaces that reflect lie in one plane"
+                                   : "no caustic map: every surface is diffuse");
+}
+
+}  // namespace
+
+Plan makePlan(const Scene& scene, const RenderSettings& settings) {
+    Plan plan;
+    const SceneTraits traits = findTraits(scene);
+    if (traits.glossy && traits.pointLights)
+        plan.notices.push_back({NoticeCode::kNotCovered,
+                                "light of point lights, spots and suns without a disc that reaches "
+                                "a glossy lobe by way of a mirror, glass or another glossy surface "
+                                "is not rendered"});
+    if (settings.hasGroups())
+        plan.notices.push_back({NoticeCode::kNotCovered,
+                                "anti-aliasing begins at level 0: where 2 x 2 pixels share their "
+                                "samples, the estimated error covers neither the blur nor what "
+                                "few samples miss"});
+    if (settings.integrator == IntegratorKind::kPath) {
+        planPaths(traits, plan);
+        return plan;
     }
-    if (plan.causticMap) {
-        plan.causticPhotons = photonsOf(settings, kAutoCausticPhotons);
-        plan.reasons.push_back(
-            fmt::format("caustic map: {} photons a pass, aimed, {}", plan.causticPhotons,
-                        traits.specular ? "since the scene has surfaces that are not diffuse"
-                                        : "though every surface is diffuse"));
-        if (plan.globalMap) {
-            plan.descent = kAutoDescent;
-            plan.reasons.push_back(fmt::format(
-                "light descended from caustics: {:.0f} % of their photons are followed on, for a "
-                "wide density estimate; gather rays would have to find the caustics",
-                plan.descent * 100.0f));
-        }
-    } else {
-        plan.reasons.push_back("no caustic map: every surface is diffuse");
+    const bool everything = settings.plan == PlanKind::kEverything;
+    if (everything) plan.reasons.push_back("everything: asked for by --plan everything");
+    if (!traits.lights && !everything) {
+        plan.reasons.push_back("no photons: nothing emits");
+        return plan;
     }
+    if (!traits.diffuse && !everything) {
+        plan.reasons.push_back("no photons: no surface reflects diffusely, paths are followed");
+        return plan;
+    }
+    planDirectLight(scene, traits, plan);
+    planMaps(settings, traits, everything, plan);
     estimateCosts(settings, plan);
     return plan;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 #include "integrator/materials/bsdf.h"
 
@@ -19,14 +20,10 @@ constexpr std::uint32_t kPathsAtDelta = 1, kPathsAtLamps = 8;
 // Pilot paths along each side of a square, which reach so many pixels beyond it.
 constexpr std::int32_t kPilots = 8;
 constexpr float kBeyond = 1.0f;
+// How far a filter reaches beyond a pixel, at most.
+constexpr double kFilterReach = 1.0;
 constexpr std::uint64_t kPilotSeed = 0x7365656e6c616d70ull;
 
-// A path divides so often, then lobes are chosen.
-constexpr std::size_t kMostDivisions = 6;
-// What carries less than this goes on by Russian roulette; after so many events what carries less
-// than before does.
-constexpr float kLeastThroughput = 0.01f;
-constexpr int kEventsBeforeRoulette = 5;
 // As in PathWalk: only light caught between lossless surfaces comes so far.
 constexpr int kMaxEvents = 1000;
 constexpr std::array<Lobe, 3> kDeltaLobes{Lobe::kReflection, Lobe::kRefraction, Lobe::kStraight};
@@ -54,31 +51,65 @@ SeenLamps::SeenLamps(const Scene& scene, const LightSampler& lights, const Camer
       m_width(width),
       m_height(height),
       m_columns(squaresAlong(width)),
-      m_hasLamps(std::ranges::any_of(scene.lights(), isAreaLight)) {
+      m_hasLamps(std::ranges::any_of(scene.lights(), isAreaLight)),
+      m_balls(lampBalls(scene)) {
     if (m_hasLamps)
-        m_shown = std::make_unique<std::atomic<Shown>[]>(
+        m_shown = std::make_unique<std::atomic<std::uint8_t>[]>(
             static_cast<std::size_t>(m_columns) * static_cast<std::size_t>(squaresAlong(height)));
 }
 
 std::uint32_t SeenLamps::paths(std::int32_t x, std::int32_t y) const {
+    return shownAt(x, y) & kPaths;
+}
+
+std::span<const LampImage> SeenLamps::images(std::int32_t x, std::int32_t y) const {
+    if (!(shownAt(x, y) & kHasImages)) return {};
+    const std::lock_guard lock(m_imagesMutex);
+    return m_images.at({x / kSquare, y / kSquare});
+}
+
+std::uint8_t SeenLamps::shownAt(std::int32_t x, std::int32_t y) const {
     if (!m_hasLamps || x < 0 || y < 0 || x >= m_width || y >= m_height) return 0;
     const std::int32_t column = x / kSquare, row = y / kSquare;
-    std::atomic<Shown>& kept =
+    std::atomic<std::uint8_t>& kept =
         m_shown[static_cast<std::size_t>(row) * static_cast<std::size_t>(m_columns) +
                 static_cast<std::size_t>(column)];
-    Shown shown = kept.load(std::memory_order_relaxed);
-    if (shown == Shown::kUnknown) {
+    std::uint8_t shown = kept.load(std::memory_order_relaxed);
+    if (shown == 0) {
         shown = look(column, row);
         kept.store(shown, std::memory_order_relaxed);
     }
-    return shown == Shown::kLamps ? kPathsAtLamps : shown == Shown::kDelta ? kPathsAtDelta : 0;
+    return shown;
 }
 
-SeenLamps::Shown SeenLamps::look(std::int32_t column, std::int32_t row) const {
+std::uint8_t SeenLamps::look(std::int32_t column, std::int32_t row) const {
+    std::uint32_t paths = pathsFor(column, row);
+    const bool hasImages = findImages(column, row);
+    if (hasImages) paths = kPathsAtLamps;
+    return static_cast<std::uint8_t>(kKnown | paths | (hasImages ? kHasImages : 0));
+}
+
+// Two threads may both come here: they find the same, and the first one's stays.
+bool SeenLamps::findImages(std::int32_t column, std::int32_t row) const {
+    if (m_balls.empty()) return false;
+    const double x0 = column * kSquare, y0 = row * kSquare;
+    std::vector<LampRay> rays;
+    for (std::int32_t i = 0; i < kSquare * kSquare; ++i)
+        addLampRays(m_scene, m_camera, x0 + i % kSquare + 0.5, y0 + i / kSquare + 0.5, rays);
+    auto images =
+        findLampImages(m_scene, m_camera, m_balls, x0 - kFilterReach, x0 + kSquare + kFilterReach,
+                       y0 - kFilterReach, y0 + kSquare + kFilterReach, std::move(rays));
+    if (images.empty()) return false;
+    const std::lock_guard lock(m_imagesMutex);
+    m_images.try_emplace({column, row}, std::move(images));
+    return true;
+}
+
+std::uint32_t SeenLamps::pathsFor(std::int32_t column, std::int32_t row) const {
     const std::uint64_t square =
         static_cast<std::uint64_t>(row) << 32 | static_cast<std::uint32_t>(column);
     constexpr float kStep = (static_cast<float>(kSquare) + 2.0f * kBeyond) / kPilots;
-    Shown shown = Shown::kNeither;
+    std::uint32_t paths = 0;
     float least = std::numeric_limits<float>::max(), most = 0.0f;
     for (std::int32_t i = 0; i < kPilots * kPilots; ++i) {
         Sampler sampler(kPilotSeed, 0, square, static_cast<std::uint32_t>(i));
@@ -91,14 +122,15 @@ SeenLamps::Shown SeenLamps::look(std::int32_t column, std::int32_t row) const {
         const float found = maxChannel(along(ray, sampler, rays));
         least = std::min(least, found);
         most = std::max(most, found);
-        if (least < kEven * most) return Shown::kLamps;
-        if (rays > 1) shown = Shown::kDelta;
+        if (least < kEven * most) return kPathsAtLamps;
+        if (rays > 1) paths = kPathsAtDelta;
     }
-    return shown;
+    return paths;
 }
 
-Rgb SeenLamps::along(const Ray& ray, Sampler& sampler, std::uint32_t& rays) const {
-    Waiting waiting;
+Rgb SeenLamps::along(const Ray& ray, Sampler& sampler, std::uint32_t& rays,
+                     const Effort& effort) const {
+    Waiting waiting{effort};
     waiting.branches[waiting.count++].ray = ray;
     Rgb found;
     while (waiting.count > 0) {
@@ -121,17 +153,18 @@ bool SeenLamps::step(Branch& branch, Waiting& waiting, Sampler& sampler, Rgb& fo
     const Bsdf bsdf(m_scene, surface, out, Transport::kRadiance, branch.throughput);
     if (bsdf.isBlackBody()) return false;
     const Branch arrived = branch;
-    if (waiting.divisions >= kMostDivisions) {
+    if (waiting.divisions >= waiting.effort.divisions) {
         const float uLobe = sampler.next1D();
         BsdfSample sample;
         return bsdf.sample(uLobe, sampler.next2D(), sample) && isDelta(sample.lobe) &&
-               goOn(arrived, surface, bsdf, sample, sampler, branch);
+               goOn(arrived, surface, bsdf, sample, waiting.effort, sampler, branch);
     }
     std::size_t followed = 0;
     for (const Lobe lobe : kDeltaLobes) {
         BsdfSample sample;
         Branch next;
-        if (!bsdf.follow(lobe, sample) || !goOn(arrived, surface, bsdf, sample, sampler, next))
+        if (!bsdf.follow(lobe, sample) ||
+            !goOn(arrived, surface, bsdf, sample, waiting.effort, sampler, next))
             continue;
         if (followed++ > 0) waiting.branches[waiting.count++] = branch;
         branch = next;
@@ -142,14 +175,15 @@ bool SeenLamps::step(Branch& branch, Waiting& waiting, Sampler& sampler, Rgb& fo
 
 // Along a lobe from where `from` has arrived. False: the roulette ends it.
 bool SeenLamps::goOn(const Branch& from, const Surface& surface, const Bsdf& bsdf,
-                     const BsdfSample& sample, Sampler& sampler, Branch& next) const {
+                     const BsdfSample& sample, const Effort& effort, Sampler& sampler,
+                     Branch& next) const {
     next.throughput = from.throughput * sample.weight;
     next.etaScale = from.etaScale;
     if (sample.lobe == Lobe::kRefraction) next.etaScale *= bsdf.etaSquared();
     next.events = from.events;
     const float carried = maxChannel(next.throughput) * next.etaScale;
-    float least = kLeastThroughput;
-    if (from.events >= kEventsBeforeRoulette)
+    float least = effort.leastThroughput;
+    if (from.events >= effort.events)
         least = std::max(least, maxChannel(from.throughput) * from.etaScale);
     if (carried < least) {
         const float survival = carried / least;

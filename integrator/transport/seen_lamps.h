@@ -5,13 +5,19 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
+#include <span>
+#include <utility>
+#include <vector>
 
 #include "integrator/materials/bsdf.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/lamp_images.h"
 #include "integrator/values/rgb.h"
 
 namespace pm {
@@ -21,6 +27,10 @@ namespace pm {
 // beside a camera sample's look-ups; so where lamps or delta lobes are seen a camera sample has
 // several paths for this class alone. Where they meet glass they follow reflection and refraction
 // both: a choice between them would find most images of lamps once in 25 times.
+//
+// An image much smaller than a pixel is hit by few of these paths, and is then a speck, or missing.
+// Such images are looked for (see findLampImages); pixels that may show one have paths towards it
+// besides.
 //
 // Where that is: a pilot of each square of pixels tells, computed when it is first asked for. It
 // enters no picture and chooses between two estimates of the same mean, so it may miss something.
@@ -37,8 +47,24 @@ class SeenLamps {
     // so outside the frame.
     std::uint32_t paths(std::int32_t x, std::int32_t y) const;
 
+    // The small images in and around the pixel's square, where the pixel has paths.
+    std::span<const LampImage> images(std::int32_t x, std::int32_t y) const;
+
+    // How far a path is followed: it divides so often, then lobes are chosen; what carries less
+    // than this goes on by Russian roulette, and after so many events what carries less than
+    // before.
+    struct Effort {
+        std::size_t divisions = 6;
+        float leastThroughput = 1e-3f;
+        int events = 5;
+    };
+    static constexpr Effort kOfImages{12, 1e-4f, 12};
+
     // Radiance of the lamps along a ray. Adds its rays to `rays`.
-    Rgb along(const Ray& ray, Sampler& sampler, std::uint32_t& rays) const;
+    Rgb along(const Ray& ray, Sampler& sampler, std::uint32_t& rays) const {
+        return along(ray, sampler, rays, {});
+    }
+    Rgb along(const Ray& ray, Sampler& sampler, std::uint32_t& rays, const Effort& effort) const;
 
   private:
     // How far a path has come.
@@ -52,23 +78,32 @@ class SeenLamps {
     // Branches of one path that wait to be followed.
     struct Waiting {
         static constexpr std::size_t kMost = 16;
-        std::array<Branch, kMost> branches;
+        const Effort& effort;
+        std::array<Branch, kMost> branches{};
         std::size_t count = 0;
         std::size_t divisions = 0;  // so far
     };
-    enum class Shown : std::uint8_t { kUnknown, kNeither, kDelta, kLamps };
+    // What is known of a square: this, the number of paths, and whether there are images.
+    static constexpr std::uint8_t kKnown = 0x40, kHasImages = 0x80, kPaths = 0x3f;
 
     bool step(Branch& branch, Waiting& waiting, Sampler& sampler, Rgb& found) const;
     bool goOn(const Branch& from, const Surface& surface, const Bsdf& bsdf,
-              const BsdfSample& sample, Sampler& sampler, Branch& next) const;
-    Shown look(std::int32_t column, std::int32_t row) const;
+              const BsdfSample& sample, const Effort& effort, Sampler& sampler, Branch& next) const;
+    std::uint8_t shownAt(std::int32_t x, std::int32_t y) const;
+    std::uint8_t look(std::int32_t column, std::int32_t row) const;
+    std::uint32_t pathsFor(std::int32_t column, std::int32_t row) const;
+    bool findImages(std::int32_t column, std::int32_t row) const;
 
     const Scene& m_scene;
     const LightSampler& m_lights;
     const Camera& m_camera;
     std::int32_t m_width, m_height, m_columns;
     bool m_hasLamps;
-    std::unique_ptr<std::atomic<Shown>[]> m_shown;  // of each square
+    std::vector<LampBall> m_balls;
+    std::unique_ptr<std::atomic<std::uint8_t>[]> m_shown;  // of each square
+    // By column and row, of the squares that have some.
+    mutable std::mutex m_imagesMutex;
+    mutable std::map<std::pair<std::int32_t, std::int32_t>, std::vector<LampImage>> m_images;
 };
 
 }  // namespace pm

@@ -13,7 +13,7 @@
 namespace pm::plugin {
 
 // The empty frame of a render with these settings. sharesNoise: SampleRule::sharesNoise, which the
-// plan knows (tracePhotons); of no matter where nothing is rendered. Errors: those of FrameStore.
+// plan knows (tracePhotons). Errors: those of FrameStore.
 FrameStore makeFrame(const RenderSettings& settings, bool sharesNoise);
 
 // What it takes, in bytes.

@@ -70,6 +70,32 @@ std::string figures(const MemoryNeed& need) {
         toGib(need.buckets), toGib(need.process));
 }
 
+std::uint64_t threadsOf(const SettingValues& values) {
+    const auto asked = static_cast<int>(values.integer(Setting::kThreads));
+    return static_cast<std::uint64_t>(asked == 0 ? availableThreads() : asked);
+}
+
+std::uint64_t frameBytes(RenderSettings settings, const Rect& window) {
+    settings.window = window;
+    return frameMemoryBytes(settings);
+}
+
+// Turns a plan for the whole frame into one by buckets.
+void planByBuckets(const Plan& plan, const RenderSettings& settings, std::uint64_t threads,
+                   const BucketGrid& grid, MemoryPlan& memory) {
+    memory.byBuckets = true;
+    memory.bucketsHeld = static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(kBucketsHeldPerThread * threads, grid.cellCount()));
+    const std::int32_t side = grid.bucketSize();
+    memory.need.frame = memory.bucketsHeld * frameBytes(settings, {0, 0, side, side});
+    memory.need.maps = mapBytes(plan, settings.passes);
+    memory.need.process = kProgramBytes;
+    memory.need.buckets = threads * kAtomPixels *
+                              static_cast<std::uint64_t>(channelLayout(settings).count + 4) *
+                              sizeof(float) +
+                          grid.cellCount() * kCellBytes + BucketErrors::memoryBytes(grid);
+}
+
 }  // namespace
 
 BucketGrid bucketsOf(const SettingValues& values) {
@@ -82,16 +108,11 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
                       const BucketGrid& grid) {
     const RenderSettings settings = values.toRenderSettings();
     const ChannelLayout layout = channelLayout(settings);
-    const auto asked = static_cast<int>(values.integer(Setting::kThreads));
-    const auto threads = static_cast<std::uint64_t>(asked == 0 ? availableThreads() : asked);
+    const std::uint64_t threads = threadsOf(values);
     const auto bucketSize = static_cast<std::uint64_t>(grid.bucketSize());
-    auto frameBytes = [ofBucket = settings](const Rect& window) mutable {
-        ofBucket.window = window;
-        return frameMemoryBytes(ofBucket);
-    };
     MemoryPlan memory;
     memory.limit = memoryLimitBytes(values.number(Setting::kMemoryLimit));
-    memory.whole = {scene.memoryBytes(), frameBytes(settings.window), mapBytes(plan, 1),
+    memory.whole = {scene.memoryBytes(), frameBytes(settings, settings.window), mapBytes(plan, 1),
                     threads * bucketSize * bucketSize *
                             static_cast<std::uint64_t>(layout.count + 1) * sizeof(float) +
                         grid.cellCount() * sizeof(PmrBucketInfo) * 2,
@@ -114,16 +135,7 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
                         memory.whyWhole));
     if (!demanded && (memory.whole.total() <= memory.limit || !memory.whyWhole.empty()))
         return memory;
-    memory.byBuckets = true;
-    memory.bucketsHeld = static_cast<std::uint32_t>(
-        std::min<std::uint64_t>(kBucketsHeldPerThread * threads, grid.cellCount()));
-    const auto side = static_cast<std::int32_t>(bucketSize);
-    memory.need.frame = memory.bucketsHeld * frameBytes({0, 0, side, side});
-    memory.need.maps = mapBytes(plan, settings.passes);
-    memory.need.process = kProgramBytes;
-    memory.need.buckets =
-        threads * kAtomPixels * static_cast<std::uint64_t>(layout.count + 4) * sizeof(float) +
-        grid.cellCount() * kCellBytes + BucketErrors::memoryBytes(grid);
+    planByBuckets(plan, settings, threads, grid, memory);
     return memory;
 }
 

@@ -41,7 +41,7 @@ MergeObject::Picture::Picture(PieceHead partHead, std::string fileName)
     settings.setInteger("passes", head.passes);
     const RenderSettings render = settings.toRenderSettings();
     layout = channelLayout(render);
-    frame = std::make_unique<FrameStore>(makeFrame(render, false));
+    frame = std::make_unique<FrameStore>(makeFrame(render, head.sharesNoise));
     files.resize(head.bucketCount);
 }
 

@@ -67,6 +67,7 @@ std::string PieceHead::toJson() const {
                  {"isa", isa},
                  {"settings", pairsJson(settings)},
                  {"passes", passes},
+                 {"sharesNoise", sharesNoise},
                  {"bucketCount", bucketCount},
                  {"firstBucket", range.first},
                  {"lastBucket", range.last}};
@@ -92,6 +93,7 @@ PieceHead PieceHead::fromJson(std::span<const std::byte> text) {
             head.settings.emplace_back(setting.at(0).get<std::string>(),
                                        setting.at(1).get<std::string>());
         json.at("passes").get_to(head.passes);
+        json.at("sharesNoise").get_to(head.sharesNoise);
         json.at("bucketCount").get_to(head.bucketCount);
         json.at("firstBucket").get_to(head.range.first);
         json.at("lastBucket").get_to(head.range.last);

@@ -32,6 +32,7 @@ struct PieceHead {
     // channels there are.
     std::vector<std::pair<std::string, std::string>> settings;
     std::uint32_t passes = 0;  // whole ones, in the sums that follow
+    bool sharesNoise = true;  // of a part: SampleRule::sharesNoise, on which its sums' layout hangs
     std::uint32_t bucketCount = 0;
     BucketRange range;
 

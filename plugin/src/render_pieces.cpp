@@ -132,6 +132,7 @@ void RenderPieces::finish(const FrameStore& frame, std::uint32_t passesDone,
     PieceHead head = m_partHead;
     head.passes = passesDone;
     head.photonHash = photonHash;
+    head.sharesNoise = !frame.rule() || frame.rule()->sharesNoise;
     head.identity.push_back({"passes", fmt::format("{}", passesDone)});
     writePart(m_part, head, frame, m_buckets);
 }

@@ -82,7 +82,7 @@ class RenderWork {
     Progress progress() const;
     RenderCounters counters() const { return m_renderer->counters(); }
     const Scene& scene() const { return *m_scene; }
-    const Plan& plan() const { return m_renderer->plan(); }  // with what its pilot found
+    const Plan& plan() const { return m_plan; }
     const RenderPhotons& photons() const { return m_photons; }
     const MemoryPlan& memory() const { return m_memory; }
     // The pixels that can be read now; by buckets null where no bucket is being delivered.
@@ -110,6 +110,7 @@ class RenderWork {
     void runPhotonsOnly(const Cancel& cancel, EventQueue& events);
     void tracePass(std::uint32_t pass, const Cancel& cancel, EventQueue& events);
     void runByBuckets(const Cancel& cancel, EventQueue& events);
+    void runByPasses(const Cancel& cancel, EventQueue& events);
     double addPass(std::uint32_t pass, double share, const Cancel& cancel, EventQueue& events);
     // Returns the first pass to make.
     std::uint32_t resume(const Cancel& cancel, EventQueue& events);
@@ -122,6 +123,10 @@ class RenderWork {
     void warn(const Notice& notice, EventQueue& events);
     double beginPass(std::uint32_t pass, const Cancel& cancel, EventQueue& events);
     double renderBuckets(std::uint32_t pass, const Cancel& cancel, EventQueue& events);
+    struct PassRun;
+    void deliverBucket(PassRun& run, std::uint32_t cell, const Rect& rect,
+                       std::span<const float> buffer);
+    void countBuckets(const BucketRun& result, double seconds, bool ofWholeFrame);
     void renderAtom(const Rect& rect, const Rect& atom, std::uint32_t pass, int worker,
                     std::span<float> buffer, const Cancel& cancel);
     PmrBucketInfo bucketInfo(std::uint32_t cell, const Rect& bucket, std::uint32_t pass) const;

@@ -93,7 +93,7 @@ Json planJson(const Plan& plan, const RenderCounters& counters) {
             {"globalPhotonsPerPass", plan.globalPhotons},
             {"gatherRaysPerPoint", counters.gatherRaysOfPoint},
             {"causticPhotonsPerPass", plan.causticPhotons},
-            {"lampSamples", plan.lampSamples},
+            {"lampSamples", counters.lampSamples},
             {"lines", plan.reasons}};
 }
 
@@ -121,6 +121,16 @@ Json curveJson(const ErrorCurve& curve) {
                         {"bias", e ? Json(e->bias) : Json(nullptr)}});
     }
     return json;
+}
+
+void addPasses(const RenderWork& work, const RenderWork::Progress& progress, Json& json) {
+    json["passesDone"] = progress.passesDone;
+    json["passesResumed"] = progress.passesResumed;
+    json["passesPlanned"] = work.passCount();
+    json["threads"] = work.threads();
+    json["delivery"] = work.memory().byBuckets ? "buckets" : "frame";
+    addError(work.estimateError(), json);
+    json["errorCurve"] = curveJson(progress.curve);
 }
 
 }  // namespace
@@ -154,13 +164,7 @@ std::string Render::statisticsJson() const {
     json["stopReason"] = stopText(stopReason());
     json["status"] = status;
     json["error"] = errorText;
-    json["passesDone"] = progress.passesDone;
-    json["passesResumed"] = progress.passesResumed;
-    json["passesPlanned"] = running->passCount();
-    json["threads"] = running->threads();
-    json["delivery"] = running->memory().byBuckets ? "buckets" : "frame";
-    addError(running->estimateError(), json);
-    json["errorCurve"] = curveJson(progress.curve);
+    addPasses(*running, progress, json);
     json["phases"] = {
         {"buildSeconds", m_scene->buildSeconds()}, {"photonSeconds", counters.photonSeconds},
         {"mapSeconds", counters.mapSeconds},       {"beginPassSeconds", progress.photonSeconds},

@@ -1,47 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-// Work that is given up from another thread, in every phase that may take long. Times on the wall
-// are shown, not judged: the machine may do other things at the same time; processor time is
-// judged. PM_TRIANGLES=10000000 takes so large a mesh, PM_PHOTONS=20000000 so many photons,
-// PM_TEXELS=8192 a picture of so many columns.
-#include <atomic>
-#include <chrono>
+// Builds that are given up from another thread, in every phase that may take long.
+// PM_TRIANGLES=10000000 takes so large a mesh, PM_TEXELS=8192 a picture of so many columns.
 #include <cmath>
 #include <cstdio>
-#include <cstdlib>
-#include <ctime>
 #include <functional>
 #include <iostream>
-#include <map>
+#include <string>
 #include <thread>
+#include <vector>
 
-#include "tests/abi/box_scene.h"
-#include "tests/abi/host.h"
+#include "tests/abi/cancel.h"
 
 namespace pm::test {
 
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-double secondsSince(Clock::time_point start) {
-    return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// Of all threads: what work went on for, whatever else the machine does.
-double processorSeconds() {
-    std::timespec time{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-    return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
-
-std::uint32_t numberOf(const char* variable, std::uint32_t usual) {
-    const char* text = std::getenv(variable);
-    return text == nullptr ? usual : static_cast<std::uint32_t>(std::strtoul(text, nullptr, 10));
-}
-
-// Between a cancel and the call's return: 0.2 s of two threads.
-constexpr double kMostProcessorSeconds = 0.4;
 
 // A picture of 2 : 1, every texel of it another.
 std::string writePicture(std::uint32_t columns) {
@@ -58,114 +31,8 @@ std::string writePicture(std::uint32_t columns) {
     return name;
 }
 
-// A bumpy sheet of quads, side x side of them.
-struct Sheet {
-    std::vector<float> positions;
-    std::vector<std::uint32_t> indices, faceSizes;
-
-    explicit Sheet(std::uint32_t side) : faceSizes(std::size_t{side} * side, 4) {
-        for (std::uint32_t y = 0; y <= side; ++y)
-            for (std::uint32_t x = 0; x <= side; ++x) {
-                const float u = static_cast<float>(x) / static_cast<float>(side);
-                const float v = static_cast<float>(y) / static_cast<float>(side);
-                for (const float p : {u, v, 0.05f * std::sin(40.0f * u) * std::cos(37.0f * v)})
-                    positions.push_back(p);
-            }
-        const std::uint32_t row = side + 1;
-        for (std::uint32_t y = 0; y < side; ++y)
-            for (std::uint32_t x = 0; x < side; ++x)
-                for (const std::uint32_t corner : {0u, 1u, row + 1, row})
-                    indices.push_back(y * row + x + corner);
-    }
-    PmrMeshDesc desc() const {
-        PmrMeshDesc mesh = PMR_INIT(PmrMeshDesc);
-        mesh.positions = positions.data();
-        mesh.positionCount = positions.size() / 3;
-        mesh.indices = indices.data();
-        mesh.indexCount = indices.size();
-        mesh.faceSizes = faceSizes.data();
-        mesh.faceCount = faceSizes.size();
-        return mesh;
-    }
-};
-
-class Cancel : public ::testing::Test {
+class CancelBuild : public Cancel {
   protected:
-    PmrContext context() const { return m_host.context(); }
-
-    PmrStatus makeMesh(const Sheet& sheet, PmrMesh& mesh) const {
-        const PmrMeshDesc desc = sheet.desc();
-        return api().createMesh(context(), &desc, &mesh);
-    }
-    PmrStatus makeCage(const Sheet& sheet, std::uint32_t rate, PmrMesh& mesh) const {
-        const PmrMeshDesc desc = sheet.desc();
-        PmrCageDesc cage = PMR_INIT(PmrCageDesc);
-        cage.mesh = &desc;
-        cage.tessellationRate = rate;
-        return api().createCage(context(), &cage, &mesh);
-    }
-    PmrScene sceneOf(PmrMesh mesh, std::int32_t kind = PMR_MATERIAL_SURFACE) const {
-        const PmrSceneDesc desc = PMR_INIT(PmrSceneDesc);
-        PmrScene scene = nullptr;
-        EXPECT_EQ(PMR_OK, api().createScene(context(), &desc, &scene));
-        PmrMaterialDesc description = PMR_INIT(PmrMaterialDesc);
-        description.kind = kind;
-        PmrMaterial material = nullptr;
-        EXPECT_EQ(PMR_OK, api().createMaterial(context(), &description, &material));
-        const double identity[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
-        PmrInstanceDesc instance = PMR_INIT(PmrInstanceDesc);
-        instance.mesh = mesh;
-        instance.transforms = identity;
-        instance.transformCount = 1;
-        instance.materials = &material;
-        instance.materialCount = 1;
-        EXPECT_EQ(PMR_OK, api().addInstance(scene, &instance)) << m_host.lastError();
-        EXPECT_EQ(PMR_OK, api().releaseMaterial(material));
-        return scene;
-    }
-
-    // Cancels renders of the scene at even moments of the time that one takes.
-    void cancelRenders(const char* name, PmrScene scene,
-                       const std::map<std::string, std::string>& settings) {
-        double ended = 0, most = 0, longest = 0;
-        const auto render = [&](double cancelAfter) {
-            PmrRender handle = nullptr;
-            EXPECT_EQ(PMR_OK, api().createRender(scene, nullptr, &handle));
-            for (const auto& [key, value] : settings)
-                EXPECT_EQ(PMR_OK, api().setSettingText(handle, key.c_str(), value.c_str()));
-            EXPECT_EQ(PMR_OK, api().startRender(handle)) << m_host.lastError();
-            PmrStatus status = api().waitRender(handle, cancelAfter);
-            const Clock::time_point told = Clock::now();
-            const double processorTold = processorSeconds();
-            if (status == PMR_ERROR_TIMEOUT) {
-                EXPECT_EQ(PMR_OK, api().cancelRender(handle));
-                status = api().waitRender(handle, -1.0);
-            }
-            ended = secondsSince(told);
-            if (status == PMR_ERROR_CANCELLED)
-                most = std::max(most, processorSeconds() - processorTold);
-            EXPECT_EQ(PMR_OK, api().destroyRender(handle));
-            return status;
-        };
-        const Clock::time_point first = Clock::now();
-        ASSERT_EQ(PMR_OK, render(-1.0)) << m_host.lastError();
-        const double whole = secondsSince(first);
-        int cancelled = 0;
-        constexpr int kTries = 10;
-        for (int i = 0; i < kTries; ++i) {
-            const PmrStatus status = render(whole * i / kTries);
-            EXPECT_TRUE(status == PMR_OK || status == PMR_ERROR_CANCELLED);
-            if (status != PMR_ERROR_CANCELLED) continue;
-            ++cancelled;
-            longest = std::max(longest, ended);
-        }
-        EXPECT_GE(cancelled, kTries / 2);
-        EXPECT_LT(most, kMostProcessorSeconds);
-        std::cout << name << ": " << whole << " s; " << cancelled << " of " << kTries
-                  << " cancelled, the slowest after " << longest << " s, at most " << most
-                  << " processor s\n";
-    }
-
     // Does `work` once to the end, then cancels it after shares of the time that took. Returns how
     // often it came too late; prints the longest time that work went on for.
     void cancelWithin(const char* name, const std::function<PmrStatus()>& work) {
@@ -200,11 +67,9 @@ class Cancel : public ::testing::Test {
                   << " of 7 cancelled, the slowest after " << longest << " s, at most " << most
                   << " processor s\n";
     }
-
-    BoxHost m_host;
 };
 
-TEST_F(Cancel, BuildsMakeNothingAsLongAsItHolds) {
+TEST_F(CancelBuild, BuildsMakeNothingAsLongAsItHolds) {
     EXPECT_EQ(PMR_ERROR_ARGUMENT, api().cancelBuilds(context(), 2));
     EXPECT_EQ(PMR_ERROR_HANDLE, api().cancelBuilds(nullptr, 1));
     const Sheet sheet(4);
@@ -235,7 +100,7 @@ TEST_F(Cancel, BuildsMakeNothingAsLongAsItHolds) {
     EXPECT_EQ(PMR_OK, api().releaseMesh(mesh));
 }
 
-TEST_F(Cancel, InsideTriangulation) {
+TEST_F(CancelBuild, InsideTriangulation) {
     const Sheet sheet(static_cast<std::uint32_t>(std::sqrt(numberOf("PM_TRIANGLES", 200000) / 2)));
     cancelWithin("triangulation", [&] {
         PmrMesh mesh = nullptr;
@@ -245,7 +110,7 @@ TEST_F(Cancel, InsideTriangulation) {
     });
 }
 
-TEST_F(Cancel, InsideTessellation) {
+TEST_F(CancelBuild, InsideTessellation) {
     constexpr std::uint32_t kRate = 16;
     const double faces = numberOf("PM_TRIANGLES", 200000) / (2.0 * kRate * kRate);
     const Sheet sheet(static_cast<std::uint32_t>(std::sqrt(faces)));
@@ -257,7 +122,7 @@ TEST_F(Cancel, InsideTessellation) {
     });
 }
 
-TEST_F(Cancel, InsideCommit) {
+TEST_F(CancelBuild, InsideCommit) {
     const Sheet sheet(static_cast<std::uint32_t>(std::sqrt(numberOf("PM_TRIANGLES", 200000) / 2)));
     PmrMesh mesh = nullptr;
     ASSERT_EQ(PMR_OK, makeMesh(sheet, mesh));
@@ -271,7 +136,7 @@ TEST_F(Cancel, InsideCommit) {
 }
 
 // OpenSubdiv connects the faces in one piece.
-TEST_F(Cancel, InsideConnectingACage) {
+TEST_F(CancelBuild, InsideConnectingACage) {
     const Sheet sheet(static_cast<std::uint32_t>(std::sqrt(numberOf("PM_TRIANGLES", 40000) / 4)));
     cancelWithin("a cage", [&] {
         PmrMesh mesh = nullptr;
@@ -282,7 +147,7 @@ TEST_F(Cancel, InsideConnectingACage) {
 }
 
 // OpenImageIO reads the picture, for the environment's table and for the scene's checksum.
-TEST_F(Cancel, InsideReadingASky) {
+TEST_F(CancelBuild, InsideReadingASky) {
     const std::string file = writePicture(numberOf("PM_TEXELS", 512));
     PmrMesh mesh = nullptr;
     ASSERT_EQ(PMR_OK, makeMesh(Sheet(4), mesh));
@@ -306,7 +171,7 @@ TEST_F(Cancel, InsideReadingASky) {
 }
 
 // A scene whose commit was left behind is committed again, with more in it, and renders.
-TEST_F(Cancel, ACommitThatWasLeftBehindIsMadeAgain) {
+TEST_F(CancelBuild, ACommitThatWasLeftBehindIsMadeAgain) {
     const Sheet sheet(300);
     PmrMesh mesh = nullptr;
     ASSERT_EQ(PMR_OK, makeMesh(sheet, mesh));
@@ -327,42 +192,6 @@ TEST_F(Cancel, ACommitThatWasLeftBehindIsMadeAgain) {
     EXPECT_TRUE(status == PMR_OK || status == PMR_ERROR_STATE) << m_host.lastError();
     double bounds[6];
     EXPECT_EQ(PMR_OK, api().sceneBounds(scene, bounds));
-    EXPECT_EQ(PMR_OK, api().releaseScene(scene));
-    EXPECT_EQ(PMR_OK, api().releaseMesh(mesh));
-}
-
-// Photons, their maps, gather points, buckets: as they come.
-TEST_F(Cancel, InsideAPass) {
-    cancelRenders("a pass", m_host.scene(),
-                  {{"photons", std::to_string(numberOf("PM_PHOTONS", 100000))},
-                   {"passes", "1"},
-                   {"width", "128"},
-                   {"height", "96"},
-                   {"aaLevel", "2"},
-                   {"aaLevelMost", "2"}});
-}
-
-// Photons are aimed at every triangle that casts caustics.
-TEST_F(Cancel, InsideAPassOverMuchGlass) {
-    const Sheet sheet(static_cast<std::uint32_t>(std::sqrt(numberOf("PM_TRIANGLES", 200000) / 2)));
-    PmrMesh mesh = nullptr;
-    ASSERT_EQ(PMR_OK, makeMesh(sheet, mesh));
-    const PmrScene scene = sceneOf(mesh, PMR_MATERIAL_DIELECTRIC);
-    addGreyBall(context(), scene);
-    PmrLightDesc lamp = PMR_INIT(PmrLightDesc);
-    const double above[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 5};
-    lamp.transforms = above;
-    lamp.transformCount = 1;
-    for (float& value : lamp.emission) value = 1.0f;
-    ASSERT_EQ(PMR_OK, api().addLight(scene, &lamp));
-    PmrCameraDesc camera = PMR_INIT(PmrCameraDesc);
-    camera.transforms = above;
-    camera.transformCount = 1;
-    camera.fieldOfView = 1;
-    ASSERT_EQ(PMR_OK, api().setCamera(scene, &camera));
-    ASSERT_EQ(PMR_OK, api().commitScene(scene)) << m_host.lastError();
-    cancelRenders("a pass over much glass", scene,
-                  {{"photons", "10000"}, {"passes", "1"}, {"width", "64"}, {"height", "48"}});
     EXPECT_EQ(PMR_OK, api().releaseScene(scene));
     EXPECT_EQ(PMR_OK, api().releaseMesh(mesh));
 }

@@ -24,7 +24,7 @@ constexpr std::uint64_t kTruthSeed = 7001, kKnownSeed = 8001;
 constexpr std::uint32_t kPathLevel = 6, kPhotonLevel = 4;
 constexpr std::uint32_t kNarrow = 12;     // photons to an estimate
 constexpr std::uint32_t kKnownLevel = 4;  // 16 samples a pass
-constexpr std::uint32_t kKnownSamples = 16;
+constexpr std::uint32_t kKnownSamples = 16, kKnownSamplesAlone = 4;
 const std::atomic<bool> kNotCancelled{false};
 
 std::vector<double> meanOf(std::span<const double> a, std::span<const double> b) {
@@ -39,16 +39,16 @@ struct PixelSums {
     double within = 0;  // variance of a sample within a pass, all channels
 };
 
-void addPass(const float* pixel, const ChannelLayout& layout, PixelSums& sums) {
+void addPass(const float* pixel, const ChannelLayout& layout, double samples, PixelSums& sums) {
     const float* const seen = pixel + layout.seen;
     double square = static_cast<double>(seen[4]);
     for (std::size_t c = 0; c < 3; ++c) {
         const auto mean = static_cast<double>(pixel[layout.beauty + static_cast<std::int32_t>(c)]);
         sums.means[c] += mean;
         sums.squares[c] += mean * mean;
-        square -= mean * mean * kKnownSamples;
+        square -= mean * mean * samples;
     }
-    sums.within += std::max(0.0, square) / (kKnownSamples - 1);
+    sums.within += std::max(0.0, square) / (samples - 1);
 }
 
 // Relative variances: of a sample within a pass, and of a pass's mean.
@@ -110,6 +110,9 @@ Known measureKnown(const std::shared_ptr<const Scene>& scene, const RenderSettin
     settings.aaLevel = kKnownLevel;
     settings.aaLevelMost = kKnownLevel + 1;  // tells of its samples
     settings.seed = kKnownSeed;
+    const bool isAlone = !makePlan(*scene, settings).tracePhotons;
+    const std::uint32_t samples = isAlone ? kKnownSamplesAlone : kKnownSamples;
+    passes *= kKnownSamples / samples;
     const Rect& frame = settings.window;
     const auto pixels = static_cast<std::size_t>(frame.area());
     std::vector<PixelSums> sums(pixels);
@@ -124,8 +127,7 @@ Known measureKnown(const std::shared_ptr<const Scene>& scene, const RenderSettin
             const double start = processorSeconds();
             renderer.beginPass(pass, kNotCancelled, {});
             known.passSeconds += (processorSeconds() - start) / passes;
-            const std::vector<SampleRun> runs(
-                kAtomPixels, {pass / 2 * kKnownSamples, kKnownSamples, kKnownSamples});
+            const std::vector<SampleRun> runs(kAtomPixels, {pass / 2 * samples, samples, samples});
             for (std::int32_t y = 0; y < frame.y1; y += kAtomSizePixels)
                 for (std::int32_t x = 0; x < frame.x1; x += kAtomSizePixels) {
                     const Rect rect{x, y, x + kAtomSizePixels, y + kAtomSizePixels};
@@ -137,8 +139,8 @@ Known measureKnown(const std::shared_ptr<const Scene>& scene, const RenderSettin
                         const auto row = static_cast<std::size_t>(y) + i / kAtomSizePixels;
                         const std::size_t at =
                             row * static_cast<std::size_t>(frame.width()) + column;
-                        known.cost[at] += seconds / kAtomPixels / (passes * kKnownSamples);
-                        addPass(atom.data() + i * channels, layout, sums[at]);
+                        known.cost[at] += seconds / kAtomPixels / (passes * samples);
+                        addPass(atom.data() + i * channels, layout, samples, sums[at]);
                     }
                 }
         }
@@ -147,8 +149,8 @@ Known measureKnown(const std::shared_ptr<const Scene>& scene, const RenderSettin
     for (double& cost : known.cost) cost *= static_cast<double>(pixels) / known.sampleSeconds;
     for (std::size_t i = 0; i < pixels; ++i) {
         const Variances v = variancesOf(sums[i], passes);
-        known.spread[i] = std::sqrt(v.within);
-        known.shared += (v.ofPass - v.within / kKnownSamples) / static_cast<double>(pixels);
+        known.spread[i] = std::sqrt(isAlone ? v.ofPass * samples : v.within);
+        known.shared += (v.ofPass - v.within / samples) / static_cast<double>(pixels);
     }
     return known;
 }
@@ -177,7 +179,7 @@ PassRenderer::Chooser samplesBySpread(const SampleRule& rule, std::vector<double
             while (allotted > 0 && !allotsAfter(allotted)) --allotted;
             const std::uint32_t samples =
                 allotted > 0 ? samplesOfSpread(rule, allotted, spread[pixel]) : rule.least;
-            run.count = samples;
+            run.count = static_cast<std::uint32_t>(madeUp(rule, pass, run.first, samples));
         };
 }
 

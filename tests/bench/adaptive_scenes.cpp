@@ -48,6 +48,24 @@ test::SceneMaker barsInAQuarter() {
     return maker;
 }
 
+// Black specks on a fifth of a quarter of the plane, several in a pixel each way: whether a sample
+// meets one no lamp sample tells.
+test::SceneMaker specksInAQuarter() {
+    test::SceneMaker maker = plane();
+    const auto black = maker.diffuse({});
+    constexpr double kApart = 0.009, kSide = 0.004, kAbove = 1e-4;
+    constexpr int kCount = 112;
+    for (int j = 0; j < kCount; ++j)
+        for (int i = 0; i < kCount; ++i) {
+            // Anywhere in its cell, by the fractions of two irrational multiples.
+            const double n = j * kCount + i;
+            const double x = i + std::fmod(0.7548776662 * n, 1.0) * (1 - kSide / kApart);
+            const double y = j + std::fmod(0.5698402910 * n, 1.0) * (1 - kSide / kApart);
+            maker.quad({kApart * x, kApart * y, kAbove}, {kSide, 0, 0}, {0, kSide, 0}, black);
+        }
+    return maker;
+}
+
 // Shining shapes, many times larger than a pixel, on black: nothing but edges is noisy.
 test::SceneMaker edges() {
     test::SceneMaker maker;
@@ -81,7 +99,9 @@ std::vector<AdaptiveScene> adaptiveScenes(const std::filesystem::path& peers) {
          true},
         {"whitebox", "a closed white box: indirect light", whiteBox(), true},
         {"edges", "shining shapes on black: edges only", edges(), true},
-        {"quarter", "the plane, light through slits on a quarter of it", barsInAQuarter(), true}};
+        {"quarter", "the plane, light through slits on a quarter of it", barsInAQuarter(), true},
+        {"quarter-fine", "the plane, black specks far below a pixel on a quarter of it",
+         specksInAQuarter(), true}};
     for (PlanScene& scene : planScenes())
         scenes.push_back({scene.key, scene.what, std::move(scene.maker), scene.key != "glass"});
     const std::filesystem::path file = peers / "scenes.json";

@@ -185,7 +185,9 @@ Numbers PlanBench::asPlanned(const std::shared_ptr<const Scene>& scene) const {
     settings.aaThreshold = kThreshold;
     settings.passes = m_options.mostPasses;
     // With what the pilot of seed 1 finds.
-    return {settings, FrameRenderer(scene, settings).plan()};
+    FrameRenderer renderer(scene, settings);
+    renderer.prepare(std::atomic<bool>(false));
+    return {settings, renderer.plan()};
 }
 
 std::vector<Variant> PlanBench::variants(const std::shared_ptr<const Scene>& scene) const {

@@ -59,7 +59,11 @@ TEST(Material, dielectrics) {
         EXPECT_EQ(r.material.kind, MaterialKind::kDielectric);
         EXPECT_EQ(r.material.ior, 1.33f);
         EXPECT_EQ(r.material.transmission, (Colour{1, 1, 1}));
+        // Grey is for materials of which nothing is said: here none was left out.
+        EXPECT_FALSE(r.heard.has(Warning::kMaterialPart, "diffuse part"));
     }
+    EXPECT_TRUE(read("Kd 0.5 0.5 0.5\nNi 1.33\nillum 7\n")
+                    .heard.has(Warning::kMaterialPart, "diffuse part of a glass"));
     const Result tinted = read("d 0.2\nNi 1.5\nTf 0.9 0.8 0.7\n");
     EXPECT_EQ(tinted.material.kind, MaterialKind::kDielectric);
     EXPECT_EQ(tinted.material.transmission, (Colour{0.9f, 0.8f, 0.7f}));
@@ -83,6 +87,10 @@ TEST(Material, valuesOutOfRangeAreClampedWithTheLine) {
     EXPECT_TRUE(r.heard.has(Warning::kMaterialValue, "a.mtl:2: material m: Kd 1.5 -0.5 0.5"));
     EXPECT_TRUE(read("Kd nan 0 0\n").heard.has(Warning::kMaterialValue, "'Kd nan 0 0'"));
     EXPECT_EQ(read("Ke -1 2 3\n").material.emission, (Colour{0, 2, 3}));
+    EXPECT_TRUE(read("Ke -1 2 3\n").heard.has(Warning::kMaterialValue, "Ke -1 is not in [0, "));
+    const Result infinite = read("Ke 1e39 2 3\n");
+    EXPECT_EQ(infinite.material.emission, (Colour{0, 2, 3}));
+    EXPECT_TRUE(infinite.heard.has(Warning::kMaterialValue, "Ke inf is not in [0, "));
 }
 
 TEST(Material, noSurfaceReflectsMoreThanItGets) {

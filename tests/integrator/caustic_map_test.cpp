@@ -41,7 +41,7 @@ struct Mean {
 TEST(CausticMap, MeanOfAnEvenlyLitPlane) {
     constexpr std::size_t kCount = 200'000;
     for (const std::uint32_t k : {16u, 50u}) {
-        const CausticRadius radius(evenly(kCount / PilotRadius::kPilotShare, 1), k, 0.1f);
+        const PilotRadius radius(evenly(kCount / PilotRadius::kPilotShare, 1), k, 0.1f);
         const CausticMap map(evenly(kCount, 2), radius, 1);
         NearestPhotons scratch;
         Random random(3);

@@ -219,7 +219,7 @@ class CausticEdges {
 
   private:
     std::shared_ptr<const Scene> m_scene;
-    CausticRadius m_radius;
+    PilotRadius m_radius;
     SurfacePatches m_patches;
     CausticMap m_corrected, m_plain;
 };
@@ -360,7 +360,7 @@ TEST(CausticEdges, TheSameBitsInAnyOrder) {
     const auto scene = maker.build();
     std::vector<Photon> photons;
     light(photons, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0});
-    const CausticRadius radius(everyFourth(photons), 500, 0.1f);
+    const PilotRadius radius(everyFourth(photons), 500, 0.1f);
     std::vector<Vec3f> points;
     Random random(7);
     for (int i = 0; i < 2000; ++i) {

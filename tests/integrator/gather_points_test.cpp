@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <span>
@@ -151,6 +152,73 @@ TEST(GatherPoints, FurnaceIsConstant) {
     fmt::print("    furnace: {:.4f} of what is expected +- {:.4f}\n", all.mean / 0.25,
                all.standardError / 0.25);
     EXPECT_LT(zScore(all, {0.25, 0, 100}, 0.005 * 0.25), 4);
+}
+
+// Photons of one half of the plane [-1, 1]^2, x from x0 on, all with the same flux.
+void addHalf(std::vector<Photon>& photons, float x0, std::size_t count, std::uint64_t seed) {
+    Random random(seed);
+    for (std::size_t i = 0; i < count; ++i) {
+        const Vec2f at = random.next2D();
+        photons.push_back({{x0 + at.x, 2 * at.y - 1, 0}, Rgb(1e-4f), PackedNormal(Vec3f{0, 0, 1})});
+    }
+}
+
+// Descended light on a plane, 16 times as bright on its left half: by radii from place to place an
+// estimate holds as many photons, so is as noisy, on either half; by one for all, the twin, the dim
+// half is 4 times as noisy. Photons are independent, so theory has the means (analytic F1).
+TEST(GatherPoints, DescendedLightIsAsEvenWhereItIsThin) {
+    constexpr std::size_t kDim = 8'000;
+    constexpr std::uint32_t kPhotons = 100;
+    SceneMaker maker;
+    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.diffuse(Rgb(0.5f)));
+    maker.camera({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 40);
+    const auto scene = maker.build();
+    const Camera camera(*scene, 16, 16);
+    const PhotonMap none(std::span<const Photon>{});
+    const IrradianceSites sites(*scene, none, 0.01f);
+    std::vector<Photon> some;
+    addHalf(some, -1, 16 * kDim / PilotRadius::kPilotShare, 1);
+    addHalf(some, 0, kDim / PilotRadius::kPilotShare, 2);
+    const PilotRadius radius(std::move(some), kPhotons, 0.1f);
+    struct Moments {
+        double sum = 0, squares = 0;
+        int count = 0;
+        double mean() const { return sum / count; }
+        double spread() const { return std::sqrt(squares / count / (mean() * mean()) - 1); }
+    };
+    std::array<Moments, 2> bright, dim;  // by radii from place to place, by one
+    for (std::uint64_t seed = 3; seed < 7; ++seed) {
+        std::vector<Photon> photons;
+        addHalf(photons, -1, 16 * kDim, 2 * seed);
+        addHalf(photons, 0, kDim, 2 * seed + 1);
+        const PhotonMap map(std::move(photons));
+        const SurfaceEstimate estimate(*scene, map, radius.typical());
+        GatherPoints::Request request{16, 16, 2.5f, 1};
+        request.descended = &estimate;
+        request.descendedRadius = &radius;
+        const GatherPoints points(*scene, camera, sites, request, kNotCancelled);
+        for (int i = 0; i < 49; ++i) {
+            const float x = 0.26f + 0.08f * static_cast<float>(i % 7);
+            const float y = -0.75f + 0.25f * static_cast<float>(i / 7);
+            for (const float side : {-1.0f, 1.0f}) {
+                const Vec3f at{side * x, y, 0}, normal{0, 0, 1};
+                auto& moments = side < 0 ? bright : dim;
+                const auto add = [](Moments& m, const TwoRadii& e) {
+                    const auto value = static_cast<double>(e.wide.r);
+                    m.sum += value, m.squares += value * value, ++m.count;
+                };
+                add(moments[0], points.descendedAt({{}, at, normal, normal, 1e-6f}, 1));
+                add(moments[1], estimate.at(at, normal, 1));
+            }
+        }
+    }
+    fmt::print("    spread {:.3f} and {:.3f} in the dim half, by one radius {:.3f} and {:.3f}\n",
+               bright[0].spread(), dim[0].spread(), bright[1].spread(), dim[1].spread());
+    const double irradiance = kDim * 1e-4 / 2;
+    EXPECT_NEAR(bright[0].mean() / (16 * irradiance), 1, 4 * bright[0].spread() / 14);
+    EXPECT_NEAR(dim[0].mean() / irradiance, 1, 4 * dim[0].spread() / 5);
+    EXPECT_LT(dim[0].spread(), 1.6 * bright[0].spread());
+    EXPECT_GT(dim[1].spread(), 2.5 * bright[1].spread());
 }
 
 // Which share of the gather rays from a place meets a sphere that shines: the form factor,

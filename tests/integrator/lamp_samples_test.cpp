@@ -11,6 +11,7 @@
 #include <array>
 #include <atomic>
 #include <cmath>
+#include <memory>
 #include <vector>
 
 #include "integrator/transport/photon_integrator.h"
@@ -109,8 +110,14 @@ RenderSettings frame() {
     return smallFrame(48, 48, IntegratorKind::kPhoton, 4, 3);
 }
 
+std::uint32_t found(const std::shared_ptr<const Scene>& scene, const RenderSettings& settings) {
+    FrameRenderer renderer(scene, settings);
+    renderer.prepare(std::atomic<bool>(false));
+    return renderer.plan().lampSamples;
+}
+
 std::uint32_t found(const SceneMaker& maker, const RenderSettings& settings) {
-    return FrameRenderer(maker.build(), settings).plan().lampSamples;
+    return found(maker.build(), settings);
 }
 
 // Points of all parts of all samples are one sequence; what is drawn later is as without parts.
@@ -251,8 +258,7 @@ TEST(LampSamples, NotByCropPassesOrThreads) {
     const auto scene = roomOfLamps().build();
     const auto number = [&](const RenderSettings& settings, int threads) {
         std::uint32_t n = 0;
-        tbb::task_arena(threads).execute(
-            [&] { n = FrameRenderer(scene, settings).plan().lampSamples; });
+        tbb::task_arena(threads).execute([&] { n = found(scene, settings); });
         return n;
     };
     RenderSettings other = frame();

@@ -6,8 +6,10 @@
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
+#include <array>
 #include <cmath>
 #include <ctime>
+#include <span>
 #include <utility>
 
 #include "integrator/geometry/polygon_mesh.h"
@@ -149,12 +151,12 @@ TEST(ManyLights, ChoicesFollowTheirProbabilities) {
         const auto surfaces = room.receivers();
         std::vector<Receiver> receivers;
         for (const Surface& surface : surfaces) receivers.push_back(facing(surface));
-        const LightGuide guide(
-            tree, receivers, [&](std::size_t i, std::uint32_t node, std::uint32_t n) {
-                double u = 0.25 * n;
-                float p = 1;
-                return Sighting{tree.choose(node, receivers[i], u, p), (node + i) % 3 == 0};
-            });
+        const LightGuide guide(tree, receivers,
+                               [&](std::size_t i, std::uint32_t node, std::uint32_t n) {
+                                   LightDescent descent{0.25 * n, node};
+                                   tree.choose(receivers[i], {&descent, 1});
+                                   return Sighting{descent.node, (node + i) % 3 == 0};
+                               });
         const std::size_t count = room.scene->lights().size();
         const auto check = [&](const auto& choose, const auto& probability) {
             Random random(3);
@@ -168,29 +170,76 @@ TEST(ManyLights, ChoicesFollowTheirProbabilities) {
             }
             EXPECT_NEAR(sum, 1.0, 1e-4);
             double mean = 0, wrong = 0;
-            const int samples = 200'000;
-            for (int i = 0; i < samples; ++i) {
-                const auto fine = static_cast<double>(random.next());
-                double u = static_cast<double>(random.next()) + fine * 0x1p-24;
-                float p = 1.0f;
-                const std::uint32_t light = choose(u, p);
-                wrong += std::abs(p / probability(light) - 1.0f) > 1e-4f;
-                histogram.count(light);
-                EXPECT_TRUE(u >= 0 && u < 1);
-                mean += u / samples;
+            const std::size_t samples = 200'000;
+            std::size_t total = 0;
+            // In batches of any size: side by side all are chosen as they would be alone.
+            for (std::size_t done = 0, size = 1; done < samples; size = size % 16 + 1) {
+                std::array<LightDescent, 16> batch;
+                const std::span<LightDescent> descents(batch.data(), size);
+                for (LightDescent& descent : descents) {
+                    const auto fine = static_cast<double>(random.next());
+                    descent.u = static_cast<double>(random.next()) + fine * 0x1p-24;
+                }
+                const std::array<LightDescent, 16> before = batch;
+                choose(descents);
+                for (std::size_t i = 0; i < size; ++i) {
+                    LightDescent alone = before[i];
+                    choose({&alone, 1});
+                    const auto& [u, light, p] = descents[i];
+                    EXPECT_TRUE(alone.node == light && alone.u == u && alone.probability == p);
+                    wrong += std::abs(p / probability(light) - 1.0f) > 1e-4f;
+                    histogram.count(light);
+                    EXPECT_TRUE(u >= 0 && u < 1);
+                    mean += u;
+                }
+                done += size;
+                total = done;
             }
+            mean /= static_cast<double>(total);
             EXPECT_EQ(wrong, 0);
             EXPECT_GT(histogram.pValue(0), kSignificance);
             // What is left of u is uniform.
-            EXPECT_NEAR(mean, 0.5, 5 / std::sqrt(12.0 * samples));
+            EXPECT_NEAR(mean, 0.5, 5 / std::sqrt(12.0 * static_cast<double>(total)));
         };
         for (const Receiver& receiver : receivers) {
-            check(
-                [&](double& u, float& p) { return tree.choose(LightTree::kRoot, receiver, u, p); },
-                [&](std::uint32_t i) { return tree.probability(LightTree::kRoot, receiver, i); });
-            check([&](double& u, float& p) { return guide.choose(receiver, u, p); },
+            check([&](std::span<LightDescent> descents) { tree.choose(receiver, descents); },
+                  [&](std::uint32_t i) { return tree.probability(LightTree::kRoot, receiver, i); });
+            check([&](std::span<LightDescent> descents) { guide.choose(receiver, descents); },
                   [&](std::uint32_t i) { return guide.probability(receiver, i); });
         }
+    }
+}
+
+// Lights chosen together are those that are chosen one by one, near and far ones in any order, in
+// batches longer than any that are made side by side, too.
+TEST(ManyLights, ChosenTogetherAsAlone) {
+    for (const std::uint32_t side : {2u, 30u}) {
+        SceneMaker maker = makeRoom(side, side);
+        maker.description.directionalLights.push_back({{0.2, -1, 0.1}, Rgb(3.0f), 0.1, "sun"});
+        Room room(side, side);
+        room.scene = maker.build();
+        room.lights = std::make_unique<LightSampler>(*room.scene);
+        room.learn();
+        const Surface at = room.receivers().front();
+        Random random(9);
+        std::size_t far = 0, total = 0;
+        for (std::size_t size = 1; size < 70; size = size * 3 / 2 + 1) {
+            std::vector<ChosenLight> together(size);
+            for (ChosenLight& one : together) one.u = random.next2D();
+            const std::vector<ChosenLight> before = together;
+            room.lights->choose(at, at.geometricNormal, together);
+            for (std::size_t i = 0; i < size; ++i) {
+                ChosenLight alone = before[i];
+                room.lights->choose(at, at.geometricNormal, {&alone, 1});
+                EXPECT_EQ(alone.light, together[i].light);
+                EXPECT_EQ(alone.u, together[i].u);
+                EXPECT_EQ(alone.probability, together[i].probability);
+                far += alone.light >= room.scene->nearLights().size();
+            }
+            total += size;
+        }
+        EXPECT_GT(far, 0);
+        EXPECT_LT(far, total);
     }
 }
 
@@ -255,13 +304,12 @@ TEST(ManyLights, WhatWasNotSeenIsFoundAllTheSame) {
     std::vector<Receiver> receivers;
     for (int i = 0; i < 256; ++i)
         receivers.push_back(facing(room.seen({0.005 * i, 1, 1}, {0, -1, 0})));
-    const LightGuide guide(tree, receivers,
-                           [&](std::size_t i, std::uint32_t node, std::uint32_t number) {
-                               double u = 0.25 * number;
-                               float p = 1;
-                               const auto light = tree.choose(node, receivers[i], u, p);
-                               return Sighting{light, 2 * tree.position(light) < count};
-                           });
+    const LightGuide guide(
+        tree, receivers, [&](std::size_t i, std::uint32_t node, std::uint32_t number) {
+            LightDescent descent{0.25 * number, node};
+            tree.choose(receivers[i], {&descent, 1});
+            return Sighting{descent.node, 2 * tree.position(descent.node) < count};
+        });
     double least = 1, hidden = 0;
     for (std::uint32_t light = 0; light < count; ++light) {
         const auto p = static_cast<double>(guide.probability(receivers[0], light));

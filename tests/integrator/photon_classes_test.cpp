@@ -167,8 +167,8 @@ TEST(PhotonClasses, NoCausticFromBehind) {
     const auto photons = [&](PhotonKind kind, std::uint64_t count) {
         return trace({kind, count, 1, 0}).photons;
     };
-    const CausticRadius radius(
-        photons(PhotonKind::kCausticPilot, kCount / PilotRadius::kPilotShare), 800, 0.1f);
+    const PilotRadius radius(photons(PhotonKind::kCausticPilot, kCount / PilotRadius::kPilotShare),
+                             800, 0.1f);
     const CausticMap map(photons(PhotonKind::kCaustic, kCount), radius, 1);
     NearestPhotons scratch;
     for (const double x : {-0.7, 0.0, 0.3}) {

@@ -6,8 +6,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <string>
+#include <vector>
 
+#include "integrator/photons/surface_patches.h"
+#include "integrator/transport/frame_renderer.h"
 #include "tests/integrator/scene_maker.h"
 
 namespace pm::test {
@@ -144,6 +148,26 @@ TEST(Plan, PathsThatNoEstimatorCoversAreNamed) {
     glossy.glossyExponent = 50;
     maker.quad({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, maker.material(glossy));
     EXPECT_TRUE(hasNotice(planOf(maker), NoticeCode::kNotCovered));
+}
+
+// Patches of surfaces are made as the pixels ask for them, and are memory of the maps as well.
+TEST(Plan, PatchesCountInTheMemoryOfTheMaps) {
+    RenderSettings settings = smallFrame(32, 32, IntegratorKind::kPhoton, 1, 2);
+    settings.photons = 2000;
+    SceneMaker maker = litFloor();
+    maker.camera({0, 1.5, 3}, {0, 0.3, 0}, {0, 1, 0}, 40);
+    FrameRenderer renderer(maker.build(), settings);
+    const std::atomic<bool> cancelled{false};
+    renderer.beginPass(0, cancelled, {});
+    const std::uint64_t before = renderer.counters().peakMapBytes;
+    std::vector<float> weights(32 * 32);
+    std::vector<float> pixels(weights.size() * static_cast<std::size_t>(renderer.layout().count));
+    renderer.renderRegion(settings.window, pixels, weights, cancelled);
+    const std::uint64_t after = renderer.counters().peakMapBytes;
+    EXPECT_GT(after, before);
+    EXPECT_LE(after, before + SurfacePatches::kMostBytes);
+    renderer.beginPass(1, cancelled, {});
+    EXPECT_GE(renderer.counters().peakMapBytes, after);
 }
 
 }  // namespace

@@ -38,6 +38,20 @@ void addTriangle(SceneMaker& maker, Vec3d a, Vec3d b, Vec3d c, std::uint32_t mat
         std::make_shared<const TriangleMesh>(std::move(mesh));
 }
 
+// How many of a thousand rays off each of a scene's lamps meet what they left, in all.
+int metAgain(const SceneMaker& maker, Random& random) {
+    const auto scene = maker.build();
+    int met = 0;
+    for (const Light& light : scene->lights())
+        for (int n = 0; n < 1000; ++n) {
+            const Surface from = scene->pointOnLight(light, random.next2D());
+            Surface to;
+            met += scene->intersect(rayFrom(from, leaving(from, random)), to) &&
+                   to.shape == from.shape;
+        }
+    return met;
+}
+
 // Triangles of sizes 1e-4 to 1e3, fat to 1 : 1e4, anywhere within 10 units of the origin.
 TEST(SurfaceOffset, TrianglesAreLeft) {
     Random random(1);
@@ -50,16 +64,29 @@ TEST(SurfaceOffset, TrianglesAreLeft) {
         const Vec3d at = direction() * 10.0, along = direction() * size;
         addTriangle(maker, at, at + along, at + along * 0.3 + direction() * (size * thin), lamp);
     }
-    const auto scene = maker.build();
-    int met = 0;
-    for (const Light& light : scene->lights())
-        for (int n = 0; n < 1000; ++n) {
-            const Surface from = scene->pointOnLight(light, random.next2D());
-            Surface to;
-            met += scene->intersect(rayFrom(from, leaving(from, random)), to) &&
-                   to.shape == from.shape;
-        }
-    EXPECT_EQ(met, 0);
+    EXPECT_EQ(metAgain(maker, random), 0);
+}
+
+// Of sizes 1 to 1e6, along two axes but for a tilt of 0 or 1e-9 to 0.1: their boxes are flat, so
+// rays start nearer to them.
+TEST(SurfaceOffset, TrianglesAlongTheAxesAreLeft) {
+    Random random(5);
+    SceneMaker maker;
+    const auto lamp = maker.diffuse({}, Rgb(1.0f));
+    const auto within = [&](double reach) {
+        return reach * (2 * static_cast<double>(random.next()) - 1);
+    };
+    for (int i = 0; i < 400; ++i) {
+        const double size = std::pow(10.0, 6 * static_cast<double>(random.next()));
+        const double thin = std::pow(10.0, -3 * static_cast<double>(random.next()));
+        const double tilt =
+            i % 4 == 0 ? 0.0 : size * std::pow(10.0, -9 + 8 * static_cast<double>(random.next()));
+        const Vec3d at{within(10), within(10), within(10)};
+        const Vec3d along{within(size), within(tilt), size};
+        addTriangle(maker, at, at + along, at + along * 0.3 + Vec3d{size * thin, within(tilt), 0},
+                    lamp);
+    }
+    EXPECT_EQ(metAgain(maker, random), 0);
 }
 
 // Without the offset they would be met: the test can see it.
@@ -185,10 +212,11 @@ TEST(Surface, TheSameDiscFromAnyDistance) {
         EXPECT_NEAR(discShare(distance), expected, 3e-4) << distance;
 }
 
-std::vector<float> picture(Vec3d shift) {
+// Two balls under a lamp, on a ground of that half side.
+std::vector<float> picture(Vec3d shift, double ground = 4, bool indirectToo = true) {
     SceneMaker maker;
     const auto grey = maker.diffuse(Rgb(0.6f));
-    maker.quad({-4, 0, 4}, {8, 0, 0}, {0, 0, -8}, grey);
+    maker.quad({-ground, 0, ground}, {2 * ground, 0, 0}, {0, 0, -2 * ground}, grey);
     maker.meshSphere({-1, 1, 0}, 0.75, grey, false, 12);
     maker.sphere({1, 1, 0}, 0.75, grey);
     maker.quad({-1, 4, -1}, {2, 0, 0}, {0, 0, 2}, maker.diffuse({}, Rgb(5.0f)));
@@ -208,7 +236,7 @@ std::vector<float> picture(Vec3d shift) {
         const Ray ray =
             camera.ray(static_cast<double>(i % 32) + 0.5, static_cast<double>(i / 32) + 0.5);
         const SampleRadiance s = PathIntegrator(*scene, lights).sample(ray, sampler);
-        pixels.push_back((s.direct + s.indirect + s.emission).g);
+        pixels.push_back((indirectToo ? s.direct + s.indirect + s.emission : s.direct).g);
     }
     return pixels;
 }
@@ -223,6 +251,19 @@ TEST(Surface, TheSamePictureFarFromTheOrigin) {
         for (std::size_t i = 0; i < home.size(); ++i)
             different += !(std::abs(home[i] - away[i]) <= 1e-4f * (1.0f + home[i]));
         EXPECT_LE(different, 3) << far;  // paths on a limb or a shadow's edge
+    }
+}
+
+// However large the ground is that all stands on (R1, R9): neither shadows nor the diagonal of its
+// two triangles move.
+TEST(Surface, TheSamePictureOnAnyGround) {
+    const std::vector<float> small = picture({0, 0, 0}, 50, false);
+    for (const double ground : {1e4, 1e5, 1e6, 1e9}) {
+        const std::vector<float> large = picture({0, 0, 0}, ground, false);
+        int different = 0;
+        for (std::size_t i = 0; i < small.size(); ++i)
+            different += !(std::abs(small[i] - large[i]) <= 1e-4f * (1.0f + small[i]));
+        EXPECT_LE(different, 3) << ground;
     }
 }
 

@@ -21,7 +21,8 @@ const Rect kWindow{-3, 5, 22, 26}, kArea{-8, 0, 24, 32};
 
 std::unique_ptr<FrameStore> makeStore(bool adaptive) {
     std::optional<SampleRule> rule;
-    if (adaptive) rule = SampleRule{1, 16, 0.01};
+    // Passes that share no noise: of adaptive stores the one with most.
+    if (adaptive) rule = SampleRule{1, 16, 0.01, false, false};
     return std::make_unique<FrameStore>(kWindow, kChannels + (adaptive ? kSeen : 0), 0, 5, 3, rule);
 }
 

@@ -78,6 +78,17 @@ TEST_F(Merge, PartsInAnyOrderAreThePicture) {
               }));
 }
 
+// Where passes share no noise a part's sums hold what its passes weigh, too.
+TEST_F(Merge, PartsOfPathsAreThePicture) {
+    m_settings["integrator"] = "path";
+    makePart("a", "1/2");
+    render({{"buckets", "2/2"}, {"checkpoint", path("c")}}, 7);
+    makePart("b", "2/2", {{"checkpoint", path("c")}, {"resume", "1"}});
+    EXPECT_EQ(PMR_OK, add("b")) << m_host.lastError();
+    EXPECT_EQ(PMR_OK, add("a")) << m_host.lastError();
+    expectSameBits(render({}), merged());
+}
+
 TEST_F(Merge, APartIsTheSameBytesWheneverItIsMade) {
     makePart("a", "3:9");
     makePart("b", "3:9", {{"threads", "4"}, {"timeLimitSeconds", "0"}});

@@ -60,6 +60,20 @@ TEST_F(BadInput, aBlackPictureIsAWarning) {
     const Outcome inside = run(within);
     EXPECT_EQ(inside.exitCode, 0) << inside.err;
     EXPECT_EQ(inside.err.find("the picture is black"), std::string::npos) << inside.err;
+    EXPECT_EQ(inside.err.find("nothing of the scene"), std::string::npos) << inside.err;
+}
+
+// A camera that looks past the scene; a crop of the background says nothing.
+TEST_F(BadInput, anEmptyPictureIsAWarning) {
+    write("tri.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    std::vector<std::string> past = {"tri.obj", "--size", "16x16",     "--passes", "1",
+                                     "--eye",   "0,0,9",  "--look-at", "0,0,20"};
+    const Outcome whole = run(past);
+    EXPECT_EQ(whole.exitCode, 0) << whole.err;
+    EXPECT_NE(whole.err.find("nothing of the scene is in the picture"), std::string::npos)
+        << whole.err;
+    past.insert(past.end(), {"--crop", "0,0,8,8"});
+    EXPECT_EQ(run(past).err.find("nothing of the scene"), std::string::npos);
 }
 
 TEST_F(BadInput, options) {

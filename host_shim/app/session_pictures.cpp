@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// A Session whose render has ended: its pictures are written and compared.
+#include "host_shim/app/session.h"
+
+#include "host_shim/app/interrupt.h"
+#include "host_shim/app/outputs.h"
+#include "host_shim/app/picture_assembly.h"
+#include "host_shim/colour/display_picture.h"
+#include "host_shim/pictures/compare.h"
+#include "host_shim/pictures/picture_io.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace pm::host {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kErrorLimitPassed = 6;
+
+}  // namespace
+
+int Session::finishPhotons(PmrStatus status) {
+    if (status != PMR_OK) {
+        throwIfInterrupted();
+        throw HostError(static_cast<ExitCode>(exitCodeOf(status)), "the render was cancelled");
+    }
+    m_statistics.outputs.push_back(m_options.photonMap.string());
+    m_statistics.stopReason = m_statistics.libraryStopReason();
+    m_log.info(
+        fmt::format("wrote {}: {}", m_options.photonMap.string(), m_statistics.photonMapText()));
+    return 0;
+}
+
+int Session::finish(const PictureSource& source, PmrStatus status, const ColourPipeline& colour,
+                    const std::optional<DisplayTransform>& display) {
+    const bool complete = status == PMR_OK;
+    const auto start = m_log.elapsedSeconds();
+    const Picture picture = assemblePicture(source, m_options, colour, complete);
+    const auto report = [&] {
+        if (m_options.report.empty()) return;
+        m_report.takePicture(source, picture, m_reference ? &*m_reference : nullptr,
+                             display.value(), colour.luminanceWeights());
+    };
+    try {
+        writeOutputs(picture, complete, display);
+    } catch (...) {
+        report();
+        throw;
+    }
+    report();
+    m_statistics.phaseSeconds["writePicturesSeconds"] = m_log.elapsedSeconds() - start;
+    if (!complete) {
+        throwIfInterrupted();
+        throw HostError(static_cast<ExitCode>(exitCodeOf(status)), "the render was cancelled");
+    }
+    if (!m_options.part.empty()) {
+        m_statistics.outputs.push_back(m_options.part.string());
+        m_log.info("wrote " + m_options.part.string());
+    }
+    // Only now that all is written nothing is lost without it.
+    std::error_code ignored;
+    if (!m_options.checkpoint.empty() && !m_options.keepCheckpoint)
+        fs::remove(m_options.checkpoint, ignored);
+    m_statistics.stopReason = m_statistics.libraryStopReason();
+    if (m_statistics.stopReason == "error target" || m_statistics.stopReason == "time limit")
+        m_log.info("stopped by the " + m_statistics.stopReason);
+    if (isBlackThoughHit(picture)) warnOfBlack();
+    // A crop may well be of the background.
+    if (!m_options.crop && m_options.merge.empty() && showsNothing(picture))
+        warn(Warning::kBlackPicture,
+             "nothing of the scene is in the picture: the camera looks past it; see --eye and "
+             "--look-at");
+    if (m_options.onlyPixel) printPixel(picture);
+    return m_reference ? compareWithReference(picture) : 0;
+}
+
+void Session::warnOfBlack() {
+    warn(Warning::kBlackPicture,
+         "the picture is black though it shows surfaces: no light reaches their seen side; a "
+         "room that is closed all round is seen from inside with --eye and --look-at only");
+}
+
+void Session::warnOfClamped(const fs::path& file, const ExrReport& report) {
+    if (report.clampedToHalf > 0)
+        warn(Warning::kOutput, fmt::format("{}: {} values are beyond half's 65504 and clamped",
+                                           file.string(), report.clampedToHalf));
+}
+
+std::string Session::errorText() const {
+    const auto estimate = m_statistics.estimatedRelMse();
+    if (!estimate) return "";
+    return fmt::format(", estimated relMSE {:.2e} (noise and bias, from what passes differ by)",
+                       *estimate);
+}
+
+void Session::writeOutputs(const Picture& picture, bool complete,
+                           const std::optional<DisplayTransform>& display) {
+    const std::string error = errorText();
+    // One that fails must not take the others with it.
+    std::optional<HostError> failure;
+    for (const fs::path& output : m_options.outputs) {
+        const fs::path file = complete ? output : partialName(output);
+        try {
+            writeOutput(file, picture, display);
+        } catch (const HostError& fault) {
+            if (failure) m_log.message(Level::kError, failure->what());
+            failure = fault;
+            continue;
+        }
+        m_statistics.outputs.push_back(file.string());
+        m_log.info(fmt::format("wrote {}{}", file.string(), error));
+    }
+    if (failure) throw *failure;
+}
+
+void Session::writeOutput(const fs::path& file, const Picture& picture,
+                          const std::optional<DisplayTransform>& display) {
+    if (!isDisplayReferred(pictureFormat(file))) {
+        warnOfClamped(file, writeExr(file, picture, {m_options.exrHalf}));
+        return;
+    }
+    const DisplayResult result = makeDisplayPicture(picture, display.value());
+    const auto bad = result.cleaning.nanCount + result.cleaning.infiniteCount;
+    if (bad > 0) {
+        warn(Warning::kOutput, fmt::format("{}: {} values were not finite", file.string(), bad));
+    }
+    writeDisplayPicture(file, result.picture);
+}
+
+int Session::compareWithReference(const Picture& picture) {
+    const ErrorReport report = compareRelMse(*m_reference, picture);
+    if (!report.relMse) {
+        std::fputs("relMSE nan\n", stdout);
+        warn(Warning::kOutput,
+             fmt::format("{} values of the picture and {} of the reference are not finite",
+                         report.badInPicture, report.badInReference));
+    } else {
+        std::fputs(fmt::format("relMSE {}\n", *report.relMse).c_str(), stdout);
+        m_statistics.referenceRelMse = report.relMse;
+    }
+    if (!m_options.errorLimit) return 0;
+    if (report.relMse && *report.relMse <= *m_options.errorLimit) return 0;
+    m_statistics.stopReason = "error limit";
+    m_statistics.error = report.relMse ? fmt::format("relMSE {} is above the limit {}",
+                                                     *report.relMse, *m_options.errorLimit)
+                                       : "a value is not finite";
+    m_log.message(Level::kError, m_statistics.error);
+    return kErrorLimitPassed;
+}
+
+void Session::printPixel(const Picture& picture) const {
+    for (const Channel& channel : picture.channels) {
+        std::fputs(fmt::format("{} {}\n", channel.name, channel.values.at(0)).c_str(), stdout);
+    }
+    std::fflush(stdout);
+}
+
+}  // namespace pm::host

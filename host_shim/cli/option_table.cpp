@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/cli/option_table.h"
+
+#include <CLI/CLI.hpp>
+
+#include <array>
+
+namespace pm::host {
+namespace {
+
+constexpr std::array<SettingOption, 17> kSettingOptions{{
+    {"--threads", "threads", "N"},
+    {"--bucket-size", "bucketSize", "N|auto"},
+    {"--bucket-order", "bucketOrder", "NAME"},
+    {"--buckets", "buckets", "A:B|I/N"},
+    {"--aa", "aaLevel", "N|MIN:MAX"},
+    {"--aa-threshold", "aaThreshold", "T"},
+    {"--filter", "filter", "box|gaussian"},
+    {"--integrator", "integrator", "photon|path"},
+    {"--plan", "plan", "auto|everything"},
+    {"--photons", "photons", "N|auto"},
+    {"--estimate-photons", "estimatePhotons", "K"},
+    {"--gather-rays", "gatherRays", "N|auto"},
+    {"--passes", "passes", "N"},
+    {"--time-limit", "timeLimitSeconds", "SECONDS"},
+    {"--error-target", "errorTarget", "RELMSE"},
+    {"--seed", "seed", "N|frame"},
+    {"--memory-limit", "memoryLimitGib", "GIB"},
+}};
+
+void addText(CLI::App& app, const std::string& name, std::string& target,
+             const std::string& placeholder, const std::string& help) {
+    app.add_option(name, target, help)->type_name(placeholder)->take_last();
+}
+
+void addOutputOptions(CLI::App& app, Typed& typed, Options& options) {
+    app.add_option("-o,--output", typed.outputs,
+                   "picture to write, may be repeated: .exr is scene-linear, .png .jpg .tif go "
+                   "through display and view, .pmpart is a part for pm_host merge (SCENE.exr in "
+                   "the working folder)")
+        ->type_name("FILE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    addText(app, "--frame", typed.frame, "N", "fills #### and %04d in SCENE and outputs");
+    app.add_flag("--make-output-path", options.makeOutputPath, "make missing output folders");
+    app.add_flag("--exr-half", options.exrHalf, "store colour as half; data stays float");
+}
+
+void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
+    addText(app, "SCENE", typed.scene, "FILE", "the scene, an .obj");
+    addOutputOptions(app, typed, options);
+    addText(app, "--size", typed.size, "WxH", "pixels (640x480)");
+    addText(app, "--eye", typed.eye, "x,y,z", "where the camera stands (framed from the bounds)");
+    addText(app, "--look-at", typed.lookAt, "x,y,z", "what it looks at (centre of the bounds)");
+    addText(app, "--up", typed.up, "x,y,z", "up in the picture (0,1,0)");
+    addText(app, "--fov", typed.fov, "DEG", "vertical field of view, above 0 and below 180 (40)");
+    addText(app, "--crop", typed.crop, "x0,y0,x1,y1", "half-open pixels; may exceed the frame");
+    addText(app, "--subdivide", typed.subdivide, "all|tagged|none",
+            "which groups become Catmull-Clark limit surfaces (tagged)");
+    app.add_option("--aov", typed.layers, "extra channels in the EXR, see --list aovs")
+        ->type_name("NAME[,NAME]")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void addRenderOptions(CLI::App& app, Typed& typed, Options& options, const SettingHelp& help) {
+    for (const SettingOption& setting : kSettingOptions) {
+        addText(app, setting.option, typed.settings[setting.option], setting.placeholder,
+                help ? help(setting.setting) : "");
+    }
+    addText(app, "--isa", options.isa, "NAME",
+            "instruction set, for the same bits on unlike machines: best, sse2, sse4.2, avx, avx2, "
+            "avx512 (best)");
+}
+
+void addPieceOptions(CLI::App& app, Typed& typed, Options& options) {
+    addText(app, "--checkpoint", typed.checkpoint, "FILE",
+            "keep finished buckets on disk; removed when all is written");
+    app.add_flag("--resume", options.resume,
+                 "go on from the checkpoint where it is there, else begin");
+    app.add_flag("--keep-checkpoint", options.keepCheckpoint,
+                 "don't remove it, so that the render can go on with more passes");
+    addText(app, "--photon-map", typed.photonMap, "FILE",
+            "read the photons from it in place of tracing them, for the same picture");
+    app.add_flag("--photons-only", options.photonsOnly,
+                 "trace the photons of all passes, write --photon-map FILE and stop; no picture");
+}
+
+void addColourOptions(CLI::App& app, Typed& typed, Options& options) {
+    ColourOptions& colour = options.colour;
+    addText(app, "--ocio", colour.ocioFile, "FILE", "colour config (else $OCIO, else built in)");
+    addText(app, "--rendering-space", colour.renderingSpace, "NAME", "(the config's scene_linear)");
+    addText(app, "--material-space", colour.materialSpace, "NAME",
+            "space of the numbers of materials (linear Rec.709)");
+    addText(app, "--texture-space", colour.textureSpace, "NAME", "space of colour textures");
+    addText(app, "--display", colour.display, "NAME", "see --list views (the config's own)");
+    addText(app, "--view", colour.view, "NAME", "see --list views (the display's own)");
+    addText(app, "--look", colour.look, "NAME", "look to apply before the view");
+    app.add_option("--context", typed.context, "variable of the config, may be repeated")
+        ->type_name("KEY=VALUE")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+}
+
+void addReportOptions(CLI::App& app, Typed& typed, Options& options) {
+    app.add_option("--reference", options.reference, "EXR to report relMSE against")
+        ->type_name("FILE");
+    addText(app, "--error-limit", typed.errorLimit, "X",
+            "exit 6 when the relMSE against --reference is above, or a value is not finite");
+    addText(app, "--stats", options.statistics, "FILE", "statistics as JSON; - = standard output");
+    app.add_option("--log", options.log, "all messages, also to a file")->type_name("FILE");
+    app.add_option("--report", options.report,
+                   "a page to look at: status, picture, error, time of the buckets")
+        ->type_name("FILE.html");
+    app.add_flag("-q,--quiet", options.quiet, "only warnings and errors");
+    app.add_flag("-v,--verbose", options.verbose, "more messages");
+    app.add_option("--plugin", options.plugin,
+                   "the library (else $PM_PLUGIN_PATH, else beside pm_host)")
+        ->type_name("FILE");
+    app.add_flag("-h,--help", options.help, "print and stop");
+}
+
+void addPrintingOptions(CLI::App& app, Typed& typed, Options& options) {
+    app.add_flag("--explain", options.explain, "print what the scene needs, and stop");
+    addText(app, "--list", options.list, "views|spaces|aovs|orders|settings", "print and stop");
+    app.add_flag("--version", options.version, "print and stop");
+    addText(app, "--progress", typed.progress, "auto|bar|plain|json|alf|none",
+            "how progress is shown (auto)");
+    addText(app, "--only-pixel", typed.onlyPixel, "X,Y", "render and print that one");
+}
+
+}  // namespace
+
+std::span<const SettingOption> settingOptions() {
+    return kSettingOptions;
+}
+
+void addAll(CLI::App& app, Typed& typed, Options& options, const SettingHelp& help) {
+    app.set_help_flag();
+    app.option_defaults()->always_capture_default(false);
+    addSceneOptions(app, typed, options);
+    addRenderOptions(app, typed, options, help);
+    addPieceOptions(app, typed, options);
+    addColourOptions(app, typed, options);
+    addReportOptions(app, typed, options);
+    addPrintingOptions(app, typed, options);
+}
+
+void addAllOfMerge(CLI::App& app, Typed& typed, Options& options) {
+    app.set_help_flag();
+    app.option_defaults()->always_capture_default(false);
+    app.add_option("PART", typed.parts, "parts of one picture, that -o NAME.pmpart made")
+        ->type_name("FILE...");
+    addOutputOptions(app, typed, options);
+    addColourOptions(app, typed, options);
+    addReportOptions(app, typed, options);
+}
+
+}  // namespace pm::host

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/cli/command_line.h"
+
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace pm::host {
+
+// Options as they were typed; what they mean is found afterwards, by option_values, since CLI11
+// reads numbers through the locale.
+struct Typed {
+    std::string scene, frame, size, eye, lookAt, up, fov, crop, aa, seed, subdivide, onlyPixel,
+        errorLimit, progress, checkpoint, photonMap;
+    std::vector<std::string> outputs, context, layers, parts;
+    std::map<std::string, std::string> settings;  // option -> text
+};
+
+// Options that are settings of the library, by another name.
+struct SettingOption {
+    const char* option;
+    const char* setting;
+    const char* placeholder;
+};
+std::span<const SettingOption> settingOptions();
+
+// Puts all options of `pm_host SCENE` into app: texts go to typed, flags and names to options,
+// which must outlive it. help: of settings; may be null.
+void addAll(CLI::App& app, Typed& typed, Options& options, const SettingHelp& help);
+// The same of `pm_host merge PART... -o FILE`.
+void addAllOfMerge(CLI::App& app, Typed& typed, Options& options);
+
+}  // namespace pm::host

@@ -1,0 +1,300 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Builds a Scene: checks the description, moves everything to the scene's own centre in double,
+// then rounds to float once; finds the lights; hands the shapes to the ray tracer.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "integrator/scene/scene.h"
+#include "integrator/scene/shape_record.h"
+#include "integrator/values/error.h"
+
+namespace pm {
+
+namespace {
+
+Vec3d transformPoint(const Transform& m, const Vec3d& p) {
+    return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3],
+            m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
+            m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
+}
+
+Vec3d row(const Transform& m, int i) {
+    const auto k = static_cast<std::size_t>(4 * i);
+    return {m[k], m[k + 1], m[k + 2]};
+}
+
+double determinant(const Transform& m) {
+    return dot(row(m, 0), cross(row(m, 1), row(m, 2)));
+}
+
+// The transform of normals up to a positive factor: the transposed inverse, whose rows are cross
+// products of the matrix's rows over its determinant. The sign keeps the front in front.
+struct NormalTransform {
+    Vec3d rows[3];
+
+    explicit NormalTransform(const Transform& m)
+        : rows{cross(row(m, 1), row(m, 2)), cross(row(m, 2), row(m, 0)),
+               cross(row(m, 0), row(m, 1))} {
+        if (determinant(m) < 0)
+            for (Vec3d& r : rows) r = -r;
+    }
+    Vec3f apply(const Vec3f& n) const {
+        const Vec3d nd(n);
+        const Vec3d v{dot(rows[0], nd), dot(rows[1], nd), dot(rows[2], nd)};
+        const double l = length(v);
+        return l > 0 ? Vec3f(v / l) : n;
+    }
+};
+
+// The factor of a transform that keeps spheres spheres; 0 when it does not.
+double uniformScale(const Transform& m) {
+    const double s0 = length(row(m, 0)), s1 = length(row(m, 1)), s2 = length(row(m, 2));
+    const double tolerance = 1e-6 * s0;
+    const bool uniform = std::abs(s1 - s0) <= tolerance && std::abs(s2 - s0) <= tolerance &&
+                         std::abs(dot(row(m, 0), row(m, 1))) <= tolerance * s0 &&
+                         std::abs(dot(row(m, 0), row(m, 2))) <= tolerance * s0 &&
+                         std::abs(dot(row(m, 1), row(m, 2))) <= tolerance * s0;
+    return uniform ? s0 : 0.0;
+}
+
+bool emits(const MaterialDescription& material) {
+    return !isBlack(material.emission);
+}
+
+}  // namespace
+
+class Scene::Builder {
+  public:
+    Builder(Scene& scene, const CancelCheck& cancel) : m_scene(scene), m_cancel(cancel) {}
+
+    void run() {
+        checkInstances();
+        findBounds();
+        for (const InstanceDescription& instance : m_scene.m_description.instances)
+            addShape(instance);
+        m_scene.m_isFlat = m_scene.findFlat(m_cancel);
+        addToTracer();
+        for (std::uint32_t i = 0; i < m_scene.m_shapes.size(); ++i) findLights(i);
+        addPointLights(m_scene.m_description, m_scene.m_centre, m_scene.m_lights, m_scene.m_beams);
+        m_scene.m_nearLightCount = m_scene.m_lights.size();
+        addDirectionalLights(m_scene.m_description, m_scene.m_halfSize, m_scene.m_lights,
+                             m_scene.m_beams);
+        addEnvironment();
+        if (m_scene.m_lights.empty())
+            m_scene.m_notices.push_back(
+                {NoticeCode::kNoLight, "nothing in the scene emits light: the picture is black"});
+    }
+
+  private:
+    // Called for every little step of what may take long.
+    void goOn() {
+        constexpr std::uint32_t kStepsBetweenLooks = 1 << 16;
+        if (++m_steps % kStepsBetweenLooks == 0) m_cancel.throwIfSet("building the scene");
+    }
+
+    void checkInstances() const {
+        const SceneDescription& d = m_scene.m_description;
+        if (d.instances.empty()) throw Error(Status::kInvalidScene, "the scene has no geometry");
+        for (const InstanceDescription& instance : d.instances) {
+            for (const double v : instance.transform)
+                if (!std::isfinite(v))
+                    throw Error(
+                        Status::kInvalidScene,
+                        fmt::format("instance '{}': its transform has a value that is not finite",
+                                    instance.name));
+            if (determinant(instance.transform) == 0.0)
+                throw Error(Status::kInvalidScene,
+                            fmt::format("instance '{}': its transform is singular", instance.name));
+            for (const std::uint32_t material : instance.materials)
+                if (material >= d.materials.size())
+                    throw Error(Status::kInvalidScene,
+                                fmt::format("instance '{}' refers to material {} of {}",
+                                            instance.name, material, d.materials.size()));
+            checkSlots(instance);
+        }
+    }
+
+    static void checkSlots(const InstanceDescription& instance) {
+        std::uint32_t slots = 1;
+        if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape)) {
+            for (const std::uint32_t slot : (*mesh)->materials) slots = std::max(slots, slot + 1);
+        } else {
+            const auto& sphere = std::get<SphereShape>(instance.shape);
+            if (!(sphere.radius > 0) || !std::isfinite(sphere.radius) || !isFinite(sphere.centre))
+                throw Error(Status::kInvalidScene,
+                            fmt::format("sphere '{}' has radius {}; it must be > 0 and finite",
+                                        instance.name, sphere.radius));
+            if (uniformScale(instance.transform) == 0.0)
+                throw Error(Status::kUnsupported,
+                            fmt::format("sphere '{}' is under a transform that makes it an "
+                                        "ellipsoid; rotation, translation and uniform scale are "
+                                        "allowed",
+                                        instance.name));
+        }
+        if (instance.materials.size() < slots)
+            throw Error(Status::kInvalidScene,
+                        fmt::format("instance '{}' has {} materials; its mesh uses {} slots",
+                                    instance.name, instance.materials.size(), slots));
+    }
+
+    void findBounds() {
+        constexpr double kInfinity = std::numeric_limits<double>::infinity();
+        Vec3d lo(kInfinity), hi(-kInfinity);
+        const auto grow = [&](const Vec3d& p, double r) {
+            for (int axis = 0; axis < 3; ++axis) {
+                lo[axis] = std::min(lo[axis], p[axis] - r);
+                hi[axis] = std::max(hi[axis], p[axis] + r);
+            }
+        };
+        for (const InstanceDescription& instance : m_scene.m_description.instances) {
+            if (const auto* mesh =
+                    std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape)) {
+                const TriangleMesh& m = **mesh;
+                for (const auto& triangle : m.triangles) {
+                    goOn();
+                    for (const std::uint32_t v : triangle)
+                        grow(transformPoint(instance.transform, Vec3d(m.positions[v])), 0.0);
+                }
+            } else {
+                const auto& sphere = std::get<SphereShape>(instance.shape);
+                grow(transformPoint(instance.transform, sphere.centre),
+                     sphere.radius * uniformScale(instance.transform));
+            }
+        }
+        if (!(lo.x <= hi.x)) throw Error(Status::kInvalidScene, "the scene has no geometry");
+        const double largest = RayTracer::kLargestCoordinate;
+        if (!isFinite(lo) || !isFinite(hi) || maxAbsComponent(hi - lo) > largest)
+            throw Error(Status::kInvalidScene,
+                        fmt::format("the scene is {} units wide; at most {} is allowed",
+                                    maxAbsComponent(hi - lo), largest));
+        m_scene.m_centre = (lo + hi) * 0.5;
+        m_scene.m_halfSize = (hi - lo) * 0.5;
+        m_scene.m_radius = length(m_scene.m_halfSize);
+    }
+
+    void addShape(const InstanceDescription& instance) {
+        ShapeRecord record;
+        record.materials = instance.materials;
+        record.instanceId = instance.id;
+        record.mirrored = determinant(instance.transform) < 0;
+        if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape)) {
+            addMesh(*mesh, instance.transform, record);
+        } else {
+            const auto& sphere = std::get<SphereShape>(instance.shape);
+            const double scale = uniformScale(instance.transform);
+            record.sphere.centre =
+                transformPoint(instance.transform, sphere.centre) - m_scene.m_centre;
+            record.sphere.radius = sphere.radius * scale;
+        }
+        m_scene.m_shapes.push_back(std::move(record));
+    }
+
+    void addMesh(const std::shared_ptr<const TriangleMesh>& mesh, const Transform& transform,
+                 ShapeRecord& record) {
+        record.mesh = mesh;
+        record.positions.reserve(mesh->positions.size() + 1);
+        for (const Vec3f& p : mesh->positions) {
+            goOn();
+            record.positions.push_back(
+                Vec3f(transformPoint(transform, Vec3d(p)) - m_scene.m_centre));
+        }
+        record.positions.emplace_back();
+        record.facets.reserve(mesh->triangles.size());
+        for (std::uint32_t i = 0; i < mesh->triangles.size(); ++i) {
+            goOn();
+            record.facets.emplace_back(record.corner(i), record.mirrored);
+            m_scene.m_triangleArea += triangleArea(record, i);
+        }
+        const NormalTransform normalTransform(transform);
+        record.normals.reserve(mesh->normals.size());
+        for (const Vec3f& n : mesh->normals) {
+            goOn();
+            record.normals.push_back(normalTransform.apply(n));
+        }
+        m_scene.m_triangleCount += mesh->triangles.size();
+    }
+
+    static double triangleArea(const ShapeRecord& record, std::uint32_t primitive) {
+        const auto& t = record.mesh->triangles[primitive];
+        const Vec3d v0(record.positions[t[0]]);
+        return 0.5 * length(cross(Vec3d(record.positions[t[1]]) - v0,
+                                  Vec3d(record.positions[t[2]]) - v0));
+    }
+
+    void addToTracer() {
+        for (const ShapeRecord& record : m_scene.m_shapes) {
+            if (record.mesh)
+                m_scene.m_tracer.addTriangles(
+                    {record.positions.data(), record.positions.size() - 1},
+                    {record.mesh->triangles.data(), record.mesh->triangles.size()});
+            else
+                m_scene.m_tracer.addSphere(record.sphere.centre, record.sphere.radius);
+        }
+        m_cancel.throwIfSet("building the scene");
+        m_scene.m_tracer.commit(m_cancel);
+    }
+
+    void findLights(std::uint32_t shape) {
+        ShapeRecord& record = m_scene.m_shapes[shape];
+        const std::size_t primitives = record.mesh ? record.mesh->triangles.size() : 1;
+        for (std::uint32_t i = 0; i < primitives; ++i) {
+            goOn();
+            const std::uint32_t material = record.materialOf(i);
+            if (!emits(m_scene.material(material))) continue;
+            const double area = record.mesh
+                                    ? triangleArea(record, i)
+                                    : 4 * kPiDouble * record.sphere.radius * record.sphere.radius;
+            if (!(area > 0)) continue;
+            if (record.lightOfPrimitive.empty())
+                record.lightOfPrimitive.assign(primitives, kNoLight);
+            record.lightOfPrimitive[i] = static_cast<std::int32_t>(m_scene.m_lights.size());
+            Light light;
+            light.kind = record.mesh ? Light::Kind::kTriangle : Light::Kind::kSphere;
+            light.shape = shape;
+            light.primitive = i;
+            light.material = material;
+            light.area = static_cast<float>(area);
+            const Rgb& e = m_scene.material(material).emission;
+            light.powerMean = kPiDouble * area * (static_cast<double>(e.r) + e.g + e.b) / 3;
+            m_scene.m_lights.push_back(light);
+        }
+    }
+
+    void addEnvironment() {
+        const auto& description = m_scene.m_description.environment;
+        if (!description || isBlack(description->radiance)) return;
+        auto environment = std::make_unique<const Environment>(
+            *description, m_scene.m_description.textures.get(), m_cancel);
+        if (!(environment->integral() > 0)) return;
+        Light light;
+        light.kind = Light::Kind::kEnvironment;
+        // A convex body's shadow is a quarter of its surface on the average (Cauchy).
+        double area = 0;
+        for (const Vec3d& axis : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}})
+            area += 0.5 * crossSection(m_scene.m_halfSize, axis);
+        light.powerMean = environment->integral() * area;
+        m_scene.m_environment = std::move(environment);
+        m_scene.m_lights.push_back(light);
+    }
+
+    static constexpr double kPiDouble = 3.14159265358979323846;
+    Scene& m_scene;
+    CancelCheck m_cancel;
+    std::uint32_t m_steps = 0;
+};
+
+Scene::Scene(SceneDescription description, const std::string& isa, const CancelCheck& cancel)
+    : m_description(std::move(description)), m_tracer(isa) {
+    Builder(*this, cancel).run();
+}
+
+std::shared_ptr<const Scene> Scene::build(SceneDescription description, const std::string& isa,
+                                          const CancelCheck& cancel) {
+    return std::shared_ptr<const Scene>(new Scene(std::move(description), isa, cancel));
+}
+
+}  // namespace pm

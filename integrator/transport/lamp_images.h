@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "integrator/scene/camera.h"
+#include "integrator/scene/scene.h"
+#include "integrator/values/vec.h"
+
+namespace pm {
+
+// A lamp's image, straight or by way of delta lobes, that is no larger than a pixel: a rectangle of
+// the frame around it, pixels. It says where to look, not what is there.
+struct LampImage {
+    std::array<double, 2> centre, along, across;  // the rectangle's middle and its half axes
+
+    // u: in [0, 1]^2.
+    std::array<double, 2> at(Vec2f u) const;
+    bool holds(double x, double y) const;
+    double area() const;
+    // Half the size of the upright rectangle around it.
+    std::array<double, 2> halfSize() const;
+};
+
+// A ball around an area light, or around triangles side by side that shine.
+struct LampBall {
+    Vec3f centre;  // scene's own coordinates
+    float radius;
+};
+
+// Of the area lights of a scene; none where there are more than 32, as looking for the images
+// takes time with each.
+std::vector<LampBall> lampBalls(const Scene& scene);
+
+// One of the rays of a camera path that follows every delta lobe.
+struct LampRay {
+    std::uint64_t lobes;  // that led to it: base 4, after a leading 1
+    double x, y;          // where the path left the camera, pixels
+    Ray ray;
+};
+// All those of the path through a place of the frame, as far as they carry something. Adds to rays.
+void addLampRays(const Scene& scene, const Camera& camera, double x, double y,
+                 std::vector<LampRay>& rays);
+
+// Images within [x0, x1] x [y0, y1], pixels, among paths of that area. How far a lamp's ball is
+// from the line of a ray is nearly linear in the ray's place, for rays by way of the same lobes: a
+// fit of it tells where it would be 0, and Newton's method goes there. It may miss images.
+// Threads: from any.
+std::vector<LampImage> findLampImages(const Scene& scene, const Camera& camera,
+                                      const std::vector<LampBall>& lamps, double x0, double x1,
+                                      double y0, double y1, std::vector<LampRay> rays);
+
+}  // namespace pm

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "integrator/transport/channel_layout.h"
+#include "integrator/transport/direct_light.h"
+
+namespace pm {
+
+// Sums over a pixel's samples of one pass, in double and in the order of the samples, and the
+// pixel's floats that come of them.
+class PixelSums {
+  public:
+    // Whether the sample may be added: no part of it is NaN or infinite.
+    static bool accepts(const SampleRadiance& sample);
+
+    // depth: of where the sample's path first met something, along the view axis, scene units.
+    // isSeen: adaptive renders decide by it, see ChannelLayout::seen.
+    void add(const SampleRadiance& sample, double depth, bool isSeen);
+    // samples: the pixel's, those that were not accepted included, > 0. pixel: layout.count floats.
+    void write(const ChannelLayout& layout, std::uint32_t samples, float* pixel) const;
+
+  private:
+    std::array<double, 3> m_emission{}, m_direct{}, m_caustic{}, m_indirect{}, m_biasProbe{},
+        m_albedo{}, m_normal{};
+    double m_coverage = 0, m_depth = 0;
+    std::array<double, 5> m_seen{};
+    float m_contribution = 0.0f;  // of the last sample
+};
+
+}  // namespace pm
