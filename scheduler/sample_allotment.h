@@ -30,9 +30,8 @@ namespace pm {
 // That is so where the samples of a pass share noise, such as that of its photons: more samples
 // don't lower it, more passes do. Where they share none (isAlone) a pixel's passes are as good as
 // one, and all that counts is how many samples a pixel has beside others. So there
-// - the threshold T falls: a third of it for the second pass, a twelfth for the third and fourth,
-// then
-//   a 24th; N = 16 (s / (16 T))^(3/4), as the squared error falls like N^(-5/3), not like 1/N;
+// - the threshold T falls: a third of it for the second pass, a twelfth for the third and fourth, a
+//   24th after; N = 16 (s / (16 T))^(3/4), as the squared error falls like N^(-5/3), not like 1/N;
 // - noise that is even gets samples that are even: few samples tell little of one pixel's spread,
 //   but much of the spread of an atom's 64. What a pixel differs by from them counts only as far as
 //   the pixels differ more than normal noise would make them (AtomNoise);
