@@ -9,6 +9,8 @@
 
 #include <chrono>
 #include <cstdlib>
+#include <functional>
+#include <initializer_list>
 #include <iostream>
 #include <thread>
 
@@ -44,6 +46,35 @@ class Interrupt : public HostProcess {
         const auto json = nlohmann::json::parse(readText(path("s.json")));
         EXPECT_EQ(json.at("stopReason"), reason);
         EXPECT_EQ(json.at("exitCode"), code);
+    }
+
+    // Terminates runs with --stats s.json after these shares of the time that an undisturbed one
+    // takes; check gets those that the signal ended. Returns how many that were.
+    int terminateAt(std::initializer_list<double> shares, const std::vector<std::string>& arguments,
+                    const std::function<void(const Outcome&)>& check) const {
+        const auto start = std::chrono::steady_clock::now();
+        EXPECT_EQ(run(arguments).exitCode, 0);
+        const auto whole = std::chrono::steady_clock::now() - start;
+        int terminated = 0;
+        for (const double share : shares) {
+            fs::remove(path("s.json"));
+            std::chrono::steady_clock::time_point told;
+            const Outcome outcome = run(arguments, [&](pid_t child) {
+                std::this_thread::sleep_for(share * whole);
+                told = std::chrono::steady_clock::now();
+                kill(child, SIGTERM);
+            });
+            const std::chrono::duration<double> took = std::chrono::steady_clock::now() - told;
+            // Before it has its handlers the signal ends it, and after its end nothing does.
+            if (outcome.exitCode != 143) continue;
+            ++terminated;
+            std::cout << "at " << share << " of " << std::chrono::duration<double>(whole).count()
+                      << " s: ended " << took.count() << " s after the signal" << std::endl;
+            EXPECT_EQ(nlohmann::json::parse(readText(path("s.json"))).at("stopReason"),
+                      "terminated");
+            check(outcome);
+        }
+        return terminated;
     }
 };
 
@@ -87,28 +118,11 @@ TEST_F(Interrupt, beforeTheRenderBegins) {
     write("sheet.obj", text);
     const std::vector<std::string> arguments{"sheet.obj", "--subdivide", "all", "--explain",
                                              "--stats",   "s.json",      "-o",  "a.exr"};
-    const auto start = std::chrono::steady_clock::now();
-    ASSERT_EQ(run(arguments).exitCode, 0);
-    const auto whole = std::chrono::steady_clock::now() - start;
-    int interrupted = 0;
-    for (const double share : {0.1, 0.3, 0.5, 0.7, 0.9}) {
-        fs::remove(path("s.json"));
-        std::chrono::steady_clock::time_point told;
-        const Outcome outcome = run(arguments, [&](pid_t child) {
-            std::this_thread::sleep_for(share * whole);
-            told = std::chrono::steady_clock::now();
-            kill(child, SIGTERM);
+    const int interrupted =
+        terminateAt({0.1, 0.3, 0.5, 0.7, 0.9}, arguments, [&](const Outcome& outcome) {
+            EXPECT_NE(outcome.err.find("pm_host: terminated"), std::string::npos) << outcome.err;
+            EXPECT_FALSE(fs::exists(path("a.exr")));
         });
-        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - told;
-        // Before it has its handlers the signal ends it, and after its end nothing does.
-        if (outcome.exitCode != 143) continue;
-        ++interrupted;
-        std::cout << "at " << share << " of " << std::chrono::duration<double>(whole).count()
-                  << " s: ended " << took.count() << " s after the signal" << std::endl;
-        EXPECT_NE(outcome.err.find("pm_host: terminated"), std::string::npos) << outcome.err;
-        EXPECT_EQ(nlohmann::json::parse(readText(path("s.json"))).at("stopReason"), "terminated");
-        EXPECT_FALSE(fs::exists(path("a.exr")));
-    }
     EXPECT_GE(interrupted, 2);
 }
 
@@ -123,25 +137,8 @@ TEST_F(Interrupt, whileATextureIsBaked) {
     write("wall.ppm", texels);
     write("box.mtl", "newmtl light\nKd 0 0 0\nKe 5 5 5\nnewmtl wall\nmap_Kd wall.ppm\n");
     const std::vector<std::string> arguments{"box.obj", "--explain", "--stats", "s.json"};
-    const auto start = std::chrono::steady_clock::now();
-    ASSERT_EQ(run(arguments).exitCode, 0);
-    const auto whole = std::chrono::steady_clock::now() - start;
-    int interrupted = 0;
-    for (const double share : {0.4, 0.6, 0.8, 0.9}) {
-        std::chrono::steady_clock::time_point told;
-        const Outcome outcome = run(arguments, [&](pid_t child) {
-            std::this_thread::sleep_for(share * whole);
-            told = std::chrono::steady_clock::now();
-            kill(child, SIGTERM);
-        });
-        const std::chrono::duration<double> took = std::chrono::steady_clock::now() - told;
-        if (outcome.exitCode != 143) continue;
-        ++interrupted;
-        std::cout << "at " << share << " of " << std::chrono::duration<double>(whole).count()
-                  << " s: ended " << took.count() << " s after the signal" << std::endl;
-        EXPECT_EQ(nlohmann::json::parse(readText(path("s.json"))).at("stopReason"), "terminated");
-        EXPECT_EQ(textureFolder(), "");
-    }
+    const int interrupted = terminateAt({0.4, 0.6, 0.8, 0.9}, arguments,
+                                        [&](const Outcome&) { EXPECT_EQ(textureFolder(), ""); });
     EXPECT_GE(interrupted, 1);
 }
 

@@ -18,6 +18,7 @@
 #include "integrator/values/error.h"
 #include "scheduler/bucket_grid.h"
 #include "scheduler/frame_store.h"
+#include "tests/scheduler/even_atom.h"
 
 namespace pm {
 namespace {
@@ -146,14 +147,6 @@ TEST(SampleAllotment, decidingByItsOwnSamplesWouldLoseRareLight) {
         return sum / count;
     });
     EXPECT_LT(score, -40.0);
-}
-
-std::array<SeenSamples, kPixels> evenAtom(double samples, double mean, double deviation) {
-    std::array<SeenSamples, kPixels> atom;
-    const double unbiased = deviation * deviation * (samples - 1) / samples;
-    const double sum = samples * mean;
-    atom.fill({samples, {sum, sum, sum}, samples * 3 * (mean * mean + unbiased)});
-    return atom;
 }
 
 // What the rule gives all pixels of an even atom, whose spread is well known.

@@ -15,6 +15,7 @@
 #include "scheduler/bucket_grid.h"
 #include "scheduler/frame_store.h"
 #include "scheduler/sample_allotment.h"
+#include "tests/scheduler/even_atom.h"
 
 namespace pm {
 namespace {
@@ -59,14 +60,6 @@ TEST(SamplesAlone, passesMakeUpForWhatEarlierOnesLacked) {
     EXPECT_EQ(madeUp(kFourAlone, 8, 16, 16), 2 * 16);  // at most twice
     EXPECT_EQ(madeUp(kFourAlone, 9, 28 + 32, 16), 5 * 16 - 60);
     EXPECT_EQ(madeUp(kFourAlone, 10, 100, 4), 4);  // at least the least
-}
-
-std::array<SeenSamples, kPixels> evenAtom(double samples, double mean, double deviation) {
-    std::array<SeenSamples, kPixels> atom;
-    const double unbiased = deviation * deviation * (samples - 1) / samples;
-    const double sum = samples * mean;
-    atom.fill({samples, {sum, sum, sum}, samples * 3 * (mean * mean + unbiased)});
-    return atom;
 }
 
 using Counts = std::array<std::uint16_t, kPixels>;
