@@ -137,12 +137,9 @@ class SameBitsPairs : public ::testing::Test {
             const LayeredPicture picture = make(way);
             EXPECT_EQ("", difference(picture, more)) << way.text();
         }
-        // Resuming is tested where something was left to do, and most of all within a pass.
         const auto& [withinAPass, betweenPasses, tooLate] = m_interruptions;
         EXPECT_EQ(withinAPass + betweenPasses + tooLate,
                   std::ranges::count_if(combinations, [](const auto& c) { return c[kResume]; }));
-        EXPECT_GT(withinAPass, 0);
-        EXPECT_GT(withinAPass + betweenPasses, tooLate);
         std::cout << combinations.size() << " combinations; resumed within a pass " << withinAPass
                   << ", between passes " << betweenPasses << ", at the end " << tooLate << "\n";
     }
@@ -174,6 +171,11 @@ TEST_F(SameBitsPairs, SceneHasEveryTransport) {
 
 TEST_F(SameBitsPairs, EveryTwoChoicesTogether) {
     expectSame(coveringSet(matrix()));
+    // Resuming is tested where something was left to do, and most of all within a pass. Where a
+    // cancel falls is a matter of time: asked of many resumed renders only.
+    const auto& [withinAPass, betweenPasses, tooLate] = m_interruptions;
+    EXPECT_GT(withinAPass, 0);
+    EXPECT_GT(withinAPass + betweenPasses, tooLate);
 }
 
 // Where pixels of four begin as one, and samples lie outside of theirs.
