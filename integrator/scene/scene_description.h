@@ -50,6 +50,12 @@ inline bool isDiffuseAtMost(const MaterialDescription& material) {
            material.transparency == 0.0f && material.opacityTexture == kNoTexture;
 }
 
+// Whether light can leave the material in one direction, or two, like from a mirror or glass.
+inline bool mayHaveDelta(const MaterialDescription& material) {
+    return material.kind != MaterialKind::kSurface || material.transparency > 0.0f ||
+           material.opacityTexture != kNoTexture;
+}
+
 // Whether light that meets the material goes nowhere from there, whatever its textures.
 inline bool isBlackBody(const MaterialDescription& material) {
     return isDiffuseAtMost(material) && isBlack(material.diffuse);

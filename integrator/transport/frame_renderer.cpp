@@ -16,6 +16,7 @@
 #include "integrator/transport/path_integrator.h"
 #include "integrator/transport/photon_integrator.h"
 #include "integrator/transport/photon_pass.h"
+#include "integrator/transport/pixel_cell.h"
 #include "integrator/transport/pixel_sums.h"
 #include "integrator/transport/seen_lamps.h"
 #include "integrator/values/cancel_check.h"
@@ -26,39 +27,6 @@ namespace {
 
 // A render at level l has 4^(l-1) samples a pixel in this many passes.
 constexpr std::uint32_t kPassesOfALevel = 4;
-
-std::uint64_t pixelKey(std::int32_t x, std::int32_t y) {
-    return static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32 |
-           static_cast<std::uint32_t>(x);
-}
-
-// What is sampled as one pixel: a pixel, or a group of twice its side.
-struct Cell {
-    std::int32_t x, y;  // its left and upper edge, pixels
-    bool isGroup;
-};
-
-// The even passes' samples are one low-discrepancy sequence, the odd passes' another: samples added
-// later fall between those before, and the two halves' errors share nothing. Groups have sequences
-// that no pixel has. Odd streams are photons'; see PhotonTracer.
-std::uint64_t streamOf(std::uint32_t pass, const Cell& cell) {
-    return 2 * std::uint64_t{pass % 2} + (cell.isGroup ? 4 : 0);
-}
-
-// Where a ray leaves the camera, pixels of the frame.
-struct Place {
-    double x, y;
-};
-
-// Paths of each camera sample towards each small image of a lamp that its pixel may show.
-constexpr std::uint32_t kPathsOfImage = 16;
-
-bool mayShow(const Cell& cell, PixelFilter filter, const LampImage& image) {
-    const double reach = filter == PixelFilter::kBox ? 0.0 : kGaussianRadius - 0.5;
-    const auto [halfX, halfY] = image.halfSize();
-    return std::abs(image.centre[0] - cell.x - 0.5) < halfX + 0.5 + reach &&
-           std::abs(image.centre[1] - cell.y - 0.5) < halfY + 0.5 + reach;
-}
 
 // Of a pixel's group of 2 x 2, the first; also below 0.
 std::int32_t firstOfGroup(std::int32_t coordinate) {
@@ -81,7 +49,8 @@ SampleRun fixedSamples(const RenderSettings& settings, std::int32_t x, std::int3
     // The turn moves on by one from four passes to the next: so it falls on even and odd passes
     // alternately.
     const std::uint32_t period = std::min(kPassesOfALevel, settings.passes);
-    const std::uint64_t turn = combineBits(settings.seed, pixelKey(x, y)) % period + pass / period;
+    const std::uint64_t turn =
+        combineBits(settings.seed, PixelCell{x, y, isOfGroup}.key()) % period + pass / period;
     const std::uint32_t count = turn % period == pass % period ? 1 : 0;
     return {pass / (2 * period), count, count, isOfGroup};
 }
@@ -103,18 +72,14 @@ struct FrameRenderer::Impl {
         explicit Prepared(const Impl& impl)
             : lights(*impl.scene),
               photons(*impl.scene, impl.camera, lights, impl.plan, impl.settings),
-              seenLamps(*impl.scene, lights, impl.camera, impl.settings.width,
-                        impl.settings.height) {}
+              seenLamps(*impl.scene, lights, impl.camera, impl.settings) {}
     };
 
     void prepare(const std::atomic<bool>& cancelled);
     PhotonPass& photonsOfPass(std::uint32_t pass, const std::atomic<bool>& cancelled);
-    Place placeInCell(const Cell& cell, Vec2f u) const;
-    Rgb lampsSeen(std::uint32_t pass, const Cell& cell, std::uint32_t index, std::uint32_t paths,
-                  std::uint32_t& rays) const;
-    SampleRadiance sample(std::uint32_t pass, const Cell& cell, Sampler sampler,
+    SampleRadiance sample(std::uint32_t pass, const PixelCell& cell, Sampler sampler,
                           std::uint32_t index, NearestPhotons& scratch) const;
-    void renderCell(std::uint32_t pass, const Cell& cell, SampleRun run, float* pixel,
+    void renderCell(std::uint32_t pass, const PixelCell& cell, SampleRun run, float* pixel,
                     NearestPhotons& scratch, RenderCounters& local) const;
 
     const std::shared_ptr<const Scene> scene;
@@ -153,74 +118,28 @@ PhotonPass& FrameRenderer::Impl::photonsOfPass(std::uint32_t pass,
     return prepared->photons;
 }
 
-Place FrameRenderer::Impl::placeInCell(const Cell& cell, Vec2f u) const {
-    const double side = cell.isGroup ? 2.0 : 1.0;
-    return {cell.x + side * placeInPixel(settings.filter, u.x),
-            cell.y + side * placeInPixel(settings.filter, u.y)};
-}
-
-// The class of paths of SeenLamps, in sequences of its own: paths over the filter and, where lamps
-// have small images, towards each of these. Weighted by the balance heuristic (Veach 1997, eq. 9.8)
-// the sum has the same mean wherever images are looked for.
-Rgb FrameRenderer::Impl::lampsSeen(std::uint32_t pass, const Cell& cell, std::uint32_t index,
-                                   std::uint32_t paths, std::uint32_t& rays) const {
-    const SeenLamps& lamps = prepared->seenLamps;
-    std::vector<LampImage> images;
-    // A group is a preview, and twice as wide.
-    if (!cell.isGroup)
-        for (const LampImage& image : lamps.images(cell.x, cell.y))
-            if (mayShow(cell, settings.filter, image)) images.push_back(image);
-    const SeenLamps::Effort effort = images.empty() ? SeenLamps::Effort{} : SeenLamps::kOfImages;
-    Rgb sum;
-    const auto add = [&](const Place& place, Sampler& sampler) {
-        double weight = 1.0 / paths;
-        if (!images.empty()) {
-            const double density = densityInPixel(settings.filter, place.x - cell.x) *
-                                   densityInPixel(settings.filter, place.y - cell.y);
-            if (!(density > 0)) return;
-            double all = paths * density;
-            for (const LampImage& image : images)
-                if (image.holds(place.x, place.y)) all += kPathsOfImage / image.area();
-            weight = density / all;
-        }
-        sum += lamps.along(camera.ray(place.x, place.y), sampler, rays, effort) *
-               static_cast<float>(weight);
-    };
-    for (std::uint32_t i = 0; i < paths; ++i) {
-        Sampler sampler(settings.seed, streamOf(pass, cell) + 8, pixelKey(cell.x, cell.y),
-                        index * paths + i);
-        add(placeInCell(cell, sampler.next2D()), sampler);
-    }
-    for (std::size_t k = 0; k < images.size(); ++k)
-        for (std::uint32_t i = 0; i < kPathsOfImage; ++i) {
-            Sampler sampler(settings.seed, streamOf(pass, cell) + 16 + 8 * k,
-                            pixelKey(cell.x, cell.y), index * kPathsOfImage + i);
-            const auto [x, y] = images[k].at(sampler.next2D());
-            add({x, y}, sampler);
-        }
-    return sum;
-}
-
-SampleRadiance FrameRenderer::Impl::sample(std::uint32_t pass, const Cell& cell, Sampler sampler,
-                                           std::uint32_t index, NearestPhotons& scratch) const {
-    const Place place = placeInCell(cell, sampler.next2D());
+SampleRadiance FrameRenderer::Impl::sample(std::uint32_t pass, const PixelCell& cell,
+                                           Sampler sampler, std::uint32_t index,
+                                           NearestPhotons& scratch) const {
+    const Place place = cell.place(settings.filter, sampler.next2D());
     const Ray ray = camera.ray(place.x, place.y);
     if (settings.integrator == IntegratorKind::kPath)
         return PathIntegrator(*scene, prepared->lights).sample(ray, sampler);
-    const std::uint32_t lampPaths = prepared->seenLamps.paths(cell.x, cell.y);
+    const SeenLamps::Shown lamps = prepared->seenLamps.shown(cell.x, cell.y);
     SampleRadiance result =
         PhotonIntegrator(*scene, prepared->lights, prepared->photons.maps(pass), plan.lampSamples)
             .sample({static_cast<float>(place.x), static_cast<float>(place.y)}, ray, sampler,
-                    scratch, lampPaths == 0);
-    if (lampPaths > 0) result.emission += lampsSeen(pass, cell, index, lampPaths, result.rays);
+                    scratch, lamps.paths == 0);
+    if (lamps.paths > 0)
+        result.emission += prepared->seenLamps.sample(lamps, pass, cell, index, result.rays);
     return result;
 }
 
-void FrameRenderer::Impl::renderCell(std::uint32_t pass, const Cell& cell, SampleRun run,
+void FrameRenderer::Impl::renderCell(std::uint32_t pass, const PixelCell& cell, SampleRun run,
                                      float* pixel, NearestPhotons& scratch,
                                      RenderCounters& local) const {
     PixelSums sums;
-    const Sampler cellSampler(settings.seed, streamOf(pass, cell), pixelKey(cell.x, cell.y), 0);
+    const Sampler cellSampler(settings.seed, cell.stream(pass), cell.key(), 0);
     for (std::uint32_t i = 0; i < run.count; ++i) {
         const std::uint32_t index = run.first + i;
         const SampleRadiance s = sample(pass, cell, cellSampler.at(index), index, scratch);
@@ -299,7 +218,7 @@ void FrameRenderer::renderRegion(std::uint32_t pass, const Rect& region,
         for (std::int32_t x = region.x0; x < region.x1; ++x, ++i) {
             if (runs[i].count == 0) continue;
             float* const pixel = pixels.data() + i * channels;
-            Cell cell{x, y, runs[i].isOfGroup};
+            PixelCell cell{x, y, runs[i].isOfGroup};
             if (cell.isGroup) {
                 cell.x = firstOfGroup(x);
                 cell.y = firstOfGroup(y);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <span>
 
@@ -21,9 +22,15 @@ constexpr float kLeastThroughput = 1e-4f;
 // Rays by way of the same lobes that a fit needs, and how far beyond the area it may point, pixels.
 constexpr std::size_t kFewestRays = 5;
 constexpr double kBeyond = 4.0;
-// Newton's method: steps, and the width of its differences, pixels.
+// Newton's method: steps, and the width of its differences, pixels. It is not begun where its first
+// step is longer than so many pixels.
 constexpr int kSteps = 10, kHalvings = 4;
-constexpr double kWidth = 0.02;
+constexpr double kWidth = 0.02, kTooFar = 16.0;
+// Two starts have led to the same image: their places agree so far, pixels.
+constexpr double kSamePlace = 0.1;
+// Starts by way of the same lobes, and how far they are apart, pixels.
+constexpr int kStarts = 4;
+constexpr double kApart = 1.5;
 // Converged: so near to the lamp's centre, over its radius.
 constexpr double kNear = 0.05;
 // Larger images, pixels squared, are met by chance.
@@ -108,10 +115,12 @@ struct Carried {
 // What a ray meets.
 struct Arrival {
     Surface surface;
-    std::optional<Bsdf> bsdf;  // none: nothing is met
+    bool isSurface;
+    std::optional<Bsdf> bsdf;  // of what may have delta lobes
 
-    Arrival(const Scene& scene, const Ray& ray, const Carried& carried) {
-        if (scene.intersect(ray, surface))
+    Arrival(const Scene& scene, const Ray& ray, const Carried& carried)
+        : isSurface(scene.intersect(ray, surface)) {
+        if (isSurface && mayHaveDelta(scene.material(surface.material)))
             bsdf.emplace(scene, surface, -ray.direction, Transport::kRadiance, carried.throughput);
     }
     // The next ray by way of a lobe; false where there is none.
@@ -156,7 +165,8 @@ std::optional<LampImage> converge(const Scene& scene, const Camera& camera, cons
         if (length(*q) < kNear * static_cast<double>(lamp.radius))
             return linear.around(x, y, kWider * static_cast<double>(lamp.radius));
         auto [stepX, stepY] = linear.toLeast();
-        const double far = lengthOf({stepX, stepY}) / kBeyond;
+        const double step = lengthOf({stepX, stepY}), far = step / kBeyond;
+        if (i == 0 && step > kTooFar) break;
         if (far > 1) stepX /= far, stepY /= far;
         std::optional<Vec3d> next;
         for (int halved = 0; halved < kHalvings; ++halved, stepX /= 2, stepY /= 2) {
@@ -169,6 +179,54 @@ std::optional<LampImage> converge(const Scene& scene, const Camera& camera, cons
     }
     return std::nullopt;
 }
+
+double apart(const std::array<double, 2>& a, double x, double y) {
+    return lengthOf({a[0] - x, a[1] - y});
+}
+
+// The ray, of some by way of the same lobes, from where to go to an image of the lamp. First the
+// one nearest to where a fit of all meets the lamp, then those that pass it most closely, at some
+// distance of what was tried or found: there may be too few rays for a fit, or several images on a
+// surface that is bent. nullptr: none is left.
+class Starts {
+  public:
+    Starts(const LampBall& lamp, std::span<const LampRay> same) : m_lamp(lamp), m_same(same) {
+        for (const LampRay& ray : same) {
+            const auto q = offsetFrom(ray.ray, lamp);
+            m_distances.push_back(q ? length(*q) : std::numeric_limits<double>::max());
+        }
+    }
+    const LampRay* byFit(const FrameArea& area) {
+        double x = 0, y = 0;
+        const auto linear = fit(m_same, m_lamp, x, y);
+        if (!linear || linear->isDegenerate()) return nullptr;
+        const auto [stepX, stepY] = linear->toLeast();
+        x += stepX, y += stepY;
+        if (!area.isNear(x, y, kBeyond)) return nullptr;
+        const LampRay& ray = *std::ranges::min_element(m_same, {}, [&](const LampRay& r) {
+            return apart({r.x, r.y}, x, y);
+        });
+        leaveOut(ray.x, ray.y);
+        return &ray;
+    }
+    const LampRay* next() {
+        const auto least = std::ranges::min_element(m_distances);
+        if (*least == std::numeric_limits<double>::max()) return nullptr;
+        const LampRay& ray = m_same[static_cast<std::size_t>(least - m_distances.begin())];
+        leaveOut(ray.x, ray.y);
+        return &ray;
+    }
+    void leaveOut(double x, double y) {
+        for (std::size_t i = 0; i < m_same.size(); ++i)
+            if (apart({m_same[i].x, m_same[i].y}, x, y) < kApart)
+                m_distances[i] = std::numeric_limits<double>::max();
+    }
+
+  private:
+    const LampBall& m_lamp;
+    const std::span<const LampRay> m_same;
+    std::vector<double> m_distances;  // of a line to the lamp's centre; largest: left out
+};
 
 LampBall ballAround(const Scene& scene, const Light& light) {
     if (light.kind == Light::Kind::kSphere) {
@@ -239,21 +297,32 @@ std::vector<LampBall> lampBalls(const Scene& scene) {
     return balls;
 }
 
-void addLampRays(const Scene& scene, const Camera& camera, double x, double y,
-                 std::vector<LampRay>& rays) {
+bool LampImage::isAround(const FrameArea& frame) const {
+    const auto [halfX, halfY] = halfSize();
+    return std::abs(2 * centre[0] - frame.x0 - frame.x1) < frame.x1 - frame.x0 + 2 * halfX &&
+           std::abs(2 * centre[1] - frame.y0 - frame.y1) < frame.y1 - frame.y0 + 2 * halfY;
+}
+
+LampView followLobes(const Scene& scene, const LightSampler& lights, const Camera& camera, double x,
+                     double y, std::vector<LampRay>& rays) {
     struct Branch {
         Ray ray;
         std::uint64_t lobes = 1;
         Carried carried{};
         int count = 0;
     };
+    LampView view{Rgb(0.0f), 0};
     std::vector<Branch> waiting{{camera.ray(x, y)}};
     while (!waiting.empty()) {
         const Branch branch = waiting.back();
         waiting.pop_back();
+        ++view.rays;
         rays.push_back({branch.lobes, x, y, branch.ray});
-        if (branch.count == kMostLobes) continue;
         const Arrival arrival(scene, branch.ray, branch.carried);
+        if (arrival.isSurface && arrival.surface.light != kNoLight)
+            view.radiance += branch.carried.throughput *
+                             lights.emittedRadiance(arrival.surface, -branch.ray.direction);
+        if (branch.count == kMostLobes) continue;
         for (std::size_t i = 0; i < kDeltaLobes.size(); ++i) {
             Branch next{branch.ray, branch.lobes << 2 | i, branch.carried, branch.count + 1};
             if (arrival.follow(kDeltaLobes[i], next.carried, next.ray) &&
@@ -261,33 +330,34 @@ void addLampRays(const Scene& scene, const Camera& camera, double x, double y,
                 waiting.push_back(next);
         }
     }
+    return view;
 }
 
 std::vector<LampImage> findLampImages(const Scene& scene, const Camera& camera,
-                                      const std::vector<LampBall>& lamps, double x0, double x1,
-                                      double y0, double y1, std::vector<LampRay> rays) {
+                                      const std::vector<LampBall>& lamps, const FrameArea& area,
+                                      std::vector<LampRay> rays) {
     std::vector<LampImage> images;
     std::ranges::stable_sort(rays, {}, &LampRay::lobes);
     for (std::size_t first = 0, last = 0; first < rays.size(); first = last) {
         while (last < rays.size() && rays[last].lobes == rays[first].lobes) ++last;
+        const auto same = std::span(rays).subspan(first, last - first);
         for (const LampBall& lamp : lamps) {
-            double x = 0, y = 0;
-            const auto linear = fit(std::span(rays).subspan(first, last - first), lamp, x, y);
-            if (!linear || linear->isDegenerate()) continue;
-            const auto [stepX, stepY] = linear->toLeast();
-            x += stepX, y += stepY;
-            if (!(x > x0 - kBeyond && x < x1 + kBeyond && y > y0 - kBeyond && y < y1 + kBeyond))
-                continue;
-            const auto same = std::span(rays).subspan(first, last - first);
-            const LampRay& nearest = *std::ranges::min_element(same, {}, [&](const LampRay& ray) {
-                return lengthOf({ray.x - x, ray.y - y});
-            });
-            const auto image = converge(scene, camera, lamp, nearest.lobes, nearest.x, nearest.y);
-            if (!image || !(image->area() > 0 && image->area() < kLargest)) continue;
-            const auto [halfX, halfY] = image->halfSize();
-            if (std::abs(2 * image->centre[0] - x0 - x1) < x1 - x0 + 2 * halfX &&
-                std::abs(2 * image->centre[1] - y0 - y1) < y1 - y0 + 2 * halfY)
-                images.push_back(*image);
+            const auto before = images.size();
+            Starts starts(lamp, same);
+            for (int i = 0; i < kStarts; ++i) {
+                const LampRay* const start = i == 0 ? starts.byFit(area) : starts.next();
+                if (!start) continue;
+                const auto image = converge(scene, camera, lamp, start->lobes, start->x, start->y);
+                if (!image) continue;
+                const auto [x, y] = image->centre;
+                starts.leaveOut(x, y);
+                const bool isKnown = std::any_of(
+                    images.begin() + static_cast<std::ptrdiff_t>(before), images.end(),
+                    [&](const LampImage& other) { return apart(other.centre, x, y) < kSamePlace; });
+                if (!isKnown && image->area() > 0 && image->area() < kLargest &&
+                    image->isAround(area))
+                    images.push_back(*image);
+            }
         }
     }
     return images;

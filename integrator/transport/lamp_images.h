@@ -3,14 +3,26 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "integrator/scene/camera.h"
+#include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
+#include "integrator/values/rgb.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
+
+// A rectangle of the frame, pixels.
+struct FrameArea {
+    double x0, y0, x1, y1;
+
+    bool isNear(double x, double y, double distance) const {
+        return x > x0 - distance && x < x1 + distance && y > y0 - distance && y < y1 + distance;
+    }
+};
 
 // A lamp's image, straight or by way of delta lobes, that is no larger than a pixel: a rectangle of
 // the frame around it, pixels. It says where to look, not what is there.
@@ -23,6 +35,8 @@ struct LampImage {
     double area() const;
     // Half the size of the upright rectangle around it.
     std::array<double, 2> halfSize() const;
+    // Whether that rectangle and the area have a part in common.
+    bool isAround(const FrameArea& frame) const;
 };
 
 // A ball around an area light, or around triangles side by side that shine.
@@ -41,16 +55,22 @@ struct LampRay {
     double x, y;          // where the path left the camera, pixels
     Ray ray;
 };
-// All those of the path through a place of the frame, as far as they carry something. Adds to rays.
-void addLampRays(const Scene& scene, const Camera& camera, double x, double y,
-                 std::vector<LampRay>& rays);
+// What the path through a place of the frame shows that follows every delta lobe.
+struct LampView {
+    Rgb radiance;      // of the lamps along it
+    std::size_t rays;  // of the path
+};
+// As far as they carry something. Adds its rays to `rays`.
+LampView followLobes(const Scene& scene, const LightSampler& lights, const Camera& camera, double x,
+                     double y, std::vector<LampRay>& rays);
 
-// Images within [x0, x1] x [y0, y1], pixels, among paths of that area. How far a lamp's ball is
+// Images that reach into an area of the frame, among paths of that area. How far a lamp's ball is
 // from the line of a ray is nearly linear in the ray's place, for rays by way of the same lobes: a
-// fit of it tells where it would be 0, and Newton's method goes there. It may miss images.
+// fit of it tells where it would be 0, and Newton's method goes there; so it does from the ray that
+// passes the ball most closely. It may miss images.
 // Threads: from any.
 std::vector<LampImage> findLampImages(const Scene& scene, const Camera& camera,
-                                      const std::vector<LampBall>& lamps, double x0, double x1,
-                                      double y0, double y1, std::vector<LampRay> rays);
+                                      const std::vector<LampBall>& lamps, const FrameArea& area,
+                                      std::vector<LampRay> rays);
 
 }  // namespace pm

@@ -3,7 +3,9 @@
 #include "integrator/transport/seen_lamps.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -22,6 +24,8 @@ constexpr std::int32_t kPilots = 8;
 constexpr float kBeyond = 1.0f;
 // How far a filter reaches beyond a pixel, at most.
 constexpr double kFilterReach = 1.0;
+// Paths of each camera sample towards each small image of a lamp that its pixel may show.
+constexpr std::uint32_t kPathsOfImage = 16;
 constexpr std::uint64_t kPilotSeed = 0x7365656e6c616d70ull;
 
 // As in PathWalk: only light caught between lossless surfaces comes so far.
@@ -32,100 +36,122 @@ bool isAreaLight(const Light& light) {
     return light.kind == Light::Kind::kTriangle || light.kind == Light::Kind::kSphere;
 }
 
-bool mayHaveDelta(const MaterialDescription& material) {
-    return material.kind != MaterialKind::kSurface || material.transparency > 0.0f ||
-           material.opacityTexture != kNoTexture;
-}
-
 std::int32_t squaresAlong(std::int32_t pixels) {
     return (pixels + SeenLamps::kSquare - 1) / SeenLamps::kSquare;
+}
+
+bool mayShow(const PixelCell& cell, PixelFilter filter, const LampImage& image) {
+    const double reach = filter == PixelFilter::kBox ? 0.0 : kGaussianRadius - 0.5;
+    const auto [halfX, halfY] = image.halfSize();
+    return std::abs(image.centre[0] - cell.x - 0.5) < halfX + 0.5 + reach &&
+           std::abs(image.centre[1] - cell.y - 0.5) < halfY + 0.5 + reach;
 }
 
 }  // namespace
 
 SeenLamps::SeenLamps(const Scene& scene, const LightSampler& lights, const Camera& camera,
-                     std::int32_t width, std::int32_t height)
+                     const RenderSettings& settings)
     : m_scene(scene),
       m_lights(lights),
       m_camera(camera),
-      m_width(width),
-      m_height(height),
-      m_columns(squaresAlong(width)),
+      m_settings(settings),
+      m_columns(squaresAlong(settings.width)),
       m_hasLamps(std::ranges::any_of(scene.lights(), isAreaLight)),
       m_balls(lampBalls(scene)) {
     if (m_hasLamps)
         m_shown = std::make_unique<std::atomic<std::uint8_t>[]>(
-            static_cast<std::size_t>(m_columns) * static_cast<std::size_t>(squaresAlong(height)));
+            static_cast<std::size_t>(m_columns) *
+            static_cast<std::size_t>(squaresAlong(settings.height)));
 }
 
-std::uint32_t SeenLamps::paths(std::int32_t x, std::int32_t y) const {
-    return shownAt(x, y) & kPaths;
-}
-
-std::span<const LampImage> SeenLamps::images(std::int32_t x, std::int32_t y) const {
-    if (!(shownAt(x, y) & kHasImages)) return {};
-    const std::lock_guard lock(m_imagesMutex);
-    return m_images.at({x / kSquare, y / kSquare});
-}
-
-std::uint8_t SeenLamps::shownAt(std::int32_t x, std::int32_t y) const {
-    if (!m_hasLamps || x < 0 || y < 0 || x >= m_width || y >= m_height) return 0;
+SeenLamps::Shown SeenLamps::shown(std::int32_t x, std::int32_t y) const {
+    if (!m_hasLamps || x < 0 || y < 0 || x >= m_settings.width || y >= m_settings.height) return {};
     const std::int32_t column = x / kSquare, row = y / kSquare;
     std::atomic<std::uint8_t>& kept =
         m_shown[static_cast<std::size_t>(row) * static_cast<std::size_t>(m_columns) +
                 static_cast<std::size_t>(column)];
-    std::uint8_t shown = kept.load(std::memory_order_relaxed);
-    if (shown == 0) {
-        shown = look(column, row);
-        kept.store(shown, std::memory_order_relaxed);
+    std::uint8_t known = kept.load(std::memory_order_relaxed);
+    if (known == 0) {
+        // Two threads may both come here: they find the same, and the first one's images stay.
+        Square square = look(column, row);
+        known = static_cast<std::uint8_t>(kKnown | square.paths);
+        if (!square.images.empty()) {
+            known |= kHasImages;
+            const std::lock_guard lock(m_imagesMutex);
+            m_images.try_emplace({column, row}, std::move(square.images));
+        }
+        kept.store(known, std::memory_order_relaxed);
+    }
+    Shown shown{static_cast<std::uint32_t>(known & kPaths)};
+    if (known & kHasImages) {
+        const std::lock_guard lock(m_imagesMutex);
+        shown.images = m_images.at({column, row});
     }
     return shown;
 }
 
-std::uint8_t SeenLamps::look(std::int32_t column, std::int32_t row) const {
-    std::uint32_t paths = pathsFor(column, row);
-    const bool hasImages = findImages(column, row);
-    if (hasImages) paths = kPathsAtLamps;
-    return static_cast<std::uint8_t>(kKnown | paths | (hasImages ? kHasImages : 0));
-}
-
-// Two threads may both come here: they find the same, and the first one's stays.
-bool SeenLamps::findImages(std::int32_t column, std::int32_t row) const {
-    if (m_balls.empty()) return false;
+SeenLamps::Square SeenLamps::look(std::int32_t column, std::int32_t row) const {
     const double x0 = column * kSquare, y0 = row * kSquare;
-    std::vector<LampRay> rays;
-    for (std::int32_t i = 0; i < kSquare * kSquare; ++i)
-        addLampRays(m_scene, m_camera, x0 + i % kSquare + 0.5, y0 + i / kSquare + 0.5, rays);
-    auto images =
-        findLampImages(m_scene, m_camera, m_balls, x0 - kFilterReach, x0 + kSquare + kFilterReach,
-                       y0 - kFilterReach, y0 + kSquare + kFilterReach, std::move(rays));
-    if (images.empty()) return false;
-    const std::lock_guard lock(m_imagesMutex);
-    m_images.try_emplace({column, row}, std::move(images));
-    return true;
-}
-
-std::uint32_t SeenLamps::pathsFor(std::int32_t column, std::int32_t row) const {
-    const std::uint64_t square =
+    const std::uint64_t key =
         static_cast<std::uint64_t>(row) << 32 | static_cast<std::uint32_t>(column);
     constexpr float kStep = (static_cast<float>(kSquare) + 2.0f * kBeyond) / kPilots;
-    std::uint32_t paths = 0;
+    Square square;
+    std::vector<LampRay> rays;
     float least = std::numeric_limits<float>::max(), most = 0.0f;
     for (std::int32_t i = 0; i < kPilots * kPilots; ++i) {
-        Sampler sampler(kPilotSeed, 0, square, static_cast<std::uint32_t>(i));
-        const Vec2f jitter = sampler.next2D();
+        const Vec2f jitter = Sampler(kPilotSeed, 0, key, static_cast<std::uint32_t>(i)).next2D();
         const float x = (static_cast<float>(i % kPilots) + jitter.x) * kStep - kBeyond;
         const float y = (static_cast<float>(i / kPilots) + jitter.y) * kStep - kBeyond;
-        std::uint32_t rays = 0;
-        const Ray ray = m_camera.ray(column * kSquare + static_cast<double>(x),
-                                     row * kSquare + static_cast<double>(y));
-        const float found = maxChannel(along(ray, sampler, rays));
-        least = std::min(least, found);
-        most = std::max(most, found);
-        if (least < kEven * most) return kPathsAtLamps;
-        if (rays > 1) paths = kPathsAtDelta;
+        const LampView view = followLobes(m_scene, m_lights, m_camera, x0 + static_cast<double>(x),
+                                          y0 + static_cast<double>(y), rays);
+        least = std::min(least, maxChannel(view.radiance));
+        most = std::max(most, maxChannel(view.radiance));
+        if (view.rays > 1) square.paths = kPathsAtDelta;
     }
-    return paths;
+    const FrameArea area{x0 - kFilterReach, y0 - kFilterReach, x0 + kSquare + kFilterReach,
+                         y0 + kSquare + kFilterReach};
+    square.images = findLampImages(m_scene, m_camera, m_balls, area, std::move(rays));
+    if (least < kEven * most || !square.images.empty()) square.paths = kPathsAtLamps;
+    return square;
+}
+
+Rgb SeenLamps::sample(const Shown& shown, std::uint32_t pass, const PixelCell& cell,
+                      std::uint32_t index, std::uint32_t& rays) const {
+    const PixelFilter filter = m_settings.filter;
+    std::vector<LampImage> images;
+    // A group is a preview, and twice as wide.
+    if (!cell.isGroup)
+        std::ranges::copy_if(shown.images, std::back_inserter(images),
+                             [&](const LampImage& image) { return mayShow(cell, filter, image); });
+    const Effort effort = images.empty() ? Effort{} : kOfImages;
+    Rgb sum;
+    const auto add = [&](const Place& place, Sampler& sampler) {
+        double weight = 1.0 / shown.paths;
+        if (!images.empty()) {
+            const double density =
+                densityInPixel(filter, place.x - cell.x) * densityInPixel(filter, place.y - cell.y);
+            if (!(density > 0)) return;
+            double all = shown.paths * density;
+            for (const LampImage& image : images)
+                if (image.holds(place.x, place.y)) all += kPathsOfImage / image.area();
+            weight = density / all;
+        }
+        sum += along(m_camera.ray(place.x, place.y), sampler, rays, effort) *
+               static_cast<float>(weight);
+    };
+    const std::uint64_t stream = cell.stream(pass) + 8;
+    for (std::uint32_t i = 0; i < shown.paths; ++i) {
+        Sampler sampler(m_settings.seed, stream, cell.key(), index * shown.paths + i);
+        add(cell.place(filter, sampler.next2D()), sampler);
+    }
+    for (std::size_t k = 0; k < images.size(); ++k)
+        for (std::uint32_t i = 0; i < kPathsOfImage; ++i) {
+            Sampler sampler(m_settings.seed, stream + 8 * (k + 1), cell.key(),
+                            index * kPathsOfImage + i);
+            const auto [x, y] = images[k].at(sampler.next2D());
+            add({x, y}, sampler);
+        }
+    return sum;
 }
 
 Rgb SeenLamps::along(const Ray& ray, Sampler& sampler, std::uint32_t& rays,

@@ -18,6 +18,8 @@
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/lamp_images.h"
+#include "integrator/transport/pixel_cell.h"
+#include "integrator/transport/render_settings.h"
 #include "integrator/values/rgb.h"
 
 namespace pm {
@@ -39,16 +41,27 @@ class SeenLamps {
   public:
     static constexpr std::int32_t kSquare = 8;  // pixels to a side of what has one pilot
 
-    // scene, lights and camera must outlive this. width, height: of the frame, pixels.
+    // What a pixel shows.
+    struct Shown {
+        // Paths for each camera sample. 0: none, the camera sample's own path finds lamps.
+        std::uint32_t paths = 0;
+        // The small images in and around the pixel's square, where there are paths.
+        std::span<const LampImage> images{};
+    };
+
+    // scene, lights and camera must outlive this.
     SeenLamps(const Scene& scene, const LightSampler& lights, const Camera& camera,
-              std::int32_t width, std::int32_t height);
+              const RenderSettings& settings);
 
-    // Paths for each camera sample of a pixel. 0: none, the camera sample's own path finds lamps;
-    // so outside the frame.
-    std::uint32_t paths(std::int32_t x, std::int32_t y) const;
+    // Of pixels outside of the frame nothing is known.
+    Shown shown(std::int32_t x, std::int32_t y) const;
 
-    // The small images in and around the pixel's square, where the pixel has paths.
-    std::span<const LampImage> images(std::int32_t x, std::int32_t y) const;
+    // The lamps' radiance that a camera sample of a cell sees, in sequences of its own: mean over
+    // paths through the filter and, where lamps have small images, towards each of these. By the
+    // balance heuristic (Veach 1997, eq. 9.8) the mean is the same wherever images are looked for.
+    // shown: of the cell, with paths. index: of the sample. Adds the rays to `rays`.
+    Rgb sample(const Shown& shown, std::uint32_t pass, const PixelCell& cell, std::uint32_t index,
+               std::uint32_t& rays) const;
 
     // How far a path is followed: it divides so often, then lobes are chosen; what carries less
     // than this goes on by Russian roulette, and after so many events what carries less than
@@ -83,24 +96,27 @@ class SeenLamps {
         std::size_t count = 0;
         std::size_t divisions = 0;  // so far
     };
-    // What is known of a square: this, the number of paths, and whether there are images.
-    static constexpr std::uint8_t kKnown = 0x40, kHasImages = 0x80, kPaths = 0x3f;
+    // What is known of a square.
+    struct Square {
+        std::uint32_t paths = 0;
+        std::vector<LampImage> images;
+    };
 
     bool step(Branch& branch, Waiting& waiting, Sampler& sampler, Rgb& found) const;
     bool goOn(const Branch& from, const Surface& surface, const Bsdf& bsdf,
               const BsdfSample& sample, const Effort& effort, Sampler& sampler, Branch& next) const;
-    std::uint8_t shownAt(std::int32_t x, std::int32_t y) const;
-    std::uint8_t look(std::int32_t column, std::int32_t row) const;
-    std::uint32_t pathsFor(std::int32_t column, std::int32_t row) const;
-    bool findImages(std::int32_t column, std::int32_t row) const;
+    Square look(std::int32_t column, std::int32_t row) const;
 
     const Scene& m_scene;
     const LightSampler& m_lights;
     const Camera& m_camera;
-    std::int32_t m_width, m_height, m_columns;
-    bool m_hasLamps;
-    std::vector<LampBall> m_balls;
-    std::unique_ptr<std::atomic<std::uint8_t>[]> m_shown;  // of each square
+    const RenderSettings m_settings;
+    const std::int32_t m_columns;
+    const bool m_hasLamps;
+    const std::vector<LampBall> m_balls;
+    // Of each square kKnown and its number of paths once it was looked at, kHasImages as well.
+    static constexpr std::uint8_t kKnown = 0x40, kHasImages = 0x80, kPaths = 0x3f;
+    std::unique_ptr<std::atomic<std::uint8_t>[]> m_shown;
     // By column and row, of the squares that have some.
     mutable std::mutex m_imagesMutex;
     mutable std::map<std::pair<std::int32_t, std::int32_t>, std::vector<LampImage>> m_images;

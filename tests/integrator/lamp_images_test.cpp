@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -54,12 +55,12 @@ TEST(LampImages, AreFoundWhereTheyAre) {
     const auto scene = lampAndMirror().build();
     const Camera camera(*scene, kSize, kSize);
     const LightSampler lights(*scene);
-    const SeenLamps lamps(*scene, lights, camera, kSize, kSize);
+    const SeenLamps lamps(*scene, lights, camera, {.width = kSize, .height = kSize});
     for (const auto& [shown, radiance] :
          {std::pair{kStraight, kShine}, std::pair{kMirrored, kReflected * kShine}}) {
         int found = 0;
         for (const LampImage& image :
-             lamps.images(static_cast<int>(shown.x), static_cast<int>(shown.y))) {
+             lamps.shown(static_cast<int>(shown.x), static_cast<int>(shown.y)).images) {
             if (std::hypot(image.centre[0] - shown.x, image.centre[1] - shown.y) > 0.02) continue;
             ++found;
             // The rectangle around an ellipse.
@@ -72,6 +73,36 @@ TEST(LampImages, AreFoundWhereTheyAre) {
         }
         EXPECT_EQ(found, 1);
     }
+}
+
+// A glass ball shows a small lamp many times, some by way of the same lobes: nearly all places of a
+// fine lattice that show it are in the images of their squares.
+TEST(LampImages, AreFoundInGlass) {
+    SceneMaker maker;
+    maker.sphere({0, 0, -3}, 1.0, maker.material(glass()));
+    for (const Vec3d& place : {Vec3d(-0.5, 0.7, -6), Vec3d(2, 1, -3.5), Vec3d(-1, -1.5, -1)})
+        maker.sphere(place, 0.03, maker.diffuse({}, Rgb(kShine)));
+    maker.camera({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, kFov);
+    const auto scene = maker.build();
+    const Camera camera(*scene, kSize, kSize);
+    const LightSampler lights(*scene);
+    const SeenLamps lamps(*scene, lights, camera, {.width = kSize, .height = kSize});
+    constexpr int kFine = 16;  // places along a pixel
+    std::vector<LampRay> rays;
+    int shown = 0, found = 0;
+    for (int y = 0; y < kSize * kFine; ++y)
+        for (int x = 0; x < kSize * kFine; ++x) {
+            const double atX = (x + 0.5) / kFine, atY = (y + 0.5) / kFine;
+            rays.clear();
+            if (isBlack(followLobes(*scene, lights, camera, atX, atY, rays).radiance)) continue;
+            ++shown;
+            const SeenLamps::Shown square = lamps.shown(x / kFine, y / kFine);
+            found += std::ranges::any_of(
+                square.images, [&](const LampImage& image) { return image.holds(atX, atY); });
+        }
+    fmt::print("    {} of {} places\n", found, shown);
+    EXPECT_GT(shown, 100);
+    EXPECT_GT(found, 0.97 * shown);
 }
 
 // By box and by Gaussian filter: over the pixels around, all that the image sends, and in each

@@ -28,7 +28,7 @@ struct View {
         : scene(maker.build()),
           camera(*scene, kSize, kSize),
           lights(*scene),
-          lamps(*scene, lights, camera, kSize, kSize) {}
+          lamps(*scene, lights, camera, {.width = kSize, .height = kSize}) {}
 
     Ray ray(Sampler& sampler) const {
         const Vec2f place = sampler.next2D();
@@ -103,17 +103,17 @@ TEST(SeenLamps, PathsWhereLampsOrDeltaLobesAreSeen) {
     maker.quad({-0.9, 0.8, -0.9}, {0.3, 0, 0}, {0, 0, 0.3}, maker.diffuse({}, Rgb(5.0f)));
     maker.camera({0, 0, 3.9}, {0, 0, 0}, {0, 1, 0}, 37);
     const View view(maker);
-    const std::uint32_t atMirror = view.lamps.paths(kSize / 2 - 1, kSize * 11 / 16);
-    const std::uint32_t atLamp = view.lamps.paths(kSize * 5 / 16, kSize * 5 / 16);
+    const std::uint32_t atMirror = view.lamps.shown(kSize / 2 - 1, kSize * 11 / 16).paths;
+    const std::uint32_t atLamp = view.lamps.shown(kSize * 5 / 16, kSize * 5 / 16).paths;
     EXPECT_GT(atMirror, 0u);
     EXPECT_GT(atLamp, 1u);
-    EXPECT_EQ(view.lamps.paths(kSize - 10, kSize / 2), 0u);
-    EXPECT_EQ(view.lamps.paths(-1, 0), 0u);
-    EXPECT_EQ(view.lamps.paths(0, kSize), 0u);
+    EXPECT_EQ(view.lamps.shown(kSize - 10, kSize / 2).paths, 0u);
+    EXPECT_EQ(view.lamps.shown(-1, 0).paths, 0u);
+    EXPECT_EQ(view.lamps.shown(0, kSize).paths, 0u);
     SceneMaker dark = openRoom();
     dark.sphere({0, 0, 0}, 0.4, dark.material(mirror()));
     dark.camera({0, 0, 3.9}, {0, 0, 0}, {0, 1, 0}, 37);
-    EXPECT_EQ(View(dark).lamps.paths(kSize / 2, kSize / 2), 0u);
+    EXPECT_EQ(View(dark).lamps.shown(kSize / 2, kSize / 2).paths, 0u);
 }
 
 // A lamp seen straight, in a mirror and in glass, is found once: by the camera's path or by paths
