@@ -3,6 +3,7 @@
 #include "scheduler/atom_noise.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "scheduler/frame_error.h"
 
@@ -12,6 +13,10 @@ namespace {
 constexpr std::size_t kSide = kAtomSizePixels;
 // The least that low-discrepancy sequences are believed to leave of a variance.
 constexpr double kLeastOfSequence = 0.02;
+// What n samples have missed: of an edge of contrast D this share of D^2 over n (where it lies the
+// pixel's own square is by so much of D^2 larger than it looks), and this share over n of the
+// variance that the neighbours show.
+constexpr double kShareOfEdge = 0.04, kSquareOfEdge = 0.1, kShareOfNeighbours = 0.015;
 
 // Calls visit with each pixel of the 3 x 3 around this one that lies in the atom.
 template <typename Visit>
@@ -26,6 +31,12 @@ void addTo(SeenSamples& sum, const SeenSamples& seen) {
     sum.samples += seen.samples;
     for (std::size_t c = 0; c < 3; ++c) sum.sums[c] += seen.sums[c];
     sum.square += seen.square;
+}
+
+// Whether it has pixels of the atom on all sides.
+bool isWithin(std::size_t pixel) {
+    const std::size_t x = pixel % kSide, y = pixel / kSide;
+    return x > 0 && x + 1 < kSide && y > 0 && y + 1 < kSide;
 }
 
 std::size_t colourOf(std::size_t pixel) {
@@ -44,11 +55,19 @@ double relativeVariance(const SeenSamples& seen) {
 }
 
 AtomNoise::AtomNoise(std::span<const SeenSamples, kAtomPixels> seen) : m_seen(seen) {
-    const Values bendOf = bends();
     for (std::size_t i = 0; i < kAtomPixels; ++i) {
+        m_scales[i] = 3 * kRelMseOffset;
+        for (std::size_t c = 0; c < 3; ++c) {
+            m_means[i][c] = seen[i].sums[c] / seen[i].samples;
+            m_scales[i] += m_means[i][c] * m_means[i][c];
+        }
         m_ofOwn[i] = m_variance[i] = relativeVariance(seen[i]);
-        for (Together* const to : {&m_all, &m_ofColour[colourOf(i)]})
-            to->add(seen[i].samples, m_ofOwn[i], bendOf[i]);
+    }
+    for (std::size_t i = 0; i < kAtomPixels; ++i) {
+        for (Together* const to : {&m_all, &m_ofColour[colourOf(i)]}) {
+            to->add(seen[i].samples, m_ofOwn[i]);
+            if (isWithin(i)) to->addBend(m_ofOwn[i], bend(i), m_scales[i]);
+        }
         if (seen[i].samples > 1) continue;
         SeenSamples about;
         visitAround(i, [&](std::size_t at) { addTo(about, seen[at]); });
@@ -59,52 +78,86 @@ AtomNoise::AtomNoise(std::span<const SeenSamples, kAtomPixels> seen) : m_seen(se
 
 // Half of it what the pixels around show by themselves, half by what they differ from each other,
 // since an edge between two pixels mostly cuts one of them.
-AtomNoise::Expected AtomNoise::around(std::size_t pixel) const {
+double AtomNoise::around(std::size_t pixel, bool withIt) const {
+    const Values& variances = withIt ? m_variance : m_ofOwn;
     SeenSamples together;
-    double sum = 0, sumOfOwn = 0, count = 0;
+    double sum = 0, count = 0;
     visitAround(pixel, [&](std::size_t at) {
-        if (at == pixel) return;
+        if (at == pixel && !withIt) return;
         addTo(together, m_seen[at]);
-        sum += m_variance[at];
-        sumOfOwn += m_ofOwn[at];
+        sum += variances[at];
         ++count;
     });
-    const double byOthers = (sumOfOwn / count + relativeVariance(together)) / 2;
-    addTo(together, m_seen[pixel]);
-    sum += m_variance[pixel];
-    return {(sum / (count + 1) + relativeVariance(together)) / 2, byOthers};
+    return (sum / count + relativeVariance(together)) / 2;
 }
 
-// Of each pixel that is not at the atom's border, the square of how much its mean differs from the
-// middle of two others on either side, which knows no gradient: relative, as the variance of one
-// mean. Both ways over corners, where the fields of a chessboard are of one colour.
-AtomNoise::Values AtomNoise::bends() const {
-    std::array<std::array<double, 3>, kAtomPixels> means;
-    for (std::size_t i = 0; i < kAtomPixels; ++i)
-        for (std::size_t c = 0; c < 3; ++c) means[i][c] = m_seen[i].sums[c] / m_seen[i].samples;
-    Values squares{};
-    for (std::size_t i = kSide; i < kAtomPixels - kSide; ++i) {
-        if (i % kSide == 0 || i % kSide + 1 == kSide) continue;
-        double square = 0, ofMean = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double twice = 2 * means[i][c];
-            const double falling = means[i - kSide - 1][c] - twice + means[i + kSide + 1][c];
-            const double rising = means[i - kSide + 1][c] - twice + means[i + kSide - 1][c];
-            square += (falling * falling + rising * rising) / 2;
-            ofMean += means[i][c] * means[i][c];
-        }
-        // Such a difference has six times the variance of one mean.
-        squares[i] = square / 6 / (ofMean + 3 * kRelMseOffset);
+// The square of how much the pixel's mean differs from the middle of two others on either side,
+// which knows no gradient: as the variance of one mean; of pixels within the atom. Both ways over
+// corners, where the fields of a chessboard are of one colour.
+double AtomNoise::bend(std::size_t pixel) const {
+    double square = 0;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const auto from = [&](std::size_t apart) {
+            return m_means[pixel - apart][c] - 2 * m_means[pixel][c] + m_means[pixel + apart][c];
+        };
+        square += (from(kSide + 1) * from(kSide + 1) + from(kSide - 1) * from(kSide - 1)) / 2;
     }
-    return squares;
+    // Such a difference has six times the variance of one mean.
+    return square / 6;
 }
 
-void AtomNoise::Together::add(double samples, double variance, double bend) {
+double AtomNoise::apart(std::size_t a, std::size_t b) const {
+    double square = 0;
+    for (std::size_t c = 0; c < 3; ++c)
+        square += (m_means[a][c] - m_means[b][c]) * (m_means[a][c] - m_means[b][c]);
+    return std::sqrt(square);
+}
+
+// An edge lies about where means of neighbours differ by more than they do from the next pixels on
+// either side: less where a sample has met it, and not at all in a gradient.
+double AtomNoise::contrast(std::size_t pixel) const {
+    double most = 0;
+    for (const std::size_t stride : {std::size_t{1}, kSide}) {
+        // The pixel's place along the row, then along the column, and where that begins.
+        const std::size_t place = pixel / stride % kSide, first = pixel - place * stride;
+        const auto step = [&](std::size_t at) {
+            return at + 1 < kSide ? apart(first + at * stride, first + (at + 1) * stride) : 0.0;
+        };
+        const auto beside = [&](std::size_t at) {  // an edge between that pixel and the next
+            const double before = at > 0 ? step(at - 1) : 0;
+            return step(at) - std::max(before, step(at + 1));
+        };
+        most = std::max(most, beside(place));
+        if (place > 0) most = std::max(most, beside(place - 1));
+    }
+    return most;
+}
+
+double AtomNoise::missed(std::size_t pixel) const {
+    double ofNeighbours = 0, count = 0;
+    visitAround(pixel, [&](std::size_t at) {
+        if (at == pixel) return;
+        ofNeighbours += m_ofOwn[at] * m_scales[at];
+        ++count;
+    });
+    const double step = contrast(pixel), square = step * step, scale = m_scales[pixel];
+    const double ofEdge = square / (scale + kSquareOfEdge * square);
+    return (kShareOfEdge * ofEdge + kShareOfNeighbours * ofNeighbours / count / scale) /
+           m_seen[pixel].samples;
+}
+
+void AtomNoise::Together::add(double samples, double variance) {
     ++m_count;
     m_samples += samples;
     m_mean += variance;
     m_squares += variance * variance;
-    m_bends += bend;
+}
+
+void AtomNoise::Together::addBend(double variance, double bend, double scale) {
+    m_within += variance;
+    m_bends += bend / scale;
+    m_absoluteWithin += variance * scale;
+    m_absoluteBends += bend;
 }
 
 void AtomNoise::Together::finish() {
@@ -114,29 +167,26 @@ void AtomNoise::Together::finish() {
     // Of n normal numbers the estimates of a variance v vary by 2 v^2 / (n - 1).
     const double ofNoise = 2 / (samples - 1) * square, apart = m_squares / m_count - square;
     m_believed = apart > ofNoise ? 1 - ofNoise / apart : 0;
-    // Only the pixels within have a bend.
-    constexpr double kWithin = static_cast<double>((kSide - 2) * (kSide - 2)) / kAtomPixels;
-    const double ofMeans = m_bends / (m_count * kWithin);
-    const double left = std::min(1.0, samples * ofMeans / m_mean);
+    // Where all noise lies at the atom's border bends tell nothing.
+    if (!(m_within > 0)) return;
+    const double left = std::min(1.0, samples * m_bends / m_within);
     // Squared: of more samples it cures all the more.
     m_ofSequence = std::max(kLeastOfSequence, left * left);
-}
-
-double AtomNoise::pooled(std::size_t pixel, double around, double neighbours) const {
-    const double own = m_seen[pixel].samples;
-    return (own * m_variance[pixel] + neighbours * around) / (own + neighbours);
+    // Where means differ no more than samples of one mean would, nothing else says that pixels are
+    // unlike: it may be light that few of them have met.
+    m_believed *= std::clamp(samples * m_absoluteBends / m_absoluteWithin - 1, 0.0, 1.0);
 }
 
 double AtomNoise::ofPixel(std::size_t pixel, double neighbours) const {
-    return pooled(pixel, around(pixel).byAll, neighbours);
+    const double own = m_seen[pixel].samples;
+    return (own * m_variance[pixel] + neighbours * around(pixel, true)) / (own + neighbours);
 }
 
-AtomNoise::Expected AtomNoise::evened(std::size_t pixel, double neighbours) const {
+AtomNoise::Expected AtomNoise::evened(std::size_t pixel) const {
     const Together& others = m_ofColour[1 - colourOf(pixel)];
     if (m_all.isEven() && others.isEven()) return {m_all.expected(0), others.expected(0)};
-    const Expected about = around(pixel);
-    return {m_all.expected(pooled(pixel, about.byAll, neighbours)),
-            others.expected(about.byOthers)};
+    return {m_all.expected(m_variance[pixel] + missed(pixel)),
+            others.expected(around(pixel, false))};
 }
 
 }  // namespace pm

@@ -36,13 +36,16 @@ class AtomNoise {
         double byOthers = 0;  // by other pixels alone: nothing that this one has seen has a part
     };
 
-    // The same, where passes share no noise. What the pixel differs by from all of the atom counts
-    // only as far as pixels differ more than by the noise of few samples (as James and Stein's
-    // estimator does, taking that for normal noise): even noise comes out even. And it is lowered
-    // by how much less than variance / n the means of n samples differ between pixels, beside
-    // gradients: what low-discrepancy sequences cure. By others: in place of all of the atom, the
-    // fields of the other colour of a chessboard.
-    Expected evened(std::size_t pixel, double neighbours) const;
+    // The same, where passes share no noise; by all: of its own samples and of an edge that they
+    // may have missed, as far as the means of its neighbours tell of one. What the pixel differs by
+    // from all of the atom counts only as far as pixels differ more than by the noise of few
+    // samples (as James and Stein's estimator does, taking that for normal noise), and as their
+    // means differ more than such samples would make them: even noise comes out even, also light
+    // that few have met. And it is lowered by how much less than variance / n the means of n
+    // samples differ between pixels, beside gradients: what low-discrepancy sequences cure.
+    // By others: by the pixels around, and in place of all of the atom the fields of the other
+    // colour of a chessboard.
+    Expected evened(std::size_t pixel) const;
 
   private:
     using Values = std::array<double, kAtomPixels>;
@@ -50,7 +53,9 @@ class AtomNoise {
     // What pixels show together of their variances.
     class Together {
       public:
-        void add(double samples, double variance, double bend);
+        void add(double samples, double variance);
+        // Of a pixel within; scale: what its relative variance is over.
+        void addBend(double variance, double bend, double scale);
         void finish();
         // Of every pixel the same is expected.
         bool isEven() const { return m_believed == 0; }
@@ -59,17 +64,23 @@ class AtomNoise {
         }
 
       private:
-        double m_count = 0, m_samples = 0, m_squares = 0, m_bends = 0;
+        double m_count = 0, m_samples = 0, m_squares = 0;
+        // Sums of variances and of bends, relative and not.
+        double m_within = 0, m_bends = 0, m_absoluteWithin = 0, m_absoluteBends = 0;
         double m_mean = 0;        // of variances
         double m_believed = 1;    // of what one differs from the mean by
         double m_ofSequence = 1;  // what low-discrepancy sequences leave of a variance
     };
 
-    Expected around(std::size_t pixel) const;
-    double pooled(std::size_t pixel, double around, double neighbours) const;
-    Values bends() const;
+    double around(std::size_t pixel, bool withIt) const;
+    double bend(std::size_t pixel) const;
+    double apart(std::size_t a, std::size_t b) const;  // their means
+    double contrast(std::size_t pixel) const;          // of an edge that may lie in it
+    double missed(std::size_t pixel) const;            // relative variance
 
     std::span<const SeenSamples, kAtomPixels> m_seen;
+    std::array<std::array<double, 3>, kAtomPixels> m_means{};
+    Values m_scales{};    // sum over the channels of r^2 + 0.01
     Values m_ofOwn{};     // variances of the pixels' samples
     Values m_variance{};  // the same, or of what is around where one sample has no spread
     Together m_all;

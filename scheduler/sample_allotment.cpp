@@ -21,7 +21,7 @@ constexpr double kFiner = 2;
 constexpr double kSamplesOfReference = 16;
 // What the neighbours met may be here, too, and not have been met yet: they count as so many
 // samples of the pixel's own.
-constexpr double kSamplesOfNeighbours = 3, kSamplesOfNeighboursAlone = 0.5;
+constexpr double kSamplesOfNeighbours = 3;
 // In four passes; see isDivided().
 constexpr double kSamplesThatDivide = 16;
 // More than the least gets who wants more than so many times the least: samples that are all alike
@@ -29,10 +29,13 @@ constexpr double kSamplesThatDivide = 16;
 constexpr double kBeyondLeast = 1.7;
 // A pass makes up for what earlier ones lacked by at most so many times what is allotted.
 constexpr double kMostMadeUp = 2;
+// Samples of the second pass where nothing is shared: the first has seen little, and where all is
+// noisy one much larger pass is as good as none before.
+constexpr std::uint32_t kMostOfSecond = 16;
 
 // Where the samples of a pass share no noise: what the threshold is divided by.
 double finerAlone(std::uint32_t passes) {
-    return passes < 2 ? 3 : passes < 4 ? 12 : 24;
+    return passes < 2 ? 3 : passes < 4 ? 11 : 24;
 }
 
 // Where nothing is shared the error of N samples of a low-discrepancy sequence falls like N^-p,
@@ -101,7 +104,8 @@ std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes, doub
     inPass = kReference * toThreeQuarters(finerAlone(passes) * inPass / kReference);
     const bool isMore = inPass > kBeyondLeast * rule.least;
     const std::uint32_t step = isMore ? nearestStep(inPass, rule.most) : rule.least;
-    return static_cast<std::uint16_t>(std::clamp(step, rule.least, rule.most));
+    const std::uint32_t most = passes < 2 ? std::min(kMostOfSecond, rule.most) : rule.most;
+    return static_cast<std::uint16_t>(std::max(rule.least, std::min(step, most)));
 }
 
 double madeUp(const SampleRule& rule, std::uint32_t pass, double had, double allotted) {
@@ -120,7 +124,7 @@ void allotSamples(const SampleRule& rule, std::uint32_t passes,
             samples[i] = samplesOfSpread(rule, passes, std::sqrt(variance));
             continue;
         }
-        const auto [byAll, byOthers] = noise.evened(i, kSamplesOfNeighboursAlone);
+        const auto [byAll, byOthers] = noise.evened(i);
         samples[i] = samplesOfSpread(rule, passes, std::sqrt(byAll));
         if (!weights.empty()) weights[i] = samplesOfSpread(rule, passes, std::sqrt(byOthers));
     }

@@ -30,11 +30,15 @@ namespace pm {
 // That is so where the samples of a pass share noise, such as that of its photons: more samples
 // don't lower it, more passes do. Where they share none (isAlone) a pixel's passes are as good as
 // one, and all that counts is how many samples a pixel has beside others. So there
-// - the threshold T falls: a third of it for the second pass, a twelfth for the third and fourth, a
-//   24th after; N = 16 (s / (16 T))^(3/4), as the squared error falls like N^(-5/3), not like 1/N;
+// - the threshold T falls: a third of it for the second pass, an eleventh for the third and fourth,
+//   a 24th after; N = 16 (s / (16 T))^(3/4), as the squared error falls like N^(-5/3), not like
+//   1/N; a second pass has at most 16 samples;
 // - noise that is even gets samples that are even: few samples tell little of one pixel's spread,
 //   but much of the spread of an atom's 64. What a pixel differs by from them counts only as far as
-//   the pixels differ more than normal noise would make them (AtomNoise);
+//   the pixels differ more than normal noise would make them, and as their means differ more than
+//   their samples explain (AtomNoise);
+// - where neighbours' means step an edge may lie that the samples have missed: the pixel's variance
+//   is taken to be larger;
 // - s^2 is lowered by how much less than s^2 / N the means of N samples vary between pixels: a
 //   low-discrepancy sequence cures smooth light by itself;
 // - there are steps between the powers of two, 3/2 of them, and the passes of a half make up for

@@ -86,7 +86,16 @@ RenderRun::~RenderRun() {
     api().destroyRender(m_handle);
 }
 
+// The option that a setting came from, before what is wrong with it.
+std::string RenderRun::withOption(const std::string& text) const {
+    for (const GivenSetting& setting : m_given)
+        if (!setting.option.empty() && text.starts_with("setting " + setting.name + " "))
+            return setting.option + ": " + text;
+    return text;
+}
+
 void RenderRun::apply(const GivenSetting& setting) {
+    m_given.push_back(setting);
     if (api().setSettingText(m_handle, setting.name.c_str(), setting.value.c_str()) == PMR_OK) {
         return;
     }
@@ -151,7 +160,8 @@ PmrStatus RenderRun::run() {
     constexpr double kPollSeconds = 0.05;
     // What is wrong with the settings together is wrong with the command line.
     const PmrStatus started = api().startRender(m_handle);
-    if (started == PMR_ERROR_ARGUMENT) throw HostError(ExitCode::kUsage, m_context.lastError());
+    if (started == PMR_ERROR_ARGUMENT)
+        throw HostError(ExitCode::kUsage, withOption(m_context.lastError()));
     const bool tooLarge = started == PMR_ERROR_MEMORY && !m_whyFrame.empty();
     m_context.check(started, tooLarge ? m_whyFrame : "render");
     while (!m_finished) {

@@ -11,6 +11,7 @@
 
 #include <exception>
 #include <string>
+#include <vector>
 
 namespace pm::host {
 
@@ -58,6 +59,7 @@ class RenderRun : public PictureSource {
 
   private:
     void apply(const GivenSetting& setting);
+    std::string withOption(const std::string& text) const;
     static void onMessage(void* user, PmrRender, int32_t level, int32_t code, const char* text);
     static void onProgress(void* user, PmrRender, double fraction, double remainingSeconds);
     static void onBucketStarted(void* user, PmrRender, const PmrBucketInfo* bucket);
@@ -69,6 +71,7 @@ class RenderRun : public PictureSource {
     Progress& m_progress;
     BucketTimes* m_bucketTimes;
     BucketTaker* m_taker{};
+    std::vector<GivenSetting> m_given;
     std::exception_ptr m_failure;  // of the taker
     std::string m_whyFrame;
     PmrRender m_handle{};

@@ -6,6 +6,7 @@
 #include "host_shim/cli/option_table.h"
 #include "host_shim/cli/option_values.h"
 #include "host_shim/cli/piece_options.h"
+#include "host_shim/ingest/text_lines.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -31,6 +32,23 @@ Value chosen(const std::string& option, const std::string& text, Value standard,
                     fmt::format("{} '{}': allowed are {}", option, text, allowed));
 }
 
+// Beyond the frame there is nothing to look at, unless a crop asks for it.
+void checkOnlyPixel(const Options& options) {
+    if (!options.onlyPixel) return;
+    const auto [x, y] = *options.onlyPixel;
+    const auto isIn = [x = x, y = y](const PixelRect& r) {
+        return x >= r.x0 && x < r.x1 && y >= r.y0 && y < r.y1;
+    };
+    if (isIn({0, 0, options.width, options.height}) || (options.crop && isIn(*options.crop)))
+        return;
+    throw HostError(
+        ExitCode::kUsage,
+        fmt::format(
+            "--only-pixel '{},{}': is outside the picture; X from 0 to {} and Y from 0 to {} "
+            "are wanted, or a --crop that holds it",
+            x, y, options.width - 1, options.height - 1));
+}
+
 void readCamera(const Typed& typed, Options& options) {
     if (!typed.size.empty()) {
         const auto size = sizeValue("--size", typed.size);
@@ -49,20 +67,25 @@ void readCamera(const Typed& typed, Options& options) {
     }
     if (!typed.onlyPixel.empty()) options.onlyPixel = pixelValue("--only-pixel", typed.onlyPixel);
     if (!typed.crop.empty()) options.crop = cropValue("--crop", typed.crop);
+    checkOnlyPixel(options);
 }
 
 // N is N:N, a level for all pixels.
 void readAntiAliasing(const std::string& text, Options& options) {
     const auto colon = text.find(':');
-    const auto least = integerValue("--aa", text.substr(0, colon), 0, 6);
-    const auto most =
-        colon == std::string::npos ? least : integerValue("--aa", text.substr(colon + 1), 0, 6);
-    if (least > most) {
-        throw HostError(
-            ExitCode::kUsage,
-            fmt::format("--aa '{}': MIN is above MAX; MIN:MAX with 0 <= MIN <= MAX <= 6 is wanted",
-                        text));
-    }
+    const auto refuse = [&text](const char* what) {
+        throw HostError(ExitCode::kUsage,
+                        fmt::format("--aa '{}': {}N or MIN:MAX with 0 <= MIN <= MAX <= 6 is wanted",
+                                    text, what));
+    };
+    const auto level = [&](const std::string& part) {
+        std::int64_t value = 0;
+        if (!parseInteger(part, value) || value < 0 || value > 6) refuse("");
+        return value;
+    };
+    const auto least = level(text.substr(0, colon));
+    const auto most = colon == std::string::npos ? least : level(text.substr(colon + 1));
+    if (least > most) refuse("MIN is above MAX; ");
     options.settings.push_back({"--aa", "aaLevel", std::to_string(least)});
     options.settings.push_back({"--aa", "aaLevelMost", std::to_string(most)});
 }

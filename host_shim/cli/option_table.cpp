@@ -29,9 +29,15 @@ constexpr std::array<SettingOption, 17> kSettingOptions{{
     {"--memory-limit", "memoryLimitGib", "GIB"},
 }};
 
+// What is wrong with a value: an empty one, of a script's variable perhaps, is not the same as
+// none.
+std::string emptiness(const std::string& text) {
+    return text.empty() ? "its value is empty" : "";
+}
+
 void addText(CLI::App& app, const std::string& name, std::string& target,
              const std::string& placeholder, const std::string& help) {
-    app.add_option(name, target, help)->type_name(placeholder)->take_last();
+    app.add_option(name, target, help)->type_name(placeholder)->take_last()->check(emptiness);
 }
 
 void addOutputOptions(CLI::App& app, Typed& typed, Options& options) {
@@ -105,19 +111,24 @@ void addColourOptions(CLI::App& app, Typed& typed, Options& options) {
 
 void addReportOptions(CLI::App& app, Typed& typed, Options& options) {
     app.add_option("--reference", options.reference, "EXR to report relMSE against")
-        ->type_name("FILE");
+        ->type_name("FILE")
+        ->check(emptiness);
     addText(app, "--error-limit", typed.errorLimit, "X",
             "exit 6 when the relMSE against --reference is above, or a value is not finite");
     addText(app, "--stats", options.statistics, "FILE", "statistics as JSON; - = standard output");
-    app.add_option("--log", options.log, "all messages, also to a file")->type_name("FILE");
+    app.add_option("--log", options.log, "all messages, also to a file")
+        ->type_name("FILE")
+        ->check(emptiness);
     app.add_option("--report", options.report,
                    "a page to look at: status, picture, error, time of the buckets")
-        ->type_name("FILE.html");
+        ->type_name("FILE.html")
+        ->check(emptiness);
     app.add_flag("-q,--quiet", options.quiet, "only warnings and errors");
     app.add_flag("-v,--verbose", options.verbose, "more messages");
     app.add_option("--plugin", options.plugin,
                    "the library (else $PM_PLUGIN_PATH, else beside pm_host)")
-        ->type_name("FILE");
+        ->type_name("FILE")
+        ->check(emptiness);
     app.add_flag("-h,--help", options.help, "print and stop");
 }
 

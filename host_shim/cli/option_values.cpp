@@ -105,7 +105,8 @@ std::array<double, 3> pointValue(const std::string& option, std::string_view tex
 }
 
 std::array<std::int32_t, 2> sizeValue(const std::string& option, std::string_view text) {
-    return pixels<2>(option, text, 'x', 1, "WIDTHxHEIGHT in pixels is wanted, such as 640x480");
+    return pixels<2>(option, text, 'x', 1,
+                     "WIDTHxHEIGHT in whole pixels above 0 is wanted, such as 640x480");
 }
 
 std::array<std::int32_t, 2> pixelValue(const std::string& option, std::string_view text) {

@@ -11,6 +11,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 
 namespace pm::host {
 namespace {
@@ -63,11 +64,12 @@ MaterialLibrary loadMaterials(const ObjText& text, const std::string& fileName,
                               const fs::path& folder, const WarningSink& warn) {
     MaterialLibrary library;
     std::map<std::string, MaterialData> found;
+    const std::set<std::string> used(text.materialNames.begin(), text.materialNames.end());
     for (const std::string& argument : text.materialFiles) {
         for (const fs::path& file : libraryFiles(argument, folder)) {
             try {
-                found.merge(
-                    readMaterials(readWholeFile(file), file.string(), file.parent_path(), warn));
+                found.merge(readMaterials(readWholeFile(file), file.string(), file.parent_path(),
+                                          warn, &used));
                 library.files.push_back(file.string());
             } catch (const HostError& error) {
                 warn(Warning::kMaterialFile,

@@ -302,9 +302,11 @@ MaterialData defaultMaterial(const std::string& name) {
 std::map<std::string, MaterialData> readMaterials(std::string_view mtlText,
                                                   const std::string& fileName,
                                                   const std::filesystem::path& folder,
-                                                  const WarningSink& warn) {
+                                                  const WarningSink& warn,
+                                                  const std::set<std::string>* used) {
     std::map<std::string, MaterialData> materials;
     for (const MtlSection& section : readMtlText(mtlText)) {
+        if (used && !used->contains(section.name)) continue;
         if (materials.contains(section.name)) {
             warn(Warning::kMaterialValue,
                  fmt::format("{}:{}: material {} is defined twice; the first counts", fileName,

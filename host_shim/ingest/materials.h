@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -16,15 +17,17 @@ namespace pm::host {
 // The material of faces that name none, or one that no library has: grey, Kd 0.8.
 MaterialData defaultMaterial(const std::string& name);
 
-// All materials of an MTL text, by name; of two with the same name the first counts. What can't be
+// The materials of an MTL text, by name; of two with the same name the first counts. What can't be
 // rendered, is out of range or is not understood is warned of as "FILE:LINE: material NAME: ...".
 // Meaning: illum 3 with Ks is a mirror (Ns, when given, its roughness), illum 5 a mirror with
 // Fresnel, illum 4, 6, 7 or d below 1 with an Ni a dielectric tinted by Tf, d below 1 without Ni
 // lets light straight through, all else is diffuse plus a glossy lobe of exponent Ns.
-// folder is where picture names begin.
+// folder is where picture names begin. used: names of all that count, the others are passed over,
+// whatever is wrong with them; null: all count.
 std::map<std::string, MaterialData> readMaterials(std::string_view mtlText,
                                                   const std::string& fileName,
                                                   const std::filesystem::path& folder,
-                                                  const WarningSink& warn);
+                                                  const WarningSink& warn,
+                                                  const std::set<std::string>* used = nullptr);
 
 }  // namespace pm::host

@@ -297,10 +297,7 @@ void AimedEmission::place(std::uint32_t index, float& uCaster, Vec2f uPoint, Ori
         const SphereCaps caps(sphere, m_casters, worthOf(index));
         const Vec3f normal = caps.sample(uCaster, uPoint, pdfArea);
         pdfArea /= static_cast<float>(sphere.radius * sphere.radius);
-        surface.position = Vec3f(sphere.centre + Vec3d(normal) * sphere.radius);
-        surface.geometricNormal = normal;
-        surface.offset = 2.0f * surfaceOffset(surface.position, 0.0f);
-        surface.material = light.material;
+        surface = m_scene.pointOnSphere(light.shape, Vec3d(normal));
     } else {
         surface = m_scene.pointOnLight(light, uPoint);
     }

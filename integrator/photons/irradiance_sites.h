@@ -22,16 +22,17 @@ namespace pm {
 class IrradianceSites {
   public:
     // scene, map and patches must outlive this. radius: of the estimates, scene units, > 0.
-    // patches: see SurfaceEstimate.
+    // patches: see SurfaceEstimate. radiusFactor: this pass's radii over the first pass's, by which
+    // room is made for more sites, in (0, 1].
     IrradianceSites(const Scene& scene, const PhotonMap& map, float radius,
-                    const SurfacePatches* patches = nullptr);
+                    const SurfacePatches* patches = nullptr, float radiusFactor = 1.0f);
 
     // Irradiance, W m^-2, at a site near the point, on the side of the normal; estimated at the
     // point itself where none is.
     TwoRadii at(const Vec3f& position, const Vec3f& normal) const;
     // Asks for the site to be at hand soon.
     void prefetch(const Vec3f& position, const Vec3f& normal) const {
-        __builtin_prefetch(&m_slots[m_cells.at(position, normal).hash() & (m_slotCount - 1)]);
+        __builtin_prefetch(&m_slots[firstSlot(m_cells.at(position, normal).hash())]);
     }
 
     // Irradiance, W m^-2, at a point, computed now. pattern turns the rays about the normal.
@@ -41,7 +42,7 @@ class IrradianceSites {
 
     std::uint64_t memoryBytes() const;
     // The same of a map of so many photons.
-    static std::uint64_t memoryBytes(std::uint64_t photons);
+    static std::uint64_t memoryBytes(std::uint64_t photons, float radiusFactor = 1.0f);
 
   private:
     using Cell = SurfaceCells::Cell;
@@ -57,6 +58,9 @@ class IrradianceSites {
         std::atomic<std::uint32_t> ready;
     };
 
+    std::size_t firstSlot(std::uint64_t hash) const {
+        return static_cast<std::size_t>((static_cast<unsigned __int128>(hash) * m_slotCount) >> 64);
+    }
     Slot* slotOf(std::uint64_t hash) const;
     Value compute(const Cell& cell, std::uint64_t hash) const;
     Value valueOf(const Cell& cell) const;

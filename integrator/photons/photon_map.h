@@ -98,8 +98,9 @@ class PhotonMap {
     // Throws Error(kCancelled) soon after cancel is set.
     explicit PhotonMap(std::span<const Photon> photons, const CancelCheck& cancel = {});
 
-    // While it is built, the photons that it is built from included.
+    // While it is built, the photons that it is built from included; and once it is.
     static constexpr std::uint64_t kBytesPerPhoton = sizeof(Photon) + kTreeBuildBytesPerPhoton;
+    static constexpr std::uint64_t kHeldBytesPerPhoton = kTreeBytesPerPhoton;
 
     bool empty() const { return m_tree.size == 0; }
     std::size_t size() const { return m_tree.size; }

@@ -40,7 +40,8 @@ struct PhotonTree {
 // cancel is set.
 PhotonTree buildPhotonTree(std::span<const Photon> photons, const CancelCheck& cancel = {});
 
+constexpr std::uint64_t kTreeBytesPerPhoton = 29;
 // While it is built, beside the photons: two lists of entries, their buckets, and the tree itself.
-constexpr std::uint64_t kTreeBuildBytesPerPhoton = 2 * 16 + 1 + 29;
+constexpr std::uint64_t kTreeBuildBytesPerPhoton = 2 * 16 + 1 + kTreeBytesPerPhoton;
 
 }  // namespace pm

@@ -4,10 +4,12 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cmath>
 #include <deque>
+#include <vector>
 
 #include "integrator/values/error.h"
 
@@ -50,28 +52,46 @@ std::string resolveIsa(const std::string& wanted) {
         "instruction set is '" + wanted + "'; it must be best, sse2, sse4.2, avx, avx2 or avx512");
 }
 
-void sphereBounds(const RTCBoundsFunctionArguments* args) {
-    const auto& sphere = *static_cast<const Sphere*>(args->geometryUserPtr);
-    // Rounded outwards: the box must hold the sphere in double.
+// Those of a shape's triangles that are intersected in double.
+struct ExactTriangles {
+    std::uint32_t shape;
+    std::vector<ExactTriangle> triangles;
+};
+
+// Rounded outwards: the box must hold what it is of in double.
+void setBounds(RTCBounds& bounds, const Vec3d& lo, const Vec3d& hi) {
     const auto down = [](double v) {
         return std::nextafter(static_cast<float>(v), -std::numeric_limits<float>::infinity());
     };
     const auto up = [](double v) {
         return std::nextafter(static_cast<float>(v), std::numeric_limits<float>::infinity());
     };
-    const double r = sphere.radius;
-    RTCBounds& b = *args->bounds_o;
-    b.lower_x = down(sphere.centre.x - r);
-    b.lower_y = down(sphere.centre.y - r);
-    b.lower_z = down(sphere.centre.z - r);
-    b.upper_x = up(sphere.centre.x + r);
-    b.upper_y = up(sphere.centre.y + r);
-    b.upper_z = up(sphere.centre.z + r);
+    bounds.lower_x = down(lo.x);
+    bounds.lower_y = down(lo.y);
+    bounds.lower_z = down(lo.z);
+    bounds.upper_x = up(hi.x);
+    bounds.upper_y = up(hi.y);
+    bounds.upper_z = up(hi.z);
+}
+
+void sphereBounds(const RTCBoundsFunctionArguments* args) {
+    const auto& sphere = *static_cast<const Sphere*>(args->geometryUserPtr);
+    const Vec3d r(sphere.radius);
+    setBounds(*args->bounds_o, sphere.centre - r, sphere.centre + r);
 }
 
 double intersectRtcRay(const Sphere& sphere, const RTCRay& ray) {
     return intersectSphere({ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z},
                            static_cast<double>(ray.tfar), sphere.centre, sphere.radius);
+}
+
+void setHit(RTCRayHit& rayHit, double t, std::uint32_t shape, std::uint32_t primitive) {
+    rayHit.ray.tfar = static_cast<float>(t);
+    rayHit.hit.geomID = shape;
+    rayHit.hit.primID = primitive;
+    rayHit.hit.u = rayHit.hit.v = 0.0f;
+    rayHit.hit.Ng_x = 1.0f;
+    rayHit.hit.Ng_y = rayHit.hit.Ng_z = 0.0f;
 }
 
 // Rays are traced one by one, so N is 1 and the packet is a plain RTCRayHit.
@@ -81,19 +101,59 @@ void sphereIntersect(const RTCIntersectFunctionNArguments* args) {
     const double t =
         intersectRtcRay(*static_cast<const Sphere*>(args->geometryUserPtr), rayHit.ray);
     if (t < 0.0) return;
-    rayHit.ray.tfar = static_cast<float>(t);
-    rayHit.hit.geomID = args->geomID;
-    rayHit.hit.primID = args->primID;
-    rayHit.hit.instID[0] = args->context->instID[0];
-    rayHit.hit.u = rayHit.hit.v = 0.0f;
-    rayHit.hit.Ng_x = 1.0f;
-    rayHit.hit.Ng_y = rayHit.hit.Ng_z = 0.0f;
+    setHit(rayHit, t, args->geomID, args->primID);
 }
 
 void sphereOccluded(const RTCOccludedFunctionNArguments* args) {
     if (args->valid[0] != -1) return;
     auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
     if (intersectRtcRay(*static_cast<const Sphere*>(args->geometryUserPtr), ray) >= 0.0)
+        ray.tfar = -std::numeric_limits<float>::infinity();
+}
+
+void trianglesBounds(const RTCBoundsFunctionArguments* args) {
+    const auto& of = *static_cast<const ExactTriangles*>(args->geometryUserPtr);
+    const ExactTriangle& triangle = of.triangles[args->primID];
+    Vec3d lo = triangle.corners[0], hi = lo;
+    for (const Vec3d& corner : triangle.corners)
+        for (int axis = 0; axis < 3; ++axis) {
+            lo[axis] = std::min(lo[axis], corner[axis]);
+            hi[axis] = std::max(hi[axis], corner[axis]);
+        }
+    setBounds(*args->bounds_o, lo, hi);
+}
+
+// The nearest hit in (0, tMax], or a negative number. Which side of an edge the ray passes comes of
+// the edge's two ends alone, so that nothing slips through between neighbours.
+double intersectRtcRay(const ExactTriangle& triangle, const RTCRay& ray) {
+    const Vec3d direction{ray.dir_x, ray.dir_y, ray.dir_z};
+    const Vec3d origin{ray.org_x, ray.org_y, ray.org_z};
+    const Vec3d a = triangle.corners[0] - origin, b = triangle.corners[1] - origin,
+                c = triangle.corners[2] - origin;
+    const double u = dot(direction, cross(c, b)), v = dot(direction, cross(a, c)),
+                 w = dot(direction, cross(b, a));
+    if (std::min({u, v, w}) < 0.0 && std::max({u, v, w}) > 0.0) return -1.0;
+    const Vec3d normal =
+        cross(triangle.corners[1] - triangle.corners[0], triangle.corners[2] - triangle.corners[0]);
+    const double t = dot(normal, a) / dot(normal, direction);
+    // NaN and infinity, of what is seen edge-on, are no hit.
+    return t > 0.0 && t <= static_cast<double>(ray.tfar) ? t : -1.0;
+}
+
+void trianglesIntersect(const RTCIntersectFunctionNArguments* args) {
+    if (args->valid[0] != -1) return;
+    auto& rayHit = *reinterpret_cast<RTCRayHit*>(args->rayhit);
+    const auto& of = *static_cast<const ExactTriangles*>(args->geometryUserPtr);
+    const ExactTriangle& triangle = of.triangles[args->primID];
+    const double t = intersectRtcRay(triangle, rayHit.ray);
+    if (t >= 0.0) setHit(rayHit, t, of.shape, triangle.primitive);
+}
+
+void trianglesOccluded(const RTCOccludedFunctionNArguments* args) {
+    if (args->valid[0] != -1) return;
+    auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
+    const auto& of = *static_cast<const ExactTriangles*>(args->geometryUserPtr);
+    if (intersectRtcRay(of.triangles[args->primID], ray) >= 0.0)
         ray.tfar = -std::numeric_limits<float>::infinity();
 }
 
@@ -144,12 +204,29 @@ struct RayTracer::Impl {
     RTCDevice device = nullptr;
     RTCScene scene = nullptr;
     std::string isa;
-    std::deque<Sphere> spheres;  // a deque: Embree keeps pointers to its elements
+    // Deques: Embree keeps pointers to their elements.
+    std::deque<Sphere> spheres;
+    std::deque<ExactTriangles> exact;
+    std::deque<std::vector<std::array<std::uint32_t, 3>>> othersThanExact;
     std::atomic<std::int64_t> bytes{0};
 
     ~Impl() {
         if (scene) rtcReleaseScene(scene);
         if (device) rtcReleaseDevice(device);
+    }
+    // What is intersected by functions of ours.
+    std::uint32_t attach(void* user, std::uint32_t primitives, RTCBoundsFunction bounds,
+                         RTCIntersectFunctionN intersect, RTCOccludedFunctionN occluded) {
+        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
+        rtcSetGeometryUserPrimitiveCount(geometry, primitives);
+        rtcSetGeometryUserData(geometry, user);
+        rtcSetGeometryBoundsFunction(geometry, bounds, nullptr);
+        rtcSetGeometryIntersectFunction(geometry, intersect);
+        rtcSetGeometryOccludedFunction(geometry, occluded);
+        rtcCommitGeometry(geometry);
+        const std::uint32_t id = rtcAttachGeometry(scene, geometry);
+        rtcReleaseGeometry(geometry);
+        return id;
     }
     void check(const char* doing) const {
         const RTCError error = rtcGetDeviceError(device);
@@ -180,7 +257,14 @@ RayTracer::RayTracer(const std::string& isa) : m_impl(std::make_unique<Impl>()) 
 RayTracer::~RayTracer() = default;
 
 std::uint32_t RayTracer::addTriangles(std::span<const Vec3f> positions,
-                                      std::span<const std::array<std::uint32_t, 3>> triangles) {
+                                      std::span<const std::array<std::uint32_t, 3>> triangles,
+                                      std::span<const ExactTriangle> exact) {
+    if (!exact.empty()) {
+        // Embree passes over triangles without area.
+        auto& others = m_impl->othersThanExact.emplace_back(triangles.begin(), triangles.end());
+        for (const ExactTriangle& one : exact) others[one.primitive].fill(others[one.primitive][0]);
+        triangles = others;
+    }
     RTCGeometry geometry = rtcNewGeometry(m_impl->device, RTC_GEOMETRY_TYPE_TRIANGLE);
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
                                positions.data(), 0, sizeof(Vec3f), positions.size());
@@ -190,25 +274,23 @@ std::uint32_t RayTracer::addTriangles(std::span<const Vec3f> positions,
     const std::uint32_t id = rtcAttachGeometry(m_impl->scene, geometry);
     rtcReleaseGeometry(geometry);
     m_impl->check("adding triangles");
+    if (!exact.empty()) m_impl->exact.push_back({id, {exact.begin(), exact.end()}});
     return id;
 }
 
 std::uint32_t RayTracer::addSphere(const Vec3d& centre, double radius) {
     m_impl->spheres.push_back({centre, radius});
-    RTCGeometry geometry = rtcNewGeometry(m_impl->device, RTC_GEOMETRY_TYPE_USER);
-    rtcSetGeometryUserPrimitiveCount(geometry, 1);
-    rtcSetGeometryUserData(geometry, &m_impl->spheres.back());
-    rtcSetGeometryBoundsFunction(geometry, sphereBounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, sphereIntersect);
-    rtcSetGeometryOccludedFunction(geometry, sphereOccluded);
-    rtcCommitGeometry(geometry);
-    const std::uint32_t id = rtcAttachGeometry(m_impl->scene, geometry);
-    rtcReleaseGeometry(geometry);
+    const std::uint32_t id =
+        m_impl->attach(&m_impl->spheres.back(), 1, sphereBounds, sphereIntersect, sphereOccluded);
     m_impl->check("adding a sphere");
     return id;
 }
 
 void RayTracer::commit(const CancelCheck& cancel) {
+    // Last, so that shapes keep their numbers.
+    for (ExactTriangles& one : m_impl->exact)
+        m_impl->attach(&one, static_cast<std::uint32_t>(one.triangles.size()), trianglesBounds,
+                       trianglesIntersect, trianglesOccluded);
     // Embree asks now and then whether to go on.
     CancelCheck check = cancel;
     rtcSetSceneProgressMonitorFunction(

@@ -31,6 +31,12 @@ struct RayHit {
     float t = 0.0f;
 };
 
+// A triangle that is intersected in double: one so huge that float's roundings of it matter.
+struct ExactTriangle {
+    std::uint32_t primitive = 0;  // its number in its shape
+    std::array<Vec3d, 3> corners;
+};
+
 // Nearest hits and visibility among triangle meshes and spheres, by Embree in its robust mode.
 // Every ray is checked first for what would end the process inside Embree: NaN, infinity, distances
 // beyond kLargestCoordinate; such a ray meets nothing, and as a shadow ray it is occluded.
@@ -47,8 +53,10 @@ class RayTracer {
 
     // Shapes are copied (spheres) or referred to (meshes: positions must stay until destruction,
     // and must be followed by at least 4 readable bytes, which a spare last element gives).
+    // exact: those of the triangles that are to be intersected in double, copied.
     std::uint32_t addTriangles(std::span<const Vec3f> positions,
-                               std::span<const std::array<std::uint32_t, 3>> triangles);
+                               std::span<const std::array<std::uint32_t, 3>> triangles,
+                               std::span<const ExactTriangle> exact = {});
     std::uint32_t addSphere(const Vec3d& centre, double radius);
 
     // Builds; in parallel in the calling TBB arena. Throws Error(kOutOfMemory, kInternal,

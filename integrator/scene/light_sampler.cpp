@@ -72,10 +72,10 @@ constexpr std::size_t kMostSightings = 1 << 17;
 
 }  // namespace
 
-LightSampler::LightSampler(const Scene& scene)
+LightSampler::LightSampler(const Scene& scene, const CancelCheck& cancel)
     : m_scene(scene), m_choice(choiceByPower(scene.lights())) {
     if (empty() || scene.nearLights().size() <= kFewLights) return;
-    m_tree = std::make_unique<LightTree>(scene);
+    m_tree = std::make_unique<LightTree>(scene, cancel);
     m_farChoice = choiceByPower(scene.farLights());
     if (m_farChoice.empty()) return;
     const double far = powerOf(scene.farLights());
@@ -268,15 +268,13 @@ bool LightSampler::sampleSphere(const Surface& surface, const Light& light, floa
     double t =
         intersectSphere(Vec3d(surface.position), direction, 1e300, sphere.centre, sphere.radius);
     if (t < 0) t = dot(toCentre, direction);  // grazing, lost to rounding: the nearest point
-    const Vec3d onSphere = Vec3d(surface.position) + direction * t;
-    const Vec3f normal(normalize(onSphere - sphere.centre));
-    const MaterialDescription& material = m_scene.material(light.material);
-    sample.radiance = material.emission;
+    const Surface point =
+        m_scene.pointOnSphere(light.shape, Vec3d(surface.position) + direction * t - sphere.centre);
+    sample.radiance = frontRadiance(point);
     sample.pdfSolidAngle = probability / (2.0f * kPi * oneMinusCos);
     sample.isPoint = false;
-    const Vec3f position(onSphere);
-    sample.shadowRay = shadowSegment(rayOrigin(surface, sample.direction), position, normal,
-                                     2.0f * surfaceOffset(position, 0.0f));
+    sample.shadowRay = shadowSegment(rayOrigin(surface, sample.direction), point.position,
+                                     point.geometricNormal, point.offset);
     return true;
 }
 

@@ -64,7 +64,9 @@ struct LitPlace {
 // Threads: const functions from any, at once.
 class LightSampler {
   public:
-    explicit LightSampler(const Scene& scene);
+    // Of many lights in parallel in the calling TBB arena. Throws Error(kCancelled) soon after
+    // cancel is set.
+    explicit LightSampler(const Scene& scene, const CancelCheck& cancel = {});
 
     // More lights than this, those infinitely far not counted, are many.
     static constexpr std::size_t kFewLights = 16;

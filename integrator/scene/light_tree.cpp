@@ -2,6 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/scene/light_tree.h"
 
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -20,6 +23,8 @@ constexpr std::size_t kMostLeaves = 1 << 16;
 // A node is divided in the middle of its longest axis, unless one part then has less than this
 // share of the lights: the tree stays shallow.
 constexpr std::size_t kLeastShare = 8;
+// Parts with fewer lights than this are not worth a thread of their own.
+constexpr std::size_t kFewLights = 4096;
 // Of a leaf's choices this share is made evenly, so that no light is forgotten.
 constexpr double kEvenShare = 1e-4;
 
@@ -74,14 +79,18 @@ float sineOf(float cosine) {
 
 class LightTree::Builder {
   public:
-    explicit Builder(LightTree& tree) : m_tree(tree) {
+    Builder(LightTree& tree, const CancelCheck& cancel) : m_tree(tree), m_cancel(cancel) {
         const std::span<const Light> lights = tree.m_scene->nearLights();
-        for (const Light& light : lights) m_bounds.push_back(boundsOf(*tree.m_scene, light));
+        m_bounds.resize(lights.size());
+        tbb::parallel_for(std::size_t{0}, lights.size(), [&](std::size_t i) {
+            goOn();
+            m_bounds[i] = boundsOf(*tree.m_scene, lights[i]);
+        });
         if (lights.size() > kMostSingle)
             m_run = std::max(kRun, (lights.size() + kMostLeaves - 1) / kMostLeaves);
         tree.m_order.resize(lights.size());
         std::iota(tree.m_order.begin(), tree.m_order.end(), 0u);
-        add(0, lights.size());
+        add(0, lights.size(), tree.m_nodes);
         tree.m_visibility.assign(lights.size(), 1.0f);
         tree.m_positions.resize(lights.size());
         for (std::uint32_t i = 0; i < lights.size(); ++i) tree.m_positions[tree.m_order[i]] = i;
@@ -89,18 +98,36 @@ class LightTree::Builder {
     }
 
   private:
+    // For each light of each step: a load of a flag, where millions of lights take seconds.
+    void goOn() const { m_cancel.throwIfSet("building the tree of lights"); }
+
     Vec3d centre(std::uint32_t light) const {
+        goOn();
         return (m_bounds[light].lo + m_bounds[light].hi) * 0.5;
     }
 
-    void add(std::size_t begin, std::size_t end) {
-        const std::size_t index = m_tree.m_nodes.size();
-        m_tree.m_nodes.push_back(makeNode(begin, end));
+    // Appends the nodes of a part of the order to `nodes`.
+    void add(std::size_t begin, std::size_t end, std::vector<Node>& nodes) {
+        const std::size_t index = nodes.size();
+        nodes.push_back(makeNode(begin, end));
         if (end - begin <= m_run) return;
         const std::size_t middle = divide(begin, end);
-        add(begin, middle);
-        m_tree.m_nodes[index].right = static_cast<std::uint32_t>(m_tree.m_nodes.size());
-        add(middle, end);
+        std::vector<Node> right;
+        const auto addLeft = [&] { add(begin, middle, nodes); };
+        const auto addRight = [&] { add(middle, end, right); };
+        if (end - begin < kFewLights) {
+            addLeft();
+            nodes[index].right = static_cast<std::uint32_t>(nodes.size());
+            add(middle, end, nodes);
+            return;
+        }
+        tbb::parallel_invoke(addLeft, addRight);
+        // Numbered from the tree's root, as if all had been added one after the other.
+        const auto first = static_cast<std::uint32_t>(nodes.size());
+        nodes[index].right = first;
+        for (Node& node : right)
+            if (node.right != 0) node.right += first;
+        nodes.insert(nodes.end(), right.begin(), right.end());
     }
 
     Node makeNode(std::size_t begin, std::size_t end) const {
@@ -110,6 +137,7 @@ class LightTree::Builder {
         bool anyDirection = false;
         double power = 0;
         for (const std::uint32_t light : lights) {
+            goOn();
             const Bounds& b = m_bounds[light];
             for (int axis = 0; axis < 3; ++axis) {
                 lo[axis] = std::min(lo[axis], b.lo[axis]);
@@ -185,13 +213,14 @@ class LightTree::Builder {
     }
 
     LightTree& m_tree;
+    const CancelCheck& m_cancel;
     std::vector<Bounds> m_bounds;
     std::size_t m_run = 1;
 };
 
-LightTree::LightTree(const Scene& scene) : m_scene(&scene) {
+LightTree::LightTree(const Scene& scene, const CancelCheck& cancel) : m_scene(&scene) {
     if (scene.nearLights().empty()) return;
-    Builder(*this);
+    Builder(*this, cancel);
     makeQuads();
 }
 

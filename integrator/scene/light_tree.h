@@ -9,6 +9,7 @@
 
 #include "integrator/scene/light_quad.h"
 #include "integrator/scene/scene.h"
+#include "integrator/values/cancel_check.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
@@ -34,7 +35,9 @@ struct LightDescent {
 class LightTree {
   public:
     LightTree() = default;
-    explicit LightTree(const Scene& scene);
+    // Builds in parallel in the calling TBB arena; the same tree for any number of threads. Throws
+    // Error(kCancelled) soon after cancel is set.
+    explicit LightTree(const Scene& scene, const CancelCheck& cancel = {});
 
     static constexpr std::uint32_t kRoot = 0;
 

@@ -71,6 +71,8 @@ class Scene {
 
     // A point on an area light's primitive, uniform over its area, as a Surface.
     Surface pointOnLight(const Light& light, Vec2f u) const;
+    // The point of a sphere shape that lies in a direction (of any length) from its centre.
+    Surface pointOnSphere(std::uint32_t shape, const Vec3d& direction) const;
     // Asks for what pointOnLight() reads first to be at hand soon.
     void prefetch(const Light& light) const;
     // The sphere of a sphere light (or of any sphere shape), scene's own coordinates.

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "integrator/scene/huge_triangles.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/shape_record.h"
 #include "integrator/values/error.h"
@@ -76,6 +77,7 @@ class Scene::Builder {
         findBounds();
         for (const InstanceDescription& instance : m_scene.m_description.instances)
             addShape(instance);
+        findHuge();
         m_scene.m_isFlat = m_scene.findFlat(m_cancel);
         addToTracer();
         for (std::uint32_t i = 0; i < m_scene.m_shapes.size(); ++i) findLights(i);
@@ -189,6 +191,10 @@ class Scene::Builder {
             record.sphere.centre =
                 transformPoint(instance.transform, sphere.centre) - m_scene.m_centre;
             record.sphere.radius = sphere.radius * scale;
+            const Transform& m = instance.transform;
+            for (std::size_t i = 0; i < 3; ++i)
+                record.sphereAxes[i] = normalize(Vec3d{m[i], m[i + 4], m[i + 8]});
+            record.isTexturedSphere = hasTexture(m_scene.material(record.materials[0]));
         }
         m_scene.m_shapes.push_back(std::move(record));
     }
@@ -218,6 +224,56 @@ class Scene::Builder {
         m_scene.m_triangleCount += mesh->triangles.size();
     }
 
+    // Calls visit(shape, triangle, its longest edge) for all triangles, visit(shape, 0, diameter)
+    // for spheres.
+    template <typename Visit>
+    void forEachSize(const Visit& visit) {
+        for (ShapeRecord& record : m_scene.m_shapes) {
+            if (!record.mesh) {
+                visit(record, 0u, 2 * record.sphere.radius);
+                continue;
+            }
+            for (std::uint32_t i = 0; i < record.mesh->triangles.size(); ++i) {
+                goOn();
+                const Corner c = record.corner(i);
+                visit(record, i,
+                      std::sqrt(std::max(
+                          {lengthSquared(c.e1), lengthSquared(c.e2), lengthSquared(c.e2 - c.e1)})));
+            }
+        }
+    }
+
+    // Triangles beside which all else is small are intersected in double where rays would otherwise
+    // start farther off them than would do for what is small. Their vertices aren't rounded.
+    void findHuge() {
+        HugeTriangles huge;
+        forEachSize([&](const ShapeRecord&, std::uint32_t, double size) { huge.addSize(size); });
+        forEachSize([&](const ShapeRecord& record, std::uint32_t i, double size) {
+            Vec3d lo, hi;
+            record.bounds(i, lo, hi);
+            huge.addBox(size, lo, hi);
+        });
+        const double most = huge.mostNotHuge();
+        if (!std::isfinite(most)) return;
+        for (std::size_t shape = 0; shape < m_scene.m_shapes.size(); ++shape) {
+            ShapeRecord& record = m_scene.m_shapes[shape];
+            const Transform& transform = m_scene.m_description.instances[shape].transform;
+            for (std::uint32_t i = 0; i < record.facets.size(); ++i) {
+                goOn();
+                if (!(static_cast<double>(record.facets[i].reach) > most)) continue;
+                ExactTriangle exact{i, {}};
+                for (std::size_t k = 0; k < 3; ++k)
+                    exact.corners[k] =
+                        transformPoint(
+                            transform,
+                            Vec3d(record.mesh->positions[record.mesh->triangles[i][k]])) -
+                        m_scene.m_centre;
+                record.exact.push_back(exact);
+                record.facets[i] = Facet(record.corner(i), record.mirrored, true);
+            }
+        }
+    }
+
     static double triangleArea(const ShapeRecord& record, std::uint32_t primitive) {
         const auto& t = record.mesh->triangles[primitive];
         const Vec3d v0(record.positions[t[0]]);
@@ -230,7 +286,7 @@ class Scene::Builder {
             if (record.mesh)
                 m_scene.m_tracer.addTriangles(
                     {record.positions.data(), record.positions.size() - 1},
-                    {record.mesh->triangles.data(), record.mesh->triangles.size()});
+                    {record.mesh->triangles.data(), record.mesh->triangles.size()}, record.exact);
             else
                 m_scene.m_tracer.addSphere(record.sphere.centre, record.sphere.radius);
         }

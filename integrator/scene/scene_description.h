@@ -44,6 +44,15 @@ struct MaterialDescription {
     std::int32_t opacityTexture = kNoTexture;
 };
 
+// Whether the material looks up a texture.
+inline bool hasTexture(const MaterialDescription& material) {
+    for (const std::int32_t texture :
+         {material.diffuseTexture, material.glossyTexture, material.glossyExponentTexture,
+          material.transmissionTexture, material.emissionTexture, material.opacityTexture})
+        if (texture != kNoTexture) return true;
+    return false;
+}
+
 // Whether light can leave the material in no other way than diffusely, whatever its textures.
 inline bool isDiffuseAtMost(const MaterialDescription& material) {
     return material.kind == MaterialKind::kSurface && isBlack(material.glossy) &&
@@ -62,7 +71,9 @@ inline bool isBlackBody(const MaterialDescription& material) {
 }
 
 // An analytic sphere in object space; its front is outside. Under a transform it must stay a
-// sphere: rotation, translation, uniform scale.
+// sphere: rotation, translation, uniform scale. Textures are latitude-longitude pictures: in object
+// space their middle is towards +z, their right half towards +x, their upper edge at +y; so a
+// camera that isn't turned sees the middle as it is.
 struct SphereShape {
     Vec3d centre;
     double radius = 1.0;  // > 0, scene units

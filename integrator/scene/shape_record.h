@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <algorithm>
+
 #include "integrator/scene/scene.h"
 
 namespace pm {
@@ -14,7 +16,8 @@ struct Scene::Facet {
     // units.
     float reach;
 
-    Facet(const Corner& corner, bool mirrored);
+    // exact: intersected in double.
+    Facet(const Corner& corner, bool mirrored, bool exact = false);
 };
 
 // One instance made ready: vertices in the scene's own coordinates.
@@ -23,8 +26,11 @@ struct Scene::ShapeRecord {
     std::vector<Vec3f> positions;              // one spare element at the end, for Embree
     std::vector<Vec3f> normals;                // transformed, unit
     std::vector<Facet> facets;                 // of each triangle
+    std::vector<ExactTriangle> exact;          // huge ones, by their numbers
     bool mirrored = false;                     // the transform turns the winding round
     SphereShape sphere;
+    Vec3d sphereAxes[3];  // of its object space, unit
+    bool isTexturedSphere = false;
     std::vector<std::uint32_t> materials;        // of each slot
     std::vector<std::int32_t> lightOfPrimitive;  // empty when nothing here emits
     std::uint32_t instanceId = 0;
@@ -34,9 +40,31 @@ struct Scene::ShapeRecord {
                     : materials[0];
     }
     Corner corner(std::uint32_t primitive) const {
+        if (!exact.empty()) {
+            const auto found =
+                std::ranges::lower_bound(exact, primitive, {}, &ExactTriangle::primitive);
+            if (found != exact.end() && found->primitive == primitive)
+                return {found->corners[0], found->corners[1] - found->corners[0],
+                        found->corners[2] - found->corners[0]};
+        }
         const auto& triangle = mesh->triangles[primitive];
         const Vec3d v0(positions[triangle[0]]);
         return {v0, Vec3d(positions[triangle[1]]) - v0, Vec3d(positions[triangle[2]]) - v0};
+    }
+    // Of a triangle, or the sphere.
+    void bounds(std::uint32_t primitive, Vec3d& lo, Vec3d& hi) const {
+        if (!mesh) {
+            lo = sphere.centre - Vec3d(sphere.radius);
+            hi = sphere.centre + Vec3d(sphere.radius);
+            return;
+        }
+        const auto& triangle = mesh->triangles[primitive];
+        lo = hi = Vec3d(positions[triangle[0]]);
+        for (const Vec3d v : {Vec3d(positions[triangle[1]]), Vec3d(positions[triangle[2]])})
+            for (int axis = 0; axis < 3; ++axis) {
+                lo[axis] = std::min(lo[axis], v[axis]);
+                hi[axis] = std::max(hi[axis], v[axis]);
+            }
     }
     std::int32_t lightOf(std::uint32_t primitive) const {
         return lightOfPrimitive.empty() ? kNoLight : lightOfPrimitive[primitive];

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrator/sampling/pinned_math.h"
 #include "integrator/sampling/warps.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/shape_record.h"
@@ -70,9 +71,16 @@ Vec3f interpolateNormal(const Vec3f& n0, const Vec3f& n1, const Vec3f& n2, float
     return dot(n, geometricNormal) > 0.0f ? n : geometricNormal;
 }
 
+// Where in a latitude-longitude picture a point of a sphere lies; see SphereShape.
+Vec2f textureOnSphere(const Vec3d (&axes)[3], const Vec3d& normal) {
+    const double x = dot(axes[0], normal), y = dot(axes[1], normal), z = dot(axes[2], normal);
+    return {static_cast<float>(0.5 + pinnedAtan2Turns(x, z)),
+            static_cast<float>(2.0 * pinnedAtan2Turns(std::sqrt(x * x + z * z), -y))};
+}
+
 }  // namespace
 
-Scene::Facet::Facet(const Corner& corner, bool mirrored) {
+Scene::Facet::Facet(const Corner& corner, bool mirrored, bool exact) {
     Vec3d n = cross(corner.e1, corner.e2);
     if (mirrored) n = -n;
     const double twiceArea = length(n);
@@ -80,6 +88,11 @@ Scene::Facet::Facet(const Corner& corner, bool mirrored) {
     const double longest = std::sqrt(std::max({lengthSquared(corner.e1), lengthSquared(corner.e2),
                                                lengthSquared(corner.e2 - corner.e1)}));
     const double byEdges = longest * normalCondition(corner.e1, corner.e2, twiceArea);
+    if (exact) {
+        // Some roundings in double of what surfaceOffset takes for roundings of float.
+        reach = static_cast<float>(0x1p-26 * byEdges);
+        return;
+    }
     // Never 0: in the scene's very centre a point's own rounding is 0 too.
     constexpr double kLeast = 0x1p-30;
     reach =
@@ -145,7 +158,7 @@ void Scene::surfaceOnSphere(const ShapeRecord& record, const Vec3d& direction,
     // count.
     surface.offset = 2.0f * surfaceOffset(surface.position, 0.0f);
     surface.geometricNormal = surface.shadingNormal = Vec3f(n);
-    surface.uv = {};  // spheres carry no texture coordinates yet
+    surface.uv = record.isTexturedSphere ? textureOnSphere(record.sphereAxes, n) : Vec2f{};
     surface.primitive = 0;
     surface.material = record.materials[0];
     surface.light = record.lightOf(0);
@@ -154,15 +167,19 @@ void Scene::surfaceOnSphere(const ShapeRecord& record, const Vec3d& direction,
 
 Surface Scene::pointOnLight(const Light& light, Vec2f u) const {
     const ShapeRecord& record = m_shapes[light.shape];
+    if (!record.mesh) return pointOnSphere(light.shape, Vec3d(sampleUniformSphere(u)));
     Surface surface;
     surface.shape = light.shape;
-    if (record.mesh) {
-        const Vec2f b = sampleTriangle(u);
-        surfaceOnTriangle(record, light.primitive, record.corner(light.primitive),
-                          static_cast<double>(b.x), static_cast<double>(b.y), surface);
-    } else {
-        surfaceOnSphere(record, Vec3d(sampleUniformSphere(u)), surface);
-    }
+    const Vec2f b = sampleTriangle(u);
+    surfaceOnTriangle(record, light.primitive, record.corner(light.primitive),
+                      static_cast<double>(b.x), static_cast<double>(b.y), surface);
+    return surface;
+}
+
+Surface Scene::pointOnSphere(std::uint32_t shape, const Vec3d& direction) const {
+    Surface surface;
+    surface.shape = shape;
+    surfaceOnSphere(m_shapes[shape], direction, surface);
     return surface;
 }
 

@@ -69,8 +69,8 @@ struct FrameRenderer::Impl {
         PhotonPass photons;
         SeenLamps seenLamps;
 
-        explicit Prepared(const Impl& impl)
-            : lights(*impl.scene),
+        Prepared(const Impl& impl, const CancelCheck& cancel)
+            : lights(*impl.scene, cancel),
               photons(*impl.scene, impl.camera, lights, impl.plan, impl.settings),
               seenLamps(*impl.scene, lights, impl.camera, impl.settings) {}
     };
@@ -99,7 +99,7 @@ struct FrameRenderer::Impl {
 void FrameRenderer::Impl::prepare(const std::atomic<bool>& cancelled) {
     if (prepared) return;
     const CancelCheck cancel(cancelled);
-    auto made = std::make_unique<Prepared>(*this);
+    auto made = std::make_unique<Prepared>(*this, cancel);
     LightSampler& lights = made->lights;
     if (lights.isGuided())
         lights.learn(findLitPlaces(*scene, camera, settings, cancel), settings.seed, cancel);
@@ -249,6 +249,10 @@ void FrameRenderer::renderRegion(const Rect& region, std::span<float> pixels,
             runs.push_back(fixedSamples(m_impl->settings, x, y, m_impl->lastPass));
     renderRegion(region, runs, pixels, cancelled);
     std::ranges::transform(runs, weights.begin(), [](SampleRun run) { return run.weight(); });
+}
+
+void FrameRenderer::forget(const Rect& region, const Rect& all) const {
+    if (m_impl->prepared) m_impl->prepared->photons.forget(region, all);
 }
 
 RenderCounters FrameRenderer::counters() const {

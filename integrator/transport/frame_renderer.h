@@ -113,6 +113,11 @@ class FrameRenderer {
     void renderRegion(const Rect& region, std::span<float> pixels, std::span<float> weights,
                       const std::atomic<bool>& cancelled) const;
 
+    // Nothing of `region` will be rendered any more in any of the passes: what was kept for its
+    // pixels alone is given back. Regions divide `all`, outside of which nothing is rendered.
+    // Threads: any, at once, beside those that render other regions.
+    void forget(const Rect& region, const Rect& all) const;
+
     // Threads: any time.
     RenderCounters counters() const;
     // Notices that came up since the last call (no photons, bad values, ...).

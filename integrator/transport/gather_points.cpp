@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/transport/gather_points.h"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -19,23 +17,23 @@ namespace {
 // Radius of the first pass's mean on the screen, over the lattice's spacing: some 8 points.
 constexpr float kScreenRadius = 1.6f;
 // ... and in the scene, over the clearance.
-constexpr float kReach = 0.7f;
+constexpr float kReach = 1.0f;
 // Radius of the estimate of descended light over the clearance, and its least over that in the
 // open.
 constexpr float kDescendedReach = 0.25f;
 constexpr float kNarrowestDescended = 0.1f;
+// Short rays that look for it where no point tells, on a golden spiral (Vogel 1979).
+constexpr std::uint32_t kLooksAround = 8;
+constexpr float kGoldenTurn = 0.381966011f;
 // Points whose surface leans away more than this (25 degrees) see another half-space.
 constexpr float kNormalCosine = 0.9f;
 // Height of a point over the plane through the place, relative to its distance: more is another
 // surface.
 constexpr float kFlatness = 0.1f;
-// Cells beyond each side of the frame that hold points too: for samples at the frame's edge and
-// those up to 3 pixels beyond, of a group of pixels with a wide filter.
-constexpr std::int32_t kMargin = 3;
-static_assert(static_cast<float>(kMargin) > kScreenRadius);
+static_assert(static_cast<float>(PointTiles::kMargin) > kScreenRadius);
 // So many cells to a side share one sequence of gather directions, in parts: together their rays
 // are as evenly spread as those of one point with all of them.
-constexpr std::size_t kTile = 4;
+constexpr std::size_t kShared = 4;
 
 // Random numbers: the stream of the pass's photons, at sequences which these don't use.
 constexpr std::uint64_t kPointSequences = std::uint64_t{1} << 40;
@@ -45,8 +43,8 @@ std::uint64_t streamOf(std::uint32_t pass) {
     return 2 * std::uint64_t{pass} + 1;
 }
 
-std::int32_t cellsAcross(std::int32_t pixels, float spacing) {
-    return static_cast<std::int32_t>(std::ceil(static_cast<float>(pixels) / spacing)) + 2 * kMargin;
+PointTiles tilesOf(std::int32_t width, std::int32_t height, float spacing, float factor = 1.0f) {
+    return {width, height, spacing, kScreenRadius * spacing * factor};
 }
 
 void addTo(std::array<double, 6>& sum, const TwoRadii& radiance) {
@@ -59,35 +57,72 @@ void addTo(std::array<double, 6>& sum, const TwoRadii& radiance) {
 }  // namespace
 
 GatherPoints::GatherPoints(const Scene& scene, const Camera& camera, const IrradianceSites& sites,
-                           const Request& request, const std::atomic<bool>& cancelled)
+                           const Request& request)
     : m_scene(scene),
       m_camera(camera),
       m_sites(sites),
       m_request(request),
-      m_columns(cellsAcross(request.width, request.spacing)),
-      m_rows(cellsAcross(request.height, request.spacing)),
       m_radius(kScreenRadius * request.spacing * request.radiusFactor),
-      m_planeTolerance(8.0f * 0x1p-24f * static_cast<float>(scene.radius())) {
-    const std::size_t count =
-        static_cast<std::size_t>(m_columns) * static_cast<std::size_t>(m_rows);
-    m_points.resize(count);
-    m_origins.resize(count);
-    m_kept = std::make_unique<Kept[]>(count);
-    tbb::parallel_for(std::int32_t{0}, m_rows, [&](std::int32_t row) {
-        if (cancelled.load(std::memory_order_relaxed)) return;
-        for (std::int32_t column = 0; column < m_columns; ++column) tracePoint(column, row);
-    });
+      m_tiles(tilesOf(request.width, request.height, request.spacing, request.radiusFactor)),
+      m_planeTolerance(8.0f * 0x1p-24f * static_cast<float>(scene.radius())),
+      m_slots(std::make_unique<TileSlot[]>(m_tiles.count())) {}
+
+GatherPoints::~GatherPoints() {
+    for (std::size_t i = 0; i < m_tiles.count(); ++i) delete m_slots[i].tile.load();
+}
+
+// Two threads may both come here: they make the same tile, and one of the two is kept.
+GatherPoints::Tile* GatherPoints::tileAt(std::size_t slot) const {
+    std::atomic<Tile*>& kept = m_slots[slot].tile;
+    if (Tile* const found = kept.load(std::memory_order_acquire)) return found;
+    auto made = std::make_unique<Tile>();
+    constexpr auto side = static_cast<std::size_t>(PointTiles::kSide);
+    const auto across = static_cast<std::size_t>(m_tiles.across());
+    const std::size_t left = slot % across * side, top = slot / across * side;
+    const std::size_t right = std::min(left + side, static_cast<std::size_t>(m_tiles.columns()));
+    const std::size_t bottom = std::min(top + side, static_cast<std::size_t>(m_tiles.rows()));
+    for (std::size_t row = top; row < bottom; ++row)
+        for (std::size_t column = left; column < right; ++column) tracePoint(*made, {column, row});
+    Tile* other = nullptr;
+    if (!kept.compare_exchange_strong(other, made.get(), std::memory_order_acq_rel)) return other;
+    const std::size_t held = ++m_tilesHeld;
+    std::size_t most = m_mostTilesHeld;
+    while (most < held && !m_mostTilesHeld.compare_exchange_weak(most, held)) {
+    }
+    return made.release();
+}
+
+void GatherPoints::forget(const Rect& region, const Rect& all) const {
+    const Rect tiles = m_tiles.asked(region);
+    for (std::int32_t y = tiles.y0; y < tiles.y1; ++y)
+        for (std::int32_t x = tiles.x0; x < tiles.x1; ++x) {
+            const std::size_t index =
+                static_cast<std::size_t>(y) * static_cast<std::size_t>(m_tiles.across()) +
+                static_cast<std::size_t>(x);
+            const Rect reach = m_tiles.reach(index);
+            const std::int64_t done = intersect(reach, region).area();
+            TileSlot& slot = m_slots[index];
+            if (done == 0 || slot.donePixels.fetch_add(done, std::memory_order_acq_rel) + done !=
+                                 intersect(reach, all).area())
+                continue;
+            if (const Tile* const tile = slot.tile.exchange(nullptr)) {
+                delete tile;
+                --m_tilesHeld;
+            }
+        }
 }
 
 // A path through the cell as camera samples go, up to where it would be scattered diffusely.
-void GatherPoints::tracePoint(std::int32_t column, std::int32_t row) {
-    const std::size_t index = static_cast<std::size_t>(row) * static_cast<std::size_t>(m_columns) +
-                              static_cast<std::size_t>(column);
+void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
+    const std::size_t index = cell.row * static_cast<std::size_t>(m_tiles.columns()) + cell.column;
     Sampler sampler(m_request.seed, streamOf(m_request.pass), kPointSequences + index, 0);
     const Vec2f jitter = sampler.next2D();
-    Point& point = m_points[index];
-    point.screen = {(static_cast<float>(column - kMargin) + jitter.x) * m_request.spacing,
-                    (static_cast<float>(row - kMargin) + jitter.y) * m_request.spacing};
+    const auto first = [](std::size_t at) {
+        return static_cast<float>(static_cast<std::int32_t>(at) - PointTiles::kMargin);
+    };
+    Point& point = tile.points[cell.inTile()];
+    point.screen = {(first(cell.column) + jitter.x) * m_request.spacing,
+                    (first(cell.row) + jitter.y) * m_request.spacing};
     point.normal = Vec3f(0.0f);
     PathWalk path(
         m_camera.ray(static_cast<double>(point.screen.x), static_cast<double>(point.screen.y)));
@@ -103,33 +138,34 @@ void GatherPoints::tracePoint(std::int32_t column, std::int32_t row) {
         if (sample.lobe == Lobe::kDiffuse) {
             point.position = surface.position;
             point.normal = bsdf.facingShadingNormal();
-            m_origins[index] = {bsdf.facingGeometricNormal(), surface.offset};
+            tile.origins[cell.inTile()] = {bsdf.facingGeometricNormal(), surface.offset};
             return;
         }
         if (!valid || !path.scatter(surface, bsdf, sample, sampler)) return;
     }
 }
 
-GatherPoints::Value GatherPoints::compute(std::size_t index, std::uint64_t& rays) const {
-    const auto columns = static_cast<std::size_t>(m_columns);
-    const std::size_t column = index % columns, row = index / columns;
-    const std::size_t tile = (row / kTile) * columns + column / kTile;
-    const std::size_t part = (row % kTile) * kTile + column % kTile;
-    const Point& point = m_points[index];
-    const Vec3f& geometricNormal = m_origins[index].geometricNormal;
-    const Vec3f start = point.position + geometricNormal * m_origins[index].offset;
+GatherPoints::Value GatherPoints::compute(const Tile& tile, const Cell& cell,
+                                          std::uint64_t& rays) const {
+    const auto columns = static_cast<std::size_t>(m_tiles.columns());
+    const std::size_t sequence = (cell.row / kShared) * columns + cell.column / kShared;
+    const std::size_t part = (cell.row % kShared) * kShared + cell.column % kShared;
+    const Point& point = tile.points[cell.inTile()];
+    const Origin& origin = tile.origins[cell.inTile()];
+    const Vec3f& geometricNormal = origin.geometricNormal;
+    const Vec3f start = point.position + geometricNormal * origin.offset;
     const Frame frame(point.normal);
     std::array<double, 6> sum{};
     float clearance = std::numeric_limits<float>::max();
     std::uint32_t lamps = 0;
-    const Sampler tileSampler(m_request.seed, streamOf(m_request.pass), kRaySequences + tile, 0);
+    const Sampler shared(m_request.seed, streamOf(m_request.pass), kRaySequences + sequence, 0);
     Gathered last;
     const auto addLast = [&] {
         endGather(m_sites, last);
         addTo(sum, last.radiance);
     };
     for (std::uint32_t i = 0; i < m_request.rays; ++i) {
-        Sampler sampler = tileSampler.at(static_cast<std::uint32_t>(part) * m_request.rays + i);
+        Sampler sampler = shared.at(static_cast<std::uint32_t>(part) * m_request.rays + i);
         const Vec3f direction = normalize(frame.toWorld(sampleCosineHemisphere(sampler.next2D())));
         if (dot(direction, geometricNormal) <= 0.0f) continue;
         const Gathered found = followGather(m_scene, m_sites, {start, direction}, sampler);
@@ -154,7 +190,7 @@ GatherPoints::Value GatherPoints::compute(std::size_t index, std::uint64_t& rays
     if (m_request.descended)
         total += descended(point.position, geometricNormal, clearance,
                            descendedRadius(point.position, geometricNormal),
-                           static_cast<std::uint32_t>(index));
+                           static_cast<std::uint32_t>(cell.row * columns + cell.column));
     return {total, static_cast<float>(lamps) / static_cast<float>(count), clearance};
 }
 
@@ -171,21 +207,22 @@ TwoRadii GatherPoints::descended(const Vec3f& position, const Vec3f& normal, flo
         .at(position, normal, pattern);
 }
 
-TwoRadii GatherPoints::descendedAt(const Place& place, std::uint32_t pattern) const {
+TwoRadii GatherPoints::descendedAt(const Place& place, float clearance,
+                                   std::uint32_t pattern) const {
     if (!m_request.descended) return {};
     const float radius = descendedRadius(place.position, place.geometricNormal);
-    const float clearance = probe(place, radius / kDescendedReach);
+    if (!std::isfinite(clearance)) clearance = lookAround(place, radius / kDescendedReach, pattern);
     return descended(place.position, place.geometricNormal, clearance, radius, pattern);
 }
 
-void GatherPoints::fill(std::size_t index) const {
+void GatherPoints::fill(Tile& tile, const Cell& cell) const {
     // Two threads may both come here: they compute and store the same bits.
     std::uint64_t rays = 0;
-    const Value value = compute(index, rays);
+    const Value value = compute(tile, cell, rays);
     const Rgb &wide = value.irradiance.wide, &narrow = value.irradiance.narrow;
     const std::array<float, 8> numbers = {wide.r,   wide.g,   wide.b,          narrow.r,
                                           narrow.g, narrow.b, value.lampShare, value.clearance};
-    Kept& kept = m_kept[index];
+    Kept& kept = tile.kept[cell.inTile()];
     for (std::size_t i = 0; i < numbers.size(); ++i)
         kept.numbers[i].store(numbers[i], std::memory_order_relaxed);
     if (kept.ready.exchange(1, std::memory_order_acq_rel) == 0)
@@ -196,20 +233,27 @@ void GatherPoints::fill(std::size_t index) const {
 std::size_t GatherPoints::findNear(const Place& place, std::array<Near, kMostNear>& near) const {
     const float perCell = 1.0f / m_request.spacing;
     const auto cellOf = [&](float pixel, std::int32_t cells) {
-        const float cell = std::floor(pixel * perCell) + static_cast<float>(kMargin);
+        const float cell = std::floor(pixel * perCell) + static_cast<float>(PointTiles::kMargin);
         return static_cast<std::int32_t>(std::clamp(cell, -1.0f, static_cast<float>(cells)));
     };
-    const std::int32_t x0 = std::max(0, cellOf(place.screen.x - m_radius, m_columns));
-    const std::int32_t x1 = std::min(m_columns - 1, cellOf(place.screen.x + m_radius, m_columns));
-    const std::int32_t y0 = std::max(0, cellOf(place.screen.y - m_radius, m_rows));
-    const std::int32_t y1 = std::min(m_rows - 1, cellOf(place.screen.y + m_radius, m_rows));
+    const std::int32_t x0 = std::max(0, cellOf(place.screen.x - m_radius, m_tiles.columns()));
+    const std::int32_t x1 =
+        std::min(m_tiles.columns() - 1, cellOf(place.screen.x + m_radius, m_tiles.columns()));
+    const std::int32_t y0 = std::max(0, cellOf(place.screen.y - m_radius, m_tiles.rows()));
+    const std::int32_t y1 =
+        std::min(m_tiles.rows() - 1, cellOf(place.screen.y + m_radius, m_tiles.rows()));
     const float inverse = 1.0f / (m_radius * m_radius);
     std::size_t count = 0;
+    Tile* tile = nullptr;
+    std::size_t slot = 0;
     for (std::int32_t y = y0; y <= y1; ++y) {
-        const std::size_t row = static_cast<std::size_t>(y) * static_cast<std::size_t>(m_columns);
+        const std::size_t firstSlot = static_cast<std::size_t>(y / PointTiles::kSide) *
+                                      static_cast<std::size_t>(m_tiles.across());
         for (std::int32_t x = x0; x <= x1; ++x) {
-            const std::size_t index = row + static_cast<std::size_t>(x);
-            const Point& point = m_points[index];
+            const std::size_t needed = firstSlot + static_cast<std::size_t>(x / PointTiles::kSide);
+            if (!tile || slot != needed) tile = tileAt(slot = needed);
+            const Cell cell{static_cast<std::size_t>(x), static_cast<std::size_t>(y)};
+            const Point& point = tile->points[cell.inTile()];
             const float dx = point.screen.x - place.screen.x;
             const float dy = point.screen.y - place.screen.y;
             const float screen = (dx * dx + dy * dy) * inverse;
@@ -220,7 +264,7 @@ std::size_t GatherPoints::findNear(const Place& place, std::array<Near, kMostNea
             if (height * height >
                 kFlatness * kFlatness * distanceSquared + m_planeTolerance * m_planeTolerance)
                 continue;
-            if (count < kMostNear) near[count++] = {index, screen, distanceSquared};
+            if (count < kMostNear) near[count++] = {tile, cell, screen, distanceSquared};
         }
     }
     return count;
@@ -236,6 +280,27 @@ float GatherPoints::probe(const Place& place, float farthest) const {
     return std::max(length(above.position - place.position), m_planeTolerance);
 }
 
+// What a point's gather rays tell of its clearance, by few short rays: beyond `farthest` infinity.
+// Straight up alone would not do: in a corner what is near is beside the place.
+float GatherPoints::lookAround(const Place& place, float farthest, std::uint32_t pattern) const {
+    const Vec3f start = place.position + place.geometricNormal * place.offset;
+    const Frame frame(place.geometricNormal);
+    const std::uint64_t random = mixBits(pattern);
+    const float turn = toUnitFloat(static_cast<std::uint32_t>(random));
+    const float shift = toUnitFloat(static_cast<std::uint32_t>(random >> 32));
+    float clearance = std::numeric_limits<float>::infinity();
+    for (std::uint32_t i = 0; i < kLooksAround; ++i) {
+        const auto at = static_cast<float>(i);
+        const float turns = turn + kGoldenTurn * at;
+        const Vec3f direction = frame.toWorld(
+            sampleCosineHemisphere({(at + shift) / kLooksAround, turns - std::floor(turns)}));
+        Surface met;
+        if (!m_scene.intersect({start, direction, std::min(farthest, clearance)}, met)) continue;
+        clearance = std::max(length(met.position - place.position), m_planeTolerance);
+    }
+    return clearance;
+}
+
 bool GatherPoints::estimate(const Place& place, Estimate& result) const {
     std::array<Near, kMostNear> near;
     const std::size_t count = findNear(place, near);
@@ -243,8 +308,8 @@ bool GatherPoints::estimate(const Place& place, Estimate& result) const {
     // What is near the place is at least as near as this, whichever point it was seen from.
     float clearance = std::numeric_limits<float>::max(), farthestSquared = 0.0f;
     for (std::size_t i = 0; i < count; ++i) {
-        const Kept& kept = m_kept[near[i].index];
-        if (!kept.ready.load(std::memory_order_acquire)) fill(near[i].index);
+        const Kept& kept = near[i].kept();
+        if (!kept.ready.load(std::memory_order_acquire)) fill(*near[i].tile, near[i].cell);
         clearance = std::min(clearance, kept.number(7) + std::sqrt(near[i].distanceSquared));
         farthestSquared = std::max(farthestSquared, near[i].distanceSquared);
     }
@@ -253,6 +318,7 @@ bool GatherPoints::estimate(const Place& place, Estimate& result) const {
     const float reachOfClearance = kReach * m_request.radiusFactor;
     const float farthest = 2.0f * std::sqrt(farthestSquared) / reachOfClearance;
     clearance = std::min(clearance, probe(place, std::min(clearance, farthest)));
+    result.clearance = clearance;
     result.rays = 1;
     const float reach = reachOfClearance * clearance;
     const float inverseReach = 1.0f / (reach * reach);
@@ -266,7 +332,7 @@ bool GatherPoints::estimate(const Place& place, Estimate& result) const {
         const float weight = 1.0f - q, narrowWeight = std::max(0.0f, 1.0f - 2.0f * q);
         weights += weight;
         narrowWeights += narrowWeight;
-        const Value value = m_kept[near[i].index].value();
+        const Value value = near[i].kept().value();
         lamps += value.lampShare * weight;
         sum += {value.irradiance.wide * weight, value.irradiance.narrow * weight};
         narrowSum += value.irradiance.narrow * narrowWeight;
@@ -279,10 +345,22 @@ bool GatherPoints::estimate(const Place& place, Estimate& result) const {
     return true;
 }
 
-std::uint64_t GatherPoints::memoryBytes(std::int32_t width, std::int32_t height, float spacing) {
-    return static_cast<std::uint64_t>(cellsAcross(width, spacing)) *
-           static_cast<std::uint64_t>(cellsAcross(height, spacing)) *
-           (sizeof(Point) + sizeof(Origin) + sizeof(Kept));
+std::uint64_t GatherPoints::memoryBytes() const {
+    return m_mostTilesHeld * sizeof(Tile) + m_tiles.count() * sizeof(TileSlot);
+}
+
+std::uint64_t GatherPoints::memoryBytes(std::int32_t width, std::int32_t height, float spacing,
+                                        const Rect& window) {
+    const PointTiles tiles = tilesOf(width, height, spacing);
+    return static_cast<std::uint64_t>(tiles.asked(window).area()) * sizeof(Tile) +
+           tiles.count() * sizeof(TileSlot);
+}
+
+std::uint64_t GatherPoints::memoryBytes(std::int32_t width, std::int32_t height, float spacing,
+                                        std::span<const Rect> regions, const Rect& all,
+                                        std::size_t atOnce) {
+    const PointTiles tiles = tilesOf(width, height, spacing);
+    return tiles.mostAtOnce(regions, all, atOnce) * sizeof(Tile) + tiles.count() * sizeof(TileSlot);
 }
 
 }  // namespace pm

@@ -5,14 +5,16 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <limits>
 #include <memory>
-#include <vector>
+#include <span>
 
 #include "integrator/photons/caustic_map.h"
 #include "integrator/photons/irradiance_sites.h"
 #include "integrator/photons/surface_estimate.h"
 #include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/point_tiles.h"
 
 namespace pm {
 
@@ -27,7 +29,9 @@ namespace pm {
 // Source of the idea: Ward, Rubinstein & Clear 1988, "A Ray Tracing Solution for Diffuse
 // Interreflection", with the harmonic mean of the distances; that misses what few rays meet.
 //
-// A point's irradiance is computed when it is first asked for and does not depend on who asks.
+// Points are made a tile at a time, when a sample first asks for one of it; a point's irradiance is
+// computed when it is first asked for. Neither depends on who asks. A tile is forgotten when all
+// pixels whose samples could ask are done.
 // Threads: const functions from any, at once.
 class GatherPoints {
   public:
@@ -54,28 +58,43 @@ class GatherPoints {
         TwoRadii irradiance;     // W m^-2
         float lampShare = 0.0f;  // of the gather rays that met a lamp's front
         std::uint32_t rays = 0;  // that this took
+        // Of the place, as the points near tell, in reach or not; infinity where there is none.
+        // Scene units.
+        float clearance = std::numeric_limits<float>::infinity();
     };
 
-    // Traces the points in parallel in the calling TBB arena; soon after `cancelled` is set the
-    // rest are left out. scene, camera and sites must outlive this.
+    // scene, camera and sites must outlive this.
     GatherPoints(const Scene& scene, const Camera& camera, const IrradianceSites& sites,
-                 const Request& request, const std::atomic<bool>& cancelled);
+                 const Request& request);
+    ~GatherPoints();
+    GatherPoints(const GatherPoints&) = delete;
+    GatherPoints& operator=(const GatherPoints&) = delete;
 
     // Indirect irradiance at a place. False where no point is near enough.
     bool estimate(const Place& place, Estimate& result) const;
 
-    // Irradiance of descended light at a place itself, for samples without a point near; 0 where
-    // there is none. pattern: any number that depends on the place alone.
-    TwoRadii descendedAt(const Place& place, std::uint32_t pattern) const;
+    // Irradiance of descended light at a place itself, for samples without a point in reach; 0
+    // where there is none. clearance: as `estimate` found it. pattern: any number that depends on
+    // the place alone.
+    TwoRadii descendedAt(const Place& place, float clearance, std::uint32_t pattern) const;
+
+    // No samples of the pixels of `region` will come any more; regions divide `all`, which is all
+    // that is rendered. A sample that comes all the same, or beyond `all`, may find memory given
+    // back while it reads: don't.
+    void forget(const Rect& region, const Rect& all) const;
 
     std::uint32_t raysOfPoint() const { return m_request.rays; }
     // Gather rays so far.
     std::uint64_t raysTraced() const { return m_raysTraced.load(std::memory_order_relaxed); }
-    std::uint64_t memoryBytes() const {
-        return memoryBytes(m_request.width, m_request.height, m_request.spacing);
-    }
-    // Of the points of such a request, for memory plans.
-    static std::uint64_t memoryBytes(std::int32_t width, std::int32_t height, float spacing);
+    // The most that the points took so far.
+    std::uint64_t memoryBytes() const;
+    // Of the points that pixels of a window ask for, for memory plans.
+    static std::uint64_t memoryBytes(std::int32_t width, std::int32_t height, float spacing,
+                                     const Rect& window);
+    // The most where pixels are done and forgotten region by region, as PointTiles::mostAtOnce.
+    static std::uint64_t memoryBytes(std::int32_t width, std::int32_t height, float spacing,
+                                     std::span<const Rect> regions, const Rect& all,
+                                     std::size_t atOnce);
 
   private:
     struct Point {
@@ -106,33 +125,52 @@ class GatherPoints {
                     number(7)};
         }
     };
+    struct Tile {
+        std::array<Point, PointTiles::kCells> points;
+        std::array<Origin, PointTiles::kCells> origins;
+        std::array<Kept, PointTiles::kCells> kept;
+    };
+    // Of the lattice.
+    struct Cell {
+        std::size_t column, row;
+        std::size_t inTile() const {
+            return row % PointTiles::kSide * PointTiles::kSide + column % PointTiles::kSide;
+        }
+    };
+    struct TileSlot {
+        std::atomic<Tile*> tile{nullptr};  // null until it is asked for, and once it is forgotten
+        std::atomic<std::int64_t> donePixels{0};
+    };
     // A point that may count, and how far away it is.
     struct Near {
-        std::size_t index;
+        Tile* tile;
+        Cell cell;
         float screenDistanceSquared;  // over the radius squared
         float distanceSquared;        // scene units squared
+        const Kept& kept() const { return tile->kept[cell.inTile()]; }
     };
     static constexpr std::size_t kMostNear = 64;
 
-    void tracePoint(std::int32_t column, std::int32_t row);
+    void tracePoint(Tile& tile, const Cell& cell) const;
+    Tile* tileAt(std::size_t slot) const;
     std::size_t findNear(const Place& place, std::array<Near, kMostNear>& near) const;
-    void fill(std::size_t index) const;
+    void fill(Tile& tile, const Cell& cell) const;
     float probe(const Place& place, float farthest) const;
+    float lookAround(const Place& place, float farthest, std::uint32_t pattern) const;
     float descendedRadius(const Vec3f& position, const Vec3f& normal) const;
     TwoRadii descended(const Vec3f& position, const Vec3f& normal, float clearance, float radius,
                        std::uint32_t pattern) const;
-    Value compute(std::size_t index, std::uint64_t& rays) const;
+    Value compute(const Tile& tile, const Cell& cell, std::uint64_t& rays) const;
 
     const Scene& m_scene;
     const Camera& m_camera;
     const IrradianceSites& m_sites;
     Request m_request;
-    std::int32_t m_columns, m_rows;
-    float m_radius;          // of the mean, pixels
+    float m_radius;  // of the mean, pixels
+    PointTiles m_tiles;
     float m_planeTolerance;  // scene units; what rounding may lift a point off its plane
-    std::vector<Point> m_points;
-    std::vector<Origin> m_origins;
-    std::unique_ptr<Kept[]> m_kept;
+    std::unique_ptr<TileSlot[]> m_slots;
+    mutable std::atomic<std::size_t> m_tilesHeld{0}, m_mostTilesHeld{0};
     mutable std::atomic<std::uint64_t> m_raysTraced{0};
 };
 

@@ -20,6 +20,9 @@ constexpr float kLargeLampShare = 0.02f;
 // more where the points have many.
 constexpr std::uint32_t kFewestOwnRays = 4, kRaysOfPointToAnOwnRay = 8;
 
+// Camera paths divide at the first glass they meet, where both parts carry more than this.
+constexpr float kLeastDivided = 0.001f;
+
 std::uint32_t ownGatherRays(const GatherPoints* points) {
     return points ? std::max(kFewestOwnRays, points->raysOfPoint() / kRaysOfPointToAnOwnRay)
                   : kFewestOwnRays;
@@ -30,18 +33,50 @@ std::uint32_t ownGatherRays(const GatherPoints* points) {
 SampleRadiance PhotonIntegrator::sample(Vec2f screen, const Ray& ray, Sampler& sampler,
                                         NearestPhotons& scratch, bool withSeenLamps) const {
     SampleRadiance result;
-    PathState state;
-    PathWalk path(ray);
-    LastScatter last;
-    last.direction = ray.direction;
-    std::uint32_t lampSamples = m_lampSamples;
-    for (bool first = true;; first = false) {
+    Branch branch{PathWalk(ray), {}, {}, m_lampSamples};
+    branch.last.direction = ray.direction;
+    std::optional<Branch> reflected;
+    follow(screen, branch, &reflected, sampler, scratch, withSeenLamps, result);
+    if (reflected) follow(screen, *reflected, nullptr, sampler, scratch, withSeenLamps, result);
+    return result;
+}
+
+// What glass reflects is a few per cent: chosen that rarely, the image of a bright caustic would be
+// a speck.
+bool PhotonIntegrator::divide(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
+                              std::optional<Branch>& reflected, BsdfSample& refraction,
+                              Sampler& sampler) {
+    BsdfSample reflection;
+    for (const Lobe other : {Lobe::kDiffuse, Lobe::kGlossy, Lobe::kStraight})
+        if (bsdf.has(other)) return false;
+    if (!bsdf.follow(Lobe::kReflection, reflection) || !bsdf.follow(Lobe::kRefraction, refraction))
+        return false;
+    for (const BsdfSample& sample : {reflection, refraction})
+        if (maxChannel(branch.path.throughput * sample.weight) < kLeastDivided) return false;
+    reflected = branch;
+    if (!reflected->goOn(surface, bsdf, reflection, sampler)) reflected.reset();
+    return true;
+}
+
+bool PhotonIntegrator::Branch::goOn(const Surface& surface, const Bsdf& bsdf,
+                                    const BsdfSample& sample, Sampler& sampler) {
+    if (!path.scatter(surface, bsdf, sample, sampler)) return false;
+    state.scatter(sample.lobe);
+    last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle, lampSamples};
+    return true;
+}
+
+void PhotonIntegrator::follow(Vec2f screen, Branch& branch, std::optional<Branch>* reflected,
+                              Sampler& sampler, NearestPhotons& scratch, bool withSeenLamps,
+                              SampleRadiance& result) const {
+    auto& [path, state, last, lampSamples] = branch;
+    for (bool first = reflected != nullptr;; first = false) {
         Surface surface;
         ++result.rays;
         if (!m_scene.intersect(path.ray, surface)) {
             result.of(state.classify()) +=
                 path.throughput * weightedFarLight(m_scene, m_lights, last);
-            return result;
+            return;
         }
         const PathClass found = state.classify();
         if (withSeenLamps || found != PathClass::kEmission)
@@ -49,7 +84,7 @@ SampleRadiance PhotonIntegrator::sample(Vec2f screen, const Ray& ray, Sampler& s
         const Bsdf bsdf(m_scene, surface, -path.ray.direction, Transport::kRadiance,
                         path.throughput);
         if (first) recordFirstHit(surface, bsdf, result);
-        if (bsdf.isBlackBody()) return result;
+        if (bsdf.isBlackBody()) return;
         StillToFind still;
         if (bsdf.has(Lobe::kDiffuse))
             still = readMaps(screen, surface, bsdf, path.throughput, scratch, result);
@@ -60,25 +95,19 @@ SampleRadiance PhotonIntegrator::sample(Vec2f screen, const Ray& ray, Sampler& s
             result.direct += path.throughput * (direct.diffuse + direct.glossy);
         }
         if (bsdf.isDiffuseOnly() && still.lamps == LampStrategy::kNextEventOnly && !still.indirect)
-            return result;
+            return;
         BsdfSample sample;
-        const float uLobe = sampler.next1D();
-        bool valid = bsdf.sample(uLobe, sampler.next2D(), sample);
-        if (sample.lobe == Lobe::kDiffuse) {
-            const std::uint32_t rays = still.indirect ? ownGatherRays(m_maps.points) : 1;
-            const Rgb share = path.throughput / static_cast<float>(rays);
-            for (std::uint32_t i = 0; i < rays; ++i) {
-                if (i > 0) valid = bsdf.sample(uLobe, sampler.next2D(), sample);
-                if (!valid) continue;
-                last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle, lampSamples};
-                followDiffuse(last, still, share * sample.weight, sampler, result);
-            }
-            return result;
+        if (reflected && divide(surface, bsdf, branch, *reflected, sample, sampler)) {
+            reflected = nullptr;
+            if (!branch.goOn(surface, bsdf, sample, sampler)) return;
+            continue;
         }
-        if (!valid) return result;
-        if (!path.scatter(surface, bsdf, sample, sampler)) return result;
-        state.scatter(sample.lobe);
-        last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle, lampSamples};
+        const float uLobe = sampler.next1D();
+        const Sampler directions = sampler;
+        const bool valid = bsdf.sample(uLobe, sampler.next2D(), sample);
+        if (sample.lobe == Lobe::kDiffuse)
+            return followDiffuse(surface, bsdf, branch, still, uLobe, directions, result);
+        if (!valid || !branch.goOn(surface, bsdf, sample, sampler)) return;
         if (reflectsLamps) lampSamples = 1;
     }
 }
@@ -110,17 +139,34 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(Vec2f screen, const Sur
         // Any pattern that depends on the place alone.
         const auto pattern = std::bit_cast<std::uint32_t>(surface.position.x) ^
                              std::bit_cast<std::uint32_t>(surface.position.y);
-        add(m_maps.points ? m_maps.points->descendedAt(place, pattern)
+        add(m_maps.points ? m_maps.points->descendedAt(place, indirect.clearance, pattern)
                           : m_maps.descended->at(surface.position, normal, pattern),
             result.indirect);
     }
     return still;
 }
 
+// uLobe: has chosen the lobe.
+void PhotonIntegrator::followDiffuse(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
+                                     StillToFind still, float uLobe, const Sampler& directions,
+                                     SampleRadiance& result) const {
+    const std::uint32_t rays = still.indirect ? ownGatherRays(m_maps.points) : 1;
+    const Rgb share = branch.path.throughput / static_cast<float>(rays);
+    for (std::uint32_t i = 0; i < rays; ++i) {
+        // All those of a pixel are one low-discrepancy sequence.
+        Sampler part = directions.part(rays, i);
+        BsdfSample sample;
+        if (!bsdf.sample(uLobe, part.next2D(), sample)) continue;
+        const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle,
+                               branch.lampSamples};
+        gatherAlong(last, still, share * sample.weight, part, result);
+    }
+}
+
 // Light that the ray finds at a lamp is direct, the other strategy of its next-event estimation;
 // light found by way of other lobes is a caustic and its map's business.
-void PhotonIntegrator::followDiffuse(const LastScatter& last, StillToFind still, const Rgb& weight,
-                                     Sampler& sampler, SampleRadiance& result) const {
+void PhotonIntegrator::gatherAlong(const LastScatter& last, StillToFind still, const Rgb& weight,
+                                   Sampler& sampler, SampleRadiance& result) const {
     const Ray ray = rayFrom(last.from, last.direction);
     Gathered found;
     if (still.indirect) {

@@ -2,6 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <cstdint>
+#include <optional>
+
 #include "integrator/photons/caustic_map.h"
 #include "integrator/photons/irradiance_sites.h"
 #include "integrator/sampling/sampler.h"
@@ -9,6 +12,7 @@
 #include "integrator/scene/scene.h"
 #include "integrator/transport/direct_light.h"
 #include "integrator/transport/gather_points.h"
+#include "integrator/transport/path_walk.h"
 
 namespace pm {
 
@@ -46,11 +50,31 @@ class PhotonIntegrator {
         LampStrategy lamps = LampStrategy::kBoth;
         bool indirect = false;
     };
+    // A camera path on its way.
+    struct Branch {
+        PathWalk path;
+        PathState state;
+        LastScatter last;
+        std::uint32_t lampSamples = 1;
+
+        bool goOn(const Surface& surface, const Bsdf& bsdf, const BsdfSample& sample,
+                  Sampler& sampler);
+    };
+    // Where glass is met: the reflected part goes on by itself, the path by `refraction`. False
+    // where there are other lobes, or too little in one of the two.
+    static bool divide(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
+                       std::optional<Branch>& reflected, BsdfSample& refraction, Sampler& sampler);
+    // To its end; `reflected` gets what the first glass reflects, null: it is not divided.
+    void follow(Vec2f screen, Branch& branch, std::optional<Branch>* reflected, Sampler& sampler,
+                NearestPhotons& scratch, bool withSeenLamps, SampleRadiance& result) const;
     StillToFind readMaps(Vec2f screen, const Surface& surface, const Bsdf& bsdf,
                          const Rgb& throughput, NearestPhotons& scratch,
                          SampleRadiance& result) const;
-    void followDiffuse(const LastScatter& last, StillToFind still, const Rgb& weight,
-                       Sampler& sampler, SampleRadiance& result) const;
+    void followDiffuse(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
+                       StillToFind still, float uLobe, const Sampler& directions,
+                       SampleRadiance& result) const;
+    void gatherAlong(const LastScatter& last, StillToFind still, const Rgb& weight,
+                     Sampler& sampler, SampleRadiance& result) const;
 
     const Scene& m_scene;
     const LightSampler& m_lights;

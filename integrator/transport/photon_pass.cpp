@@ -10,7 +10,7 @@
 
 #include "integrator/transport/frame_renderer.h"
 #include "integrator/transport/gather_pilot.h"
-#include "integrator/values/error.h"
+#include "integrator/transport/pass_radius.h"
 #include "integrator/values/stopwatch.h"
 
 namespace pm {
@@ -19,15 +19,6 @@ namespace {
 
 // Descended light is smoother than caustics: so many times as many photons an estimate.
 constexpr std::uint32_t kDescendedPhotons = 2;
-
-// Radius of a pass over the first one's: r^2 shrinks by (i + a)/(i + 1) from pass i to the next, so
-// that bias and variance both go to 0 over the passes.
-// Source: Knaus & Zwicker 2011, eq. 20, alpha = 2/3.
-float radiusFactor(std::uint32_t pass) {
-    double squared = 1.0;
-    for (std::uint32_t i = 0; i < pass; ++i) squared *= (i + 2.0 / 3.0) / (i + 1.0);
-    return static_cast<float>(std::sqrt(squared));
-}
 
 }  // namespace
 
@@ -81,10 +72,30 @@ std::uint64_t PhotonPass::PassMaps::memoryBytes() const {
            bytesOf(caustic);
 }
 
-// Patches grow as a pass is rendered.
+// A map of so many photons was just built, as the last one of these.
+void PhotonPass::noteBuilding(const PassMaps& maps, std::size_t photons) {
+    const std::lock_guard lock(m_mutex);
+    m_peakMapBytes = std::max(m_peakMapBytes, heldMapBytes() + maps.memoryBytes() +
+                                                  photons * (PhotonMap::kBytesPerPhoton -
+                                                             PhotonMap::kHeldBytesPerPhoton));
+}
+
+// Patches and gather points grow as a pass is rendered.
+std::uint64_t PhotonPass::heldMapBytes() const {
+    std::uint64_t held = m_patches->memoryBytes();
+    for (const auto* const radius : {m_causticRadius.get(), m_descendedRadius.get()})
+        if (radius) held += radius->memoryBytes();
+    for (const PassMaps& maps : m_held) held += maps.memoryBytes();
+    return held;
+}
+
 std::uint64_t PhotonPass::peakMapBytes() const {
-    if (m_held.empty()) return m_peakMapBytes;
-    return std::max(m_peakMapBytes, m_heldBytes + m_patches->memoryBytes());
+    return m_held.empty() ? m_peakMapBytes : std::max(m_peakMapBytes, heldMapBytes());
+}
+
+void PhotonPass::forget(const Rect& region, const Rect& all) const {
+    for (const PassMaps& held : m_held)
+        if (held.points) held.points->forget(region, all);
 }
 
 void PhotonPass::dropMaps() {
@@ -175,12 +186,15 @@ void PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
     const Stopwatch watch;
     const CancelCheck check(control.cancelled);
     const float factor = radiusFactor(maps.pass);
+    const std::size_t landed = traced.photons.size();
     maps.caustic = std::make_unique<CausticMap>(std::move(traced.photons), *m_causticRadius, factor,
                                                 m_patches.get(), check);
+    noteBuilding(maps, landed);
     if (m_plan.descent > 0.0f) {
         maps.descendedPhotons = std::make_unique<PhotonMap>(std::move(traced.descended), check);
         maps.descended = std::make_unique<SurfaceEstimate>(m_scene, *maps.descendedPhotons,
                                                            m_descendedRadius->typical() * factor);
+        noteBuilding(maps, maps.descendedPhotons->size());
     }
     const std::lock_guard lock(m_mutex);
     m_mapSeconds += watch.seconds();
@@ -199,14 +213,14 @@ void PhotonPass::buildIndirect(PassMaps& maps, Control& control) {
     const float factor = radiusFactor(maps.pass);
     maps.global =
         std::make_unique<PhotonMap>(std::move(traced.photons), CancelCheck(control.cancelled));
-    maps.sites = std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor,
-                                                   sitesHavePatches() ? m_patches.get() : nullptr);
+    noteBuilding(maps, maps.global->size());
+    maps.sites =
+        std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor,
+                                          sitesHavePatches() ? m_patches.get() : nullptr, factor);
     const GatherPoints::Request request{
         m_settings.width, m_settings.height, m_plan.gatherSpacing, m_raysOfPoint,          factor,
         m_settings.seed,  maps.pass,         maps.descended.get(), m_descendedRadius.get()};
-    maps.points =
-        std::make_unique<GatherPoints>(m_scene, m_camera, *maps.sites, request, control.cancelled);
-    if (control.cancelled.load()) throw Error(Status::kCancelled, "cancelled while gathering");
+    maps.points = std::make_unique<GatherPoints>(m_scene, m_camera, *maps.sites, request);
     const std::lock_guard lock(m_mutex);
     m_mapSeconds += watch.seconds();
 }
@@ -223,10 +237,6 @@ void PhotonPass::buildMaps(std::uint32_t pass, Control& control) {
     if (m_plan.globalMap) buildIndirect(maps, control);
     const std::lock_guard lock(m_mutex);
     m_held.push_back(std::move(maps));
-    m_heldBytes = 0;
-    for (const auto* const radius : {m_causticRadius.get(), m_descendedRadius.get()})
-        if (radius) m_heldBytes += radius->memoryBytes();
-    for (const PassMaps& held : m_held) m_heldBytes += held.memoryBytes();
 }
 
 void PhotonPass::count(PhotonKind kind, const PhotonBalance& balance) {

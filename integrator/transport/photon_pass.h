@@ -52,6 +52,9 @@ class PhotonPass {
     PhotonMaps maps(std::uint32_t pass) const;
     PhotonMaps maps() const { return m_held.empty() ? PhotonMaps{} : m_held.back().view(); }
 
+    // As FrameRenderer::forget.
+    void forget(const Rect& region, const Rect& all) const;
+
     // Threads: any time.
     void addTo(RenderCounters& counters) const;
     std::vector<Notice> takeNotices();
@@ -90,7 +93,9 @@ class PhotonPass {
     void count(PhotonKind kind, const PhotonBalance& balance);
 
     void dropMaps();
-    std::uint64_t peakMapBytes() const;  // m_mutex held
+    void noteBuilding(const PassMaps& maps, std::size_t photons);
+    std::uint64_t heldMapBytes() const;  // m_mutex held, as for the next
+    std::uint64_t peakMapBytes() const;
 
     const Scene& m_scene;
     const Camera& m_camera;
@@ -111,9 +116,9 @@ class PhotonPass {
     std::vector<PassMaps> m_held;  // of the pass begun last and of those added since
     PhotonBalance m_allKinds, m_global;
     std::uint64_t m_storedCaustic = 0;
-    std::uint64_t m_heldBytes = 0, m_peakMapBytes = 0;  // the first without patches
-    std::uint64_t m_gatherRays = 0;                     // of the passes whose maps were dropped
-    bool m_noGlobalPhotons = false;                     // of the pilot
+    std::uint64_t m_peakMapBytes = 0;
+    std::uint64_t m_gatherRays = 0;  // of the passes whose maps were dropped
+    bool m_noGlobalPhotons = false;  // of the pilot
     double m_photonSeconds = 0, m_mapSeconds = 0;
     std::vector<Notice> m_notices;
 };

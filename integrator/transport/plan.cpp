@@ -5,15 +5,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "integrator/photons/caustic_casters.h"
 #include "integrator/photons/caustic_map.h"
 #include "integrator/photons/irradiance_sites.h"
+#include "integrator/photons/photon_tracer.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/gather_points.h"
 #include "integrator/transport/lamp_samples.h"
+#include "integrator/transport/pass_radius.h"
 
 namespace pm {
 
@@ -29,8 +32,17 @@ constexpr std::uint32_t kAutoGatherRays = 32;
 constexpr float kGatherSpacing = 2.5f;
 constexpr double kMostGatherPoints = 1 << 20;
 constexpr float kAutoDescent = 1.0f;
-// Arrivals a photon: 1/(1 - albedo) for an albedo of 0.75.
-constexpr std::uint64_t kExpectedArrivals = 4;
+// Landings of a photon: 1/(1 - albedo) for an albedo of 0.75.
+constexpr double kExpectedLandings = 4;
+
+// Frames of so many pixels go bucket by bucket nearly everywhere, with the maps of up to 8 passes:
+// those may take this. By the frame alone: not by the memory there is, nor the number of passes,
+// which change no picture.
+constexpr double kHugeFramePixels = 0x1p28;
+constexpr std::uint32_t kPassesOfHugeFrame = 8;
+constexpr std::uint64_t kMapBytesOfHugeFrame = std::uint64_t{560} << 20;
+// Photons that show how often photons land there, where lamps are few.
+constexpr std::uint64_t kLandingPilotPhotons = 4096;
 
 struct SceneTraits {
     bool diffuse = false;   // some surface reflects diffusely
@@ -76,14 +88,14 @@ void estimateCosts(const RenderSettings& settings, Plan& plan) {
     constexpr double kPerGlobalPhoton = 3e-6, kPerCausticPhoton = 4e-6;
     const auto global = static_cast<double>(plan.globalPhotons);
     const auto caustic = static_cast<double>(plan.causticPhotons);
-    plan.mapBytes = plan.landingsPerPass() * PhotonMap::kBytesPerPhoton;
+    plan.mapBytes = plan.heldMapBytes(1) + plan.buildingMapBytes();
+    if (plan.globalMap)
+        plan.mapBytes += GatherPoints::memoryBytes(settings.width, settings.height,
+                                                   plan.gatherSpacing, settings.window);
     const double samplesOfAPixel = std::pow(4.0, static_cast<double>(settings.aaLevel) - 2.0);
     double perPixel =
         samplesOfAPixel * (kPerSample + (plan.causticMap ? kPerSampleOfCaustics : 0.0));
     if (plan.globalMap) {
-        plan.mapBytes +=
-            GatherPoints::memoryBytes(settings.width, settings.height, plan.gatherSpacing) +
-            IrradianceSites::memoryBytes(plan.globalPhotons * kExpectedArrivals);
         const double spacing = static_cast<double>(plan.gatherSpacing);
         perPixel += plan.gatherRays * kPerGatherRay / (spacing * spacing);
     }
@@ -121,8 +133,39 @@ void planDirectLight(const Scene& scene, const SceneTraits& traits, Plan& plan) 
             scene.lights().size()));
 }
 
+bool isHuge(const RenderSettings& settings) {
+    return static_cast<double>(settings.width) * settings.height >= kHugeFramePixels;
+}
+
+// Fewer photons in huge frames, so that the maps of several passes fit into memory.
+void limitPhotons(const RenderSettings& settings, Plan& plan) {
+    if (!isHuge(settings) || settings.photons > 0) return;
+    const auto bytes =
+        static_cast<double>(plan.heldMapBytes(kPassesOfHugeFrame) + plan.buildingMapBytes());
+    const double share = static_cast<double>(kMapBytesOfHugeFrame) / bytes;
+    if (!(share < 1)) return;
+    for (std::uint64_t* const photons : {&plan.globalPhotons, &plan.causticPhotons})
+        *photons = static_cast<std::uint64_t>(static_cast<double>(*photons) * share);
+    plan.reasons.push_back(fmt::format(
+        "photons: in all {} a pass and no more, so that the maps of {} passes fit into {} MiB: a "
+        "frame as large as this goes bucket by bucket; --photons asks for others",
+        plan.photonsPerPass(), kPassesOfHugeFrame, kMapBytesOfHugeFrame >> 20));
+}
+
+// How often photons land, for estimates of memory alone: no picture depends on it.
+double expectedLandings(const Scene& scene, const RenderSettings& settings) {
+    if (!isHuge(settings) || scene.nearLights().size() > LightSampler::kFewLights)
+        return kExpectedLandings;
+    const PhotonTraceRequest request{PhotonKind::kGlobalPilot, kLandingPilotPhotons, settings.seed};
+    const std::atomic<bool> neverCancelled{false};
+    const PhotonBalance balance =
+        tracePhotons(scene, LightSampler(scene), request, neverCancelled, {}).balance;
+    return balance.emitted == 0
+               ? kExpectedLandings
+               : static_cast<double>(balance.stored) / static_cast<double>(balance.emitted);
+}
+
 void planGlobalMap(const RenderSettings& settings, Plan& plan) {
-    plan.globalPhotons = photonsOf(settings, kAutoGlobalPhotons);
     plan.gatherRaysByPilot = settings.gatherRays == 0;
     plan.gatherRays = plan.gatherRaysByPilot ? kAutoGatherRays : settings.gatherRays;
     plan.gatherSpacing = std::max(
@@ -139,14 +182,12 @@ void planGlobalMap(const RenderSettings& settings, Plan& plan) {
         plan.globalPhotons));
 }
 
-void planCausticMap(const RenderSettings& settings, const SceneTraits& traits, Plan& plan) {
-    plan.causticPhotons = photonsOf(settings, kAutoCausticPhotons);
+void planCausticMap(const SceneTraits& traits, Plan& plan) {
     plan.reasons.push_back(
         fmt::format("caustic map: {} photons a pass, aimed, {}", plan.causticPhotons,
                     traits.specular ? "since the scene has surfaces that are not diffuse"
                                     : "though every surface is diffuse"));
     if (!plan.globalMap) return;
-    plan.descent = kAutoDescent;
     plan.reasons.push_back(fmt::format(
         "light descended from caustics: {:.0f} % of their photons are followed on, for a "
         "wide density estimate; gather rays would have to find the caustics",
@@ -158,12 +199,16 @@ void planMaps(const RenderSettings& settings, const SceneTraits& traits, bool ev
     plan.globalMap = !traits.flat || everything;
     plan.causticMap = (traits.specular && !traits.flat) || everything;
     plan.tracePhotons = plan.globalMap || plan.causticMap;
+    if (plan.globalMap) plan.globalPhotons = photonsOf(settings, kAutoGlobalPhotons);
+    if (plan.causticMap) plan.causticPhotons = photonsOf(settings, kAutoCausticPhotons);
+    if (plan.globalMap && plan.causticMap) plan.descent = kAutoDescent;
+    limitPhotons(settings, plan);
     if (plan.globalMap)
         planGlobalMap(settings, plan);
     else
         plan.reasons.push_back("no global map: all surfaces that reflect lie in one plane");
     if (plan.causticMap)
-        planCausticMap(settings, traits, plan);
+        planCausticMap(traits, plan);
     else
         plan.reasons.push_back(traits.specular
                                    ? "no caustic map: all surfaces that reflect lie in one plane"
@@ -200,15 +245,47 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
         return plan;
     }
     planDirectLight(scene, traits, plan);
+    plan.landingsOfPhoton = kExpectedLandings;
     planMaps(settings, traits, everything, plan);
+    plan.landingsOfPhoton = expectedLandings(scene, settings);
     estimateCosts(settings, plan);
     return plan;
 }
 
-std::uint64_t Plan::landingsPerPass() const {
-    const double ofCaustic = 1.0 + static_cast<double>(descent) * kExpectedArrivals;
-    return globalPhotons * kExpectedArrivals +
-           static_cast<std::uint64_t>(static_cast<double>(causticPhotons) * ofCaustic);
+std::uint64_t Plan::globalLandings() const {
+    return static_cast<std::uint64_t>(static_cast<double>(globalPhotons) * landingsOfPhoton);
+}
+
+std::uint64_t Plan::descendedLandings() const {
+    return static_cast<std::uint64_t>(static_cast<double>(causticPhotons) *
+                                      static_cast<double>(descent) * landingsOfPhoton);
+}
+
+std::uint64_t Plan::heldMapBytes(std::uint32_t passes) const {
+    const std::uint64_t caustics = causticLandings() + descendedLandings();
+    std::uint64_t bytes = caustics / PilotRadius::kPilotShare * PhotonMap::kHeldBytesPerPhoton;
+    for (std::uint32_t pass = 0; pass < passes; ++pass) {
+        bytes += (globalLandings() + caustics) * PhotonMap::kHeldBytesPerPhoton;
+        if (globalMap) bytes += IrradianceSites::memoryBytes(globalLandings(), radiusFactor(pass));
+    }
+    return bytes;
+}
+
+// In the order in which PhotonPass makes the maps; a map's photons go when it is built, before
+// those maps are there that come after it.
+std::uint64_t Plan::buildingMapBytes() const {
+    constexpr std::uint64_t kHeld = PhotonMap::kHeldBytesPerPhoton;
+    constexpr std::uint64_t kEach = PhotonMap::kBytesPerPhoton - kHeld;
+    const auto beyond = [](std::uint64_t building, std::uint64_t after) {
+        return building > after ? building - after : 0;
+    };
+    const std::uint64_t sites = globalMap ? IrradianceSites::memoryBytes(globalLandings()) : 0;
+    const std::uint64_t global = globalLandings() * kHeld + sites;
+    const std::uint64_t descended = descendedLandings();
+    return std::max(
+        {beyond(globalLandings() * kEach, sites),
+         beyond(causticLandings() * kEach + descended * sizeof(Photon), global + descended * kHeld),
+         beyond(descended * kEach, global)});
 }
 
 std::uint64_t Plan::globalPilotPhotons() const {

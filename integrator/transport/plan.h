@@ -31,7 +31,8 @@ struct Plan {
     bool gatherRaysByPilot = false;
     // Lamp samples of a camera sample, see PhotonIntegrator; 0: a pilot finds how many pay.
     std::uint32_t lampSamples = 0;
-    std::uint64_t mapBytes = 0;          // estimated peak of the maps
+    std::uint64_t mapBytes = 0;          // estimated peak of one pass's maps
+    double landingsOfPhoton = 0;         // expected at diffuse surfaces; at most as a rule
     double processorSecondsPerPass = 0;  // estimated, to a factor of about two
     // The same of a camera sample, its share of the frame's photons and gather points included.
     double processorSecondsPerSample = 0;
@@ -40,7 +41,17 @@ struct Plan {
 
     std::uint64_t photonsPerPass() const { return globalPhotons + causticPhotons; }
     // That those leave where they land, at most as a rule.
-    std::uint64_t landingsPerPass() const;
+    std::uint64_t landingsPerPass() const {
+        return globalLandings() + causticLandings() + descendedLandings();
+    }
+    std::uint64_t globalLandings() const;
+    std::uint64_t causticLandings() const { return causticPhotons; }  // one of each
+    std::uint64_t descendedLandings() const;
+
+    // Estimated memory where the maps of several passes are held: of the first so many passes,
+    // pilots included, gather points not; and what comes on top while a pass's maps are made.
+    std::uint64_t heldMapBytes(std::uint32_t passes) const;
+    std::uint64_t buildingMapBytes() const;
 
     // Emitted once a render, to find the radii of the estimates.
     std::uint64_t globalPilotPhotons() const;

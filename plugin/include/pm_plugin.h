@@ -192,7 +192,9 @@ typedef struct PmrCageDesc {
     uint32_t reserved;
 } PmrCageDesc;
 
-/* An analytic sphere, one material slot. Its front is outside. */
+/* An analytic sphere, one material slot. Its front is outside. Textures are latitude-longitude
+ * pictures: their middle towards +z of object space, their right half towards +x, their upper edge
+ * at +y. */
 typedef struct PmrSphereDesc {
     uint64_t size;
     double centre[3]; /* object space */

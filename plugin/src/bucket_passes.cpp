@@ -95,7 +95,10 @@ BucketRun BucketPasses::run(const FrameRenderer& renderer, WorkerArena& arena, d
         });
     };
     work.deliver = [&](std::uint32_t cell, const Rect& rect, std::span<const float>) {
-        guarded([&] { finish(cell, rect, events); });
+        guarded([&] {
+            renderer.forget(rect, m_frame.grid.window());
+            finish(cell, rect, events);
+        });
         const double share =
             static_cast<double>(++done) / static_cast<double>(m_frame.order.size());
         const ProgressClock::Reading reading = clock.buckets(0, share);

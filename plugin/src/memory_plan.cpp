@@ -9,6 +9,7 @@
 #include "integrator/photons/photon.h"
 #include "integrator/photons/surface_patches.h"
 #include "integrator/transport/frame_renderer.h"
+#include "integrator/transport/gather_points.h"
 #include "plugin/include/pm_plugin.h"
 #include "plugin/src/call_error.h"
 #include "plugin/src/frame_samples.h"
@@ -43,9 +44,29 @@ std::uint64_t hostBytes(const SettingValues& values) {
     return static_cast<std::uint64_t>(values.window().area()) * channels * sizeof(float);
 }
 
-// Maps of so many passes; patches of surfaces are kept for all of them.
-std::uint64_t mapBytes(const Plan& plan, std::uint64_t passes) {
-    return plan.tracePhotons ? plan.mapBytes * passes + SurfacePatches::kMostBytes : 0;
+// Maps of a pass at a time; patches of surfaces are kept for all of them.
+std::uint64_t mapBytes(const Plan& plan) {
+    return plan.tracePhotons ? plan.mapBytes + SurfacePatches::kMostBytes : 0;
+}
+
+// Gather points of a pass, made and forgotten as the buckets come.
+std::uint64_t pointBytes(const Plan& plan, const RenderSettings& settings, const BucketGrid& grid,
+                         const std::string& orderName, std::size_t bucketsHeld) {
+    const BucketOrder* const order = findBucketOrder(orderName);
+    if (!plan.globalMap || order == nullptr) return 0;
+    std::vector<Rect> rects;
+    rects.reserve(grid.cellCount());
+    for (const std::uint32_t cell : order->cells(grid.columns(), grid.rows(), settings.seed))
+        rects.push_back(grid.cellRect(cell));
+    return GatherPoints::memoryBytes(settings.width, settings.height, plan.gatherSpacing, rects,
+                                     grid.window(), bucketsHeld);
+}
+
+// Maps of all passes, built one after the other.
+std::uint64_t mapBytesByBuckets(const Plan& plan, std::uint32_t passes, std::uint64_t points) {
+    if (!plan.tracePhotons) return 0;
+    return plan.heldMapBytes(passes) + points * passes + plan.buildingMapBytes() +
+           SurfacePatches::kMostBytes;
 }
 
 // Why the passes of a bucket can't all be made before the next one; empty where they can.
@@ -82,13 +103,14 @@ std::uint64_t frameBytes(RenderSettings settings, const Rect& window) {
 
 // Turns a plan for the whole frame into one by buckets.
 void planByBuckets(const Plan& plan, const RenderSettings& settings, std::uint64_t threads,
-                   const BucketGrid& grid, MemoryPlan& memory) {
+                   const BucketGrid& grid, const std::string& order, MemoryPlan& memory) {
     memory.byBuckets = true;
     memory.bucketsHeld = static_cast<std::uint32_t>(
         std::min<std::uint64_t>(kBucketsHeldPerThread * threads, grid.cellCount()));
     const std::int32_t side = grid.bucketSize();
     memory.need.frame = memory.bucketsHeld * frameBytes(settings, {0, 0, side, side});
-    memory.need.maps = mapBytes(plan, settings.passes);
+    memory.need.maps = mapBytesByBuckets(
+        plan, settings.passes, pointBytes(plan, settings, grid, order, memory.bucketsHeld));
     memory.need.process = kProgramBytes;
     memory.need.buckets = threads * kAtomPixels *
                               static_cast<std::uint64_t>(channelLayout(settings).count + 4) *
@@ -112,7 +134,7 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
     const auto bucketSize = static_cast<std::uint64_t>(grid.bucketSize());
     MemoryPlan memory;
     memory.limit = memoryLimitBytes(values.number(Setting::kMemoryLimit));
-    memory.whole = {scene.memoryBytes(), frameBytes(settings, settings.window), mapBytes(plan, 1),
+    memory.whole = {scene.memoryBytes(), frameBytes(settings, settings.window), mapBytes(plan),
                     threads * bucketSize * bucketSize *
                             static_cast<std::uint64_t>(layout.count + 1) * sizeof(float) +
                         grid.cellCount() * sizeof(PmrBucketInfo) * 2,
@@ -135,7 +157,7 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
                         memory.whyWhole));
     if (!demanded && (memory.whole.total() <= memory.limit || !memory.whyWhole.empty()))
         return memory;
-    planByBuckets(plan, settings, threads, grid, memory);
+    planByBuckets(plan, settings, threads, grid, values.word(Setting::kBucketOrder), memory);
     return memory;
 }
 

@@ -120,8 +120,7 @@ TEST_F(CancelRender, InsideAPassOverMuchGlass) {
     EXPECT_EQ(PMR_OK, api().releaseScene(scene));
 }
 
-// Every triangle is a lamp, and they learn where they reach. The tree over them is built in one
-// piece, a processor second for a million lamps: so PM_TRIANGLES above 500000 fails here.
+// Every triangle is a lamp, and they learn where they reach.
 TEST_F(CancelRender, InsideAPassWithManyLamps) {
     const PmrScene scene = litSheet(lamp());
     cancelRenders("a pass with many lamps", scene, kSmallPass);

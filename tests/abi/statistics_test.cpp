@@ -71,6 +71,35 @@ TEST(Statistics, MapsTakeNoMoreThanPlanned) {
         }
 }
 
+// Maps of 8 passes of a huge frame by buckets: what is planned is what is used, but for the room
+// for patches of surfaces; points are those of the crop, not of the frame, whose million takes 90
+// MB a pass.
+TEST(Statistics, MapsOfAHugeFrameTakeWhatIsPlanned) {
+    constexpr double kPatches = 32 << 20;
+    const BoxHost host;
+    PmrRenderDesc desc = PMR_INIT(PmrRenderDesc);
+    desc.bucketFinished = [](void*, PmrRender, const PmrBucketInfo*) {};
+    const PmrRender render = host.makeRender({{"width", "32768"},
+                                              {"height", "32768"},
+                                              {"crop", "16000,16384,16256,16512"},
+                                              {"delivery", "buckets"},
+                                              {"photons", "20000"},
+                                              {"passes", "8"},
+                                              {"aaLevel", "1"},
+                                              {"aaLevelMost", "1"}},
+                                             &desc);
+    ASSERT_EQ(PMR_OK, api().startRender(render)) << host.lastError();
+    ASSERT_EQ(PMR_OK, api().waitRender(render, -1.0)) << host.lastError();
+    const nlohmann::json memory = statistics(render)["memory"];
+    EXPECT_EQ(PMR_OK, api().destroyRender(render));
+    const auto used = memory["mapBytes"].get<double>();
+    const auto planned = memory["plannedMapBytes"].get<double>();
+    EXPECT_LE(used, planned);
+    // Of so small a crop, tiles that are never asked for count.
+    EXPECT_LT(planned - kPatches, 1.15 * used);
+    EXPECT_LT(planned, 100e6);
+}
+
 // Checksums tell renders apart that have other pixels, and none that have not.
 TEST(Statistics, HashesNameTheRender) {
     using Settings = std::map<std::string, std::string>;

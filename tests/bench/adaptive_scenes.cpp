@@ -48,20 +48,20 @@ test::SceneMaker barsInAQuarter() {
     return maker;
 }
 
-// Black specks on a fifth of a quarter of the plane, several in a pixel each way: whether a sample
-// meets one no lamp sample tells.
-test::SceneMaker specksInAQuarter() {
+// The plane with black specks, count to a side of a square from (low, low) on, where whether a
+// sample meets one no lamp sample tells.
+test::SceneMaker specks(double low, double apart, double side, int count) {
     test::SceneMaker maker = plane();
     const auto black = maker.diffuse({});
-    constexpr double kApart = 0.009, kSide = 0.004, kAbove = 1e-4;
-    constexpr int kCount = 112;
-    for (int j = 0; j < kCount; ++j)
-        for (int i = 0; i < kCount; ++i) {
+    constexpr double kAbove = 1e-4;
+    for (int j = 0; j < count; ++j)
+        for (int i = 0; i < count; ++i) {
             // Anywhere in its cell, by the fractions of two irrational multiples.
-            const double n = j * kCount + i;
-            const double x = i + std::fmod(0.7548776662 * n, 1.0) * (1 - kSide / kApart);
-            const double y = j + std::fmod(0.5698402910 * n, 1.0) * (1 - kSide / kApart);
-            maker.quad({kApart * x, kApart * y, kAbove}, {kSide, 0, 0}, {0, kSide, 0}, black);
+            const double n = j * count + i;
+            const double x = i + std::fmod(0.7548776662 * n, 1.0) * (1 - side / apart);
+            const double y = j + std::fmod(0.5698402910 * n, 1.0) * (1 - side / apart);
+            maker.quad({low + apart * x, low + apart * y, kAbove}, {side, 0, 0}, {0, side, 0},
+                       black);
         }
     return maker;
 }
@@ -76,6 +76,20 @@ test::SceneMaker edges() {
         const Vec3d along{0.4 * std::cos(angle), 0.4 * std::sin(angle), 0};
         const Vec3d across{-0.25 * std::sin(angle), 0.25 * std::cos(angle), 0};
         maker.quad({x, y, 0.01 * i}, along, across, maker.diffuse({}, Rgb(shine)));
+    }
+    maker.camera({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 28);
+    return maker;
+}
+
+// Shining lines on black, a quarter as wide as a pixel.
+test::SceneMaker lines() {
+    test::SceneMaker maker;
+    const auto shining = maker.diffuse({}, Rgb(1.0f));
+    for (int i = 0; i < 14; ++i) {
+        const double angle = 0.45 * i, x = std::cos(2.4 * i) * 0.6, y = std::sin(1.7 * i) * 0.6;
+        const Vec3d along{std::cos(angle), std::sin(angle), 0};
+        const Vec3d across{-0.008 * std::sin(angle), 0.008 * std::cos(angle), 0};
+        maker.quad({x - along.x / 2, y - along.y / 2, 0.01 * i}, along, across, shining);
     }
     maker.camera({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 28);
     return maker;
@@ -101,7 +115,10 @@ std::vector<AdaptiveScene> adaptiveScenes(const std::filesystem::path& peers) {
         {"edges", "shining shapes on black: edges only", edges(), true},
         {"quarter", "the plane, light through slits on a quarter of it", barsInAQuarter(), true},
         {"quarter-fine", "the plane, black specks far below a pixel on a quarter of it",
-         specksInAQuarter(), true}};
+         specks(0, 0.009, 0.004, 112), true},
+        {"rare", "the plane, black specks far below a pixel on 3 % of it",
+         specks(-1.1, 0.018, 0.0031, 122), true},
+        {"lines", "shining lines thinner than a pixel on black", lines(), true}};
     for (PlanScene& scene : planScenes())
         scenes.push_back({scene.key, scene.what, std::move(scene.maker), scene.key != "glass"});
     const std::filesystem::path file = peers / "scenes.json";

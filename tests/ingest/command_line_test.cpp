@@ -136,6 +136,36 @@ TEST(CommandLine, refusesBadValues) {
     }
 }
 
+// The line names the option, what was given and what is allowed.
+TEST(CommandLine, refusalsSayWhatIsAllowed) {
+    EXPECT_EQ(refusal({"--aa", "1:"}),
+              "2 --aa '1:': N or MIN:MAX with 0 <= MIN <= MAX <= 6 is wanted");
+    EXPECT_NE(refusal({"--aa", "3:2"}).find("'3:2': MIN is above MAX"), std::string::npos);
+    for (const char* option : {"--photons", "--size", "--stats", "--reference", "--report"}) {
+        const std::string text = refusal({option, ""});
+        EXPECT_TRUE(text.starts_with("2 ") && text.find(option) != std::string::npos &&
+                    text.find("empty") != std::string::npos)
+            << text;
+    }
+}
+
+// Outside of the picture there is nothing, unless a crop asks for it.
+TEST(CommandLine, onlyPixelIsInThePicture) {
+    const auto parsed = [](const Arguments& more) {
+        Arguments arguments{"s.obj", "--size", "64x48"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return errorOf([&] { parseCommandLine(arguments); });
+    };
+    for (const char* inside : {"0,0", "63,47"})
+        EXPECT_EQ(parsed({"--only-pixel", inside}), "no error");
+    for (const char* outside : {"64,47", "63,48", "-1,0", "0,-1"})
+        EXPECT_EQ(parsed({std::string("--only-pixel=") + outside}),
+                  std::string("2 --only-pixel '") + outside +
+                      "': is outside the picture; X from 0 to 63 and Y from 0 to 47 are wanted, or "
+                      "a --crop that holds it");
+    EXPECT_EQ(parsed({"--only-pixel=-3,50", "--crop=-8,-8,72,56"}), "no error");
+}
+
 TEST(CommandLine, pieces) {
     const Options options =
         parseCommandLine({"s.obj", "-o", "a.%02d.pmpart", "--frame", "3", "--checkpoint", "c.##",

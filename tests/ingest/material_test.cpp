@@ -139,5 +139,19 @@ TEST(Material, oneSectionSaysNothingAboutTheNext) {
     EXPECT_TRUE(heard.has(Warning::kMaterialValue, "a.mtl:5: material a is defined twice"));
 }
 
+// Libraries are shared by many models: what is wrong with materials that this one has not is noise.
+TEST(Material, onlyThoseInUseAreReadAndWarnedOf) {
+    const std::string text = "newmtl a\nKd 2 2 2\nnewmtl b\nKd 3 3 3\nnewmtl b\nKd 1 1 1\n";
+    const std::set<std::string> used = {"a", "not there"};
+    Heard heard;
+    const auto some = readMaterials(text, "a.mtl", ".", heard.sink, &used);
+    EXPECT_EQ(some.size(), 1u);
+    EXPECT_TRUE(heard.has(Warning::kMaterialValue, "material a: Kd 2 2 2"));
+    EXPECT_FALSE(heard.has(Warning::kMaterialValue, "material b"));
+    Heard all;
+    EXPECT_EQ(readMaterials(text, "a.mtl", ".", all.sink).size(), 2u);
+    EXPECT_TRUE(all.has(Warning::kMaterialValue, "material b: Kd 3 3 3"));
+}
+
 }  // namespace
 }  // namespace pm::host::test

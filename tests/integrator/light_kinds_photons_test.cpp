@@ -66,6 +66,15 @@ std::vector<TestLight> testLights() {
              m.sky({0.5f, 1, 2});
          }},
         {"sunny sky", [](SceneMaker& m) { m.sky(Rgb(1.0f), sunnySky(), aTurn()); }},
+        {"sphere with a texture",
+         [](SceneMaker& m) {
+             MaterialDescription lamp;
+             lamp.emission = {1, 2, 3};
+             lamp.emissionTexture = 0;
+             m.description.textures = sunnySky();
+             m.sphere({-0.3, 0.4, 0.2}, 0.3, m.material(lamp));
+             m.description.instances.back().transform = aTurn();
+         }},
         {"all of them",
          [](SceneMaker& m) {
              m.spot({-0.3, 0.8, 0.2}, {0.4, -1, 0}, {1, 2, 3}, 0.9, 0.5);

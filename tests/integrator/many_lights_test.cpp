@@ -1,105 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-// Many lights: the choice among them against the probabilities it states, light against sums over
-// all lamps, and ten thousand lamps against ten.
+// Many lights: light against sums over all lamps, and ten thousand lamps against ten.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>
 
-#include <array>
+#include <atomic>
 #include <cmath>
 #include <ctime>
-#include <span>
-#include <utility>
 
-#include "integrator/geometry/polygon_mesh.h"
 #include "integrator/scene/light_guide.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/light_tree.h"
 #include "integrator/transport/lit_places.h"
-#include "tests/integrator/scene_maker.h"
+#include "tests/integrator/lamp_rooms.h"
 #include "tests/integrator/statistics.h"
 
 namespace pm::test {
 namespace {
-
-constexpr double kSignificance = 0.01 / 20;
-
-// Square lamps in a grid of rows x columns below a ceiling, facing down; all together they have
-// the same area and radiance whatever their number.
-void addLamps(SceneMaker& maker, std::uint32_t rows, std::uint32_t columns, double height) {
-    constexpr double kArea = 0.2, kLow = -1.9, kWidth = 3.8;
-    const double half = 0.5 * std::sqrt(kArea / (rows * columns));
-    TriangleMesh mesh;
-    for (std::uint32_t j = 0; j < rows; ++j)
-        for (std::uint32_t i = 0; i < columns; ++i) {
-            const double x = kLow + kWidth * (i + 0.5) / columns;
-            const double z = kLow + kWidth * (j + 0.5) / rows;
-            const auto a = static_cast<std::uint32_t>(mesh.positions.size());
-            mesh.positions.push_back(Vec3f(Vec3d{x - half, height, z - half}));
-            mesh.positions.push_back(Vec3f(Vec3d{x + half, height, z - half}));
-            mesh.positions.push_back(Vec3f(Vec3d{x + half, height, z + half}));
-            mesh.positions.push_back(Vec3f(Vec3d{x - half, height, z + half}));
-            mesh.triangles.push_back({a, a + 1, a + 2});
-            mesh.triangles.push_back({a, a + 2, a + 3});
-        }
-    mesh.materials.assign(mesh.triangles.size(), 0);
-    mesh.faces.resize(mesh.triangles.size());
-    InstanceDescription instance;
-    instance.shape = std::make_shared<const TriangleMesh>(std::move(mesh));
-    instance.materials = {maker.diffuse({}, Rgb(48.0f))};
-    maker.description.instances.push_back(std::move(instance));
-}
-
-// A room of 4 x 3 x 4 with two boxes, half of whose lamps are above a slab. The camera sees no
-// lamp: of that many a pixel would hold many, and noise of its own.
-SceneMaker makeRoom(std::uint32_t rows, std::uint32_t columns) {
-    SceneMaker maker;
-    const auto white = maker.diffuse(Rgb(0.6f)), red = maker.diffuse({0.6f, 0.2f, 0.2f});
-    maker.quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, white);
-    maker.quad({-2, 3, -2}, {4, 0, 0}, {0, 0, 4}, white);
-    maker.quad({-2, 0, -2}, {4, 0, 0}, {0, 3, 0}, white);
-    maker.quad({-2, 0, 2}, {0, 0, -4}, {0, 3, 0}, red);
-    maker.quad({2, 0, -2}, {0, 0, 4}, {0, 3, 0}, red);
-    maker.box({-1.2, 0, -1.2}, {-0.4, 1.2, -0.4}, white, false);
-    maker.box({0.5, 0, -0.6}, {1.3, 0.7, 0.4}, white, false);
-    addLamps(maker, rows, columns, 2.95);
-    maker.box({-2, 2.5, -2}, {0, 2.6, 2}, white, false);
-    maker.camera({0, 2.6, 5.5}, {0, 0.9, -0.5}, {0, 1, 0}, 26);
-    return maker;
-}
-
-struct Room {
-    std::shared_ptr<const Scene> scene;
-    RenderSettings settings = smallFrame(96, 72, IntegratorKind::kPhoton, 4, 3);
-    std::unique_ptr<LightSampler> lights;
-
-    Room(std::uint32_t rows, std::uint32_t columns)
-        : scene(makeRoom(rows, columns).build()), lights(std::make_unique<LightSampler>(*scene)) {}
-
-    std::vector<LitPlace> places() const {
-        return findLitPlaces(*scene, Camera(*scene, settings.width, settings.height), settings);
-    }
-    void learn() { lights->learn(places(), settings.seed); }
-    // What a ray along -direction from a point, world, meets.
-    Surface seen(Vec3d from, Vec3d direction) const {
-        Surface surface;
-        const Ray ray{Vec3f(from - scene->centre()), Vec3f(normalize(direction))};
-        EXPECT_TRUE(scene->intersect(ray, surface));
-        return surface;
-    }
-    // A floor, a wall, a box's top that half the lamps don't reach, and the top of the slab, where
-    // no camera ray comes.
-    std::vector<Surface> receivers() const {
-        return {seen({1, 1, 1}, {0, -1, 0}), seen({0, 1, 0.5}, {-1, 0, 0.1}),
-                seen({-0.8, 2, -0.8}, {0, -1, 0}), seen({-1, 2.8, 0}, {0, -1, 0}),
-                seen({0, 1, 1.5}, {0, 0.2, -1})};
-    }
-};
-
-Receiver facing(const Surface& surface) {
-    return {surface.position, surface.shadingNormal};
-}
 
 // Irradiance of the surface by all lamps, a lamp as small as these being a point that shines by
 // the cosine.
@@ -139,108 +57,6 @@ double sampledIrradiance(const Room& room, const Surface& at, int samples, doubl
     error = std::sqrt(variance / samples);
     spread = std::sqrt(variance) / mean;
     return mean;
-}
-
-// By the tree alone, and with a table before it: probabilities add up to 1, and choices follow
-// them (chi-squared).
-TEST(ManyLights, ChoicesFollowTheirProbabilities) {
-    // More than a leaf each, so that runs are tried too.
-    for (const std::uint32_t side : {8u, 60u}) {
-        const Room room(side, side);
-        LightTree tree(*room.scene);
-        const auto surfaces = room.receivers();
-        std::vector<Receiver> receivers;
-        for (const Surface& surface : surfaces) receivers.push_back(facing(surface));
-        const LightGuide guide(tree, receivers,
-                               [&](std::size_t i, std::uint32_t node, std::uint32_t n) {
-                                   LightDescent descent{0.25 * n, node};
-                                   tree.choose(receivers[i], {&descent, 1});
-                                   return Sighting{descent.node, (node + i) % 3 == 0};
-                               });
-        const std::size_t count = room.scene->lights().size();
-        const auto check = [&](const auto& choose, const auto& probability) {
-            Random random(3);
-            Histogram histogram(count);
-            double sum = 0;
-            for (std::uint32_t i = 0; i < count; ++i) {
-                const auto p = static_cast<double>(probability(i));
-                EXPECT_GT(p, 0.0);
-                sum += p;
-                histogram.expect(i, p);
-            }
-            EXPECT_NEAR(sum, 1.0, 1e-4);
-            double mean = 0, wrong = 0;
-            const std::size_t samples = 200'000;
-            std::size_t total = 0;
-            // In batches of any size: side by side all are chosen as they would be alone.
-            for (std::size_t done = 0, size = 1; done < samples; size = size % 16 + 1) {
-                std::array<LightDescent, 16> batch;
-                const std::span<LightDescent> descents(batch.data(), size);
-                for (LightDescent& descent : descents) {
-                    const auto fine = static_cast<double>(random.next());
-                    descent.u = static_cast<double>(random.next()) + fine * 0x1p-24;
-                }
-                const std::array<LightDescent, 16> before = batch;
-                choose(descents);
-                for (std::size_t i = 0; i < size; ++i) {
-                    LightDescent alone = before[i];
-                    choose({&alone, 1});
-                    const auto& [u, light, p] = descents[i];
-                    EXPECT_TRUE(alone.node == light && alone.u == u && alone.probability == p);
-                    wrong += std::abs(p / probability(light) - 1.0f) > 1e-4f;
-                    histogram.count(light);
-                    EXPECT_TRUE(u >= 0 && u < 1);
-                    mean += u;
-                }
-                done += size;
-                total = done;
-            }
-            mean /= static_cast<double>(total);
-            EXPECT_EQ(wrong, 0);
-            EXPECT_GT(histogram.pValue(0), kSignificance);
-            // What is left of u is uniform.
-            EXPECT_NEAR(mean, 0.5, 5 / std::sqrt(12.0 * static_cast<double>(total)));
-        };
-        for (const Receiver& receiver : receivers) {
-            check([&](std::span<LightDescent> descents) { tree.choose(receiver, descents); },
-                  [&](std::uint32_t i) { return tree.probability(LightTree::kRoot, receiver, i); });
-            check([&](std::span<LightDescent> descents) { guide.choose(receiver, descents); },
-                  [&](std::uint32_t i) { return guide.probability(receiver, i); });
-        }
-    }
-}
-
-// Lights chosen together are those that are chosen one by one, near and far ones in any order, in
-// batches longer than any that are made side by side, too.
-TEST(ManyLights, ChosenTogetherAsAlone) {
-    for (const std::uint32_t side : {2u, 30u}) {
-        SceneMaker maker = makeRoom(side, side);
-        maker.description.directionalLights.push_back({{0.2, -1, 0.1}, Rgb(3.0f), 0.1, "sun"});
-        Room room(side, side);
-        room.scene = maker.build();
-        room.lights = std::make_unique<LightSampler>(*room.scene);
-        room.learn();
-        const Surface at = room.receivers().front();
-        Random random(9);
-        std::size_t far = 0, total = 0;
-        for (std::size_t size = 1; size < 70; size = size * 3 / 2 + 1) {
-            std::vector<ChosenLight> together(size);
-            for (ChosenLight& one : together) one.u = random.next2D();
-            const std::vector<ChosenLight> before = together;
-            room.lights->choose(at, at.geometricNormal, together);
-            for (std::size_t i = 0; i < size; ++i) {
-                ChosenLight alone = before[i];
-                room.lights->choose(at, at.geometricNormal, {&alone, 1});
-                EXPECT_EQ(alone.light, together[i].light);
-                EXPECT_EQ(alone.u, together[i].u);
-                EXPECT_EQ(alone.probability, together[i].probability);
-                far += alone.light >= room.scene->nearLights().size();
-            }
-            total += size;
-        }
-        EXPECT_GT(far, 0);
-        EXPECT_LT(far, total);
-    }
 }
 
 // The density of a sample is the density that a ray to the same point finds, on either side of a

@@ -6,7 +6,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <numbers>
+#include <string>
+#include <vector>
 
+#include "integrator/scene/camera.h"
+#include "integrator/transport/photon_integrator.h"
 #include "tests/integrator/replicates.h"
 #include "tests/integrator/rooms.h"
 
@@ -14,52 +21,186 @@ namespace pm::test {
 namespace {
 
 constexpr std::int32_t kSize = 64, kRegion = 8;
-constexpr int kRenders = 12;
+constexpr int kRenders = 8;
+constexpr std::uint32_t kPasses = 4;
+// A pass whose radii are two fifths of the first one's.
+constexpr std::uint32_t kLatePass = 60;
+constexpr double kLargestZ = 4;
 
 RenderSettings settingsOf(IntegratorKind integrator, std::uint64_t seed) {
     const bool photon = integrator == IntegratorKind::kPhoton;
-    RenderSettings settings = smallFrame(kSize, kSize, integrator, 4, photon ? 3 : 4);
+    RenderSettings settings = smallFrame(kSize, kSize, integrator, kPasses, photon ? 3 : 4);
     settings.photons = 40'000;
     // Of one seed both would have their samples at the same places in the pixels: the errors of
     // both are to be independent.
-    settings.seed = photon ? seed : seed + 4000;
+    settings.seed = photon ? seed : seed + 1000;
     return settings;
 }
 
-class Partition : public ::testing::TestWithParam<Room> {};
+// Mean of f_i^2, the radii's squares over the first pass's, from one pass on (docs/physics.md).
+double meanSquareFactor(std::uint32_t first) {
+    double squared = 1, sum = 0;
+    for (std::uint32_t i = 0; i < first + kPasses; ++i) {
+        if (i >= first) sum += squared / kPasses;
+        squared *= (i + 2.0 / 3.0) / (i + 1.0);
+    }
+    return sum;
+}
 
-INSTANTIATE_TEST_SUITE_P(Rooms, Partition, ::testing::ValuesIn(roomsOfEveryLobe()), roomName);
+// A photon-mapped render without its bias. Where light is smooth bias goes as the square of the
+// radii, so early and late passes tell what is left at none (Richardson's extrapolation). Emission
+// and direct light have none: their mean. kCorrected: of the early passes, whose estimate of their
+// bias is the renderer's own.
+RegionMeans withoutBias(const RegionMeans& early, const RegionMeans& late) {
+    const double ofEarly = meanSquareFactor(0), ofLate = meanSquareFactor(kLatePass);
+    RegionMeans result = early;
+    for (std::size_t r = 0; r < early.size(); ++r)
+        for (std::size_t c = 0; c < 3; ++c) {
+            double& beauty = result[r][kBeauty][c] = 0;
+            for (const Layer layer : {kEmission, kDirect, kCaustic, kIndirect}) {
+                const double a = early[r][layer][c], b = late[r][layer][c];
+                const bool hasBias = layer == kCaustic || layer == kIndirect;
+                beauty += result[r][layer][c] =
+                    hasBias ? (b * ofEarly - a * ofLate) / (ofEarly - ofLate) : (a + b) / 2;
+            }
+        }
+    return result;
+}
 
-// By 8 x 8 regions, and of the whole frame. Biases allowed to single layers: caustics are blurred
-// from one region into the next and fade towards edges, indirect light is blurred, too. Of the
-// whole picture the estimated bias is taken off, and nothing is allowed for what is left.
-TEST_P(Partition, AgreesWithPath) {
-    const auto scene = GetParam().maker.build();
-    const std::string& name = GetParam().name;
+// The classes sum to the picture.
+RegionMeans withClassesChecked(const RegionMeans& means) {
+    for (const LayerMeans& m : means)
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(m[kEmission][c] + m[kDirect][c] + m[kCaustic][c] + m[kIndirect][c],
+                        m[kBeauty][c], 1e-6 * m[kBeauty][c]);
+    return means;
+}
+
+// What was seen of a region by both.
+struct Look {
+    std::vector<RegionMeans> photon, path;
+
+    double z(std::size_t region, Layer layer, std::size_t channel) const {
+        const Replicated a = spread(photon, region, layer, channel);
+        const Replicated b = spread(path, region, layer, channel);
+        const double allowed = layer == kCorrected ? kOwnEstimateLeaves : kRounding;
+        return zScore(a, b, allowed * std::max(b.mean, frameMean(layer, channel)));
+    }
+    std::string tell(std::size_t region, Layer layer, std::size_t channel) const {
+        const Replicated a = spread(photon, region, layer, channel);
+        const Replicated b = spread(path, region, layer, channel);
+        return fmt::format("{}, channel {}: {:.6f} +- {:.6f}, path {:.6f} +- {:.6f}, z {:.2f}",
+                           kLayerNames[layer], channel, a.mean, a.standardError, b.mean,
+                           b.standardError, z(region, layer, channel));
+    }
+
+  private:
+    static constexpr double kRounding = 2e-6;
+    // The renderer's own estimate of its bias is not all of it: 0.05 to 0.1 % of frames is left.
+    static constexpr double kOwnEstimateLeaves = 0.001;
+    double frameMean(Layer layer, std::size_t channel) const {
+        double sum = 0;
+        for (std::size_t r = 0; r < path.front().size(); ++r)
+            sum += path.front()[r][layer][channel];
+        return sum / static_cast<double>(path.front().size());
+    }
+};
+
+// `effort`: so many times as many samples of path tracing, a power of 16.
+Look look(const std::shared_ptr<const Scene>& scene, const std::vector<Rect>& regions,
+          std::uint64_t firstSeed, std::uint32_t effort = 1) {
+    Look result;
+    for (std::uint64_t seed = firstSeed; seed < firstSeed + kRenders; ++seed) {
+        const RenderSettings photon = settingsOf(IntegratorKind::kPhoton, seed);
+        result.photon.push_back(
+            withoutBias(withClassesChecked(render(scene, photon, regions)),
+                        withClassesChecked(render(scene, photon, regions, kLatePass))));
+        RenderSettings path = settingsOf(IntegratorKind::kPath, seed);
+        for (std::uint32_t more = effort; more > 1; more /= 16) {
+            path.passes *= 4;
+            ++path.aaLevel;
+        }
+        result.path.push_back(withClassesChecked(render(scene, path, regions)));
+    }
+    return result;
+}
+
+constexpr std::array<Layer, 6> kLayers = {kEmission, kDirect,    kCaustic,
+                                          kIndirect, kCorrected, kBeauty};
+
+struct Suspect {
+    std::size_t region, channel;
+    Layer layer;
+};
+
+// What is beyond kLargestZ. Prints the largest of each layer, and the mean of the squares.
+std::vector<Suspect> suspects(const Look& seen, const std::string& what) {
+    std::vector<Suspect> found;
+    const std::size_t regions = seen.path.front().size();
+    std::string line;
+    for (const Layer layer : kLayers) {
+        double largest = 0, squares = 0;
+        for (std::size_t r = 0; r < regions; ++r)
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double z = seen.z(r, layer, c);
+                if (!(z < kLargestZ)) found.push_back({r, c, layer});
+                largest = std::max(largest, z);
+                squares += z * z / static_cast<double>(3 * regions);
+            }
+        line += fmt::format(", {} {:.2f} ({:.2f})", kLayerNames[layer], largest, squares);
+    }
+    fmt::print("    {}, largest |z| and mean square of {}{}\n", what, regions, line);
+    return found;
+}
+
+// Regions that are beyond in the first look, looked at again: with other seeds, and 16 times as
+// many samples of path tracing. What is beyond again fails.
+void lookAgain(const std::shared_ptr<const Scene>& scene, const Look& first,
+               const std::vector<Rect>& regions, const std::string& name) {
+    std::map<std::size_t, Look> again;
+    for (const Suspect& s : suspects(first, name)) {
+        Look& second = again[s.region];
+        if (second.path.empty())
+            second = look(scene, {regions[s.region]}, firstSeed() + kRenders, 16);
+        const std::string told = fmt::format("{}, region {}, {}; again {}", name, s.region,
+                                             first.tell(s.region, s.layer, s.channel),
+                                             second.tell(0, s.layer, s.channel));
+        fmt::print("    {}\n", told);
+        EXPECT_LT(second.z(0, s.layer, s.channel), kLargestZ) << told;
+    }
+}
+
+void expectFrameAgrees(const Look& frame, const std::string& what) {
+    for (const Suspect& s : suspects(frame, what))
+        ADD_FAILURE() << what << ", " << frame.tell(0, s.layer, s.channel);
+}
+
+// a += b.
+void addFrame(Look& a, const Look& b) {
+    a.photon.resize(b.photon.size());
+    a.path.resize(b.path.size());
+    for (std::size_t i = 0; i < b.path.size(); ++i) {
+        addTo(a.photon[i], b.photon[i], 1);
+        addTo(a.path[i], b.path[i], 1);
+    }
+}
+
+// By 8 x 8 regions, of each frame, and of all frames together, which tell a hundredth of the
+// indirect light. No bias is allowed for but what the renderer's own estimate leaves. Among
+// thousands of regions' numbers a few are beyond 4 standard errors by chance, the more as path
+// tracing may miss a region's rare light and with it its spread: those are looked at again.
+TEST(Partition, AgreesWithPath) {
     const std::vector<Rect> regions = squares(kSize, kSize, kRegion);
-    const auto rendered = [&](IntegratorKind integrator) {
-        return replicate(kRenders, [&](std::uint64_t seed) {
-            return render(scene, settingsOf(integrator, seed), regions);
-        });
-    };
-    const auto photon = rendered(IntegratorKind::kPhoton), path = rendered(IntegratorKind::kPath);
-    const auto compare = [&](Layer layer, double regionBias, double frameBias) {
-        expectAgreement(photon, path, layer, regionBias, 4, name);
-        expectAgreement(wholeFrames(photon), wholeFrames(path), layer, frameBias, 4, name);
-    };
-    // A single path that sees the lamp in glass brings 3e-4 to a region of all path-traced renders;
-    // where none does, their spread is 0.
-    compare(kEmission, 0.005, 0);
-    compare(kDirect, 0, 0);
-    compare(kCaustic, 0.15, 0.03);
-    compare(kIndirect, 0.03, 0.012);
-    compare(kCorrected, 0, 0.003);
-    // The classes sum to the picture.
-    for (const auto& renders : {photon, path})
-        for (const LayerMeans& m : renders.front())
-            for (std::size_t c = 0; c < 3; ++c)
-                EXPECT_NEAR(m[kEmission][c] + m[kDirect][c] + m[kCaustic][c] + m[kIndirect][c],
-                            m[kBeauty][c], 1e-6 * m[kBeauty][c]);
+    Look frames;
+    for (const Room& room : roomsOfEveryLobe()) {
+        const auto scene = room.maker.build();
+        const Look first = look(scene, regions, firstSeed());
+        const Look frame{wholeFrames(first.photon), wholeFrames(first.path)};
+        expectFrameAgrees(frame, room.name + ", frame");
+        lookAgain(scene, first, regions, room.name);
+        addFrame(frames, frame);
+    }
+    expectFrameAgrees(frames, "all frames");
 }
 
 // Light descended from caustics, found by gather rays that meet those, and by an estimate of its
@@ -151,6 +292,39 @@ TEST(PartitionMoves, MapsWithoutPhotonsChangeNoBit) {
     double indirect = 0;
     for (const LayerMeans& pixel : automatic) indirect += pixel[kIndirect][0];
     EXPECT_GT(indirect, 0);
+}
+
+// A ball of glass before nothing mirrors 4 % of a lit wall: all camera samples see it, not one in
+// 25 at 25 times its radiance, which a bright wall would make a speck.
+TEST(CameraPaths, DivideAtTheFirstGlass) {
+    SceneMaker maker;
+    maker.sphere({0, 0, 0}, 0.5, maker.material(glass()));
+    maker.quad({-20, -20, 6}, {0, 40, 0}, {40, 0, 0}, maker.diffuse(Rgb(0.5f)));
+    maker.pointLight({0, 0, 3}, Rgb(10.0f));
+    maker.camera({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 2);
+    const auto scene = maker.build();
+    const LightSampler lights(*scene);
+    const PhotonIntegrator integrator(*scene, lights, PhotonMaps{});
+    const Camera camera(*scene, 16, 16);
+    NearestPhotons scratch;
+    int dark = 0;
+    double most = 0, sum = 0;
+    for (std::uint32_t i = 0; i < 256; ++i) {
+        Sampler sampler(1, 0, 0, i);
+        const Vec2f screen{static_cast<float>(i % 16) + 0.5f, static_cast<float>(i / 16) + 0.5f};
+        const Ray ray = camera.ray(static_cast<double>(screen.x), static_cast<double>(screen.y));
+        const auto seen =
+            static_cast<double>(integrator.sample(screen, ray, sampler, scratch).direct.g);
+        dark += seen == 0;
+        most = std::max(most, seen);
+        sum += seen;
+    }
+    EXPECT_EQ(dark, 0);
+    // 0.04 from the front, as much but for what is lost on the way from the back, that by chance.
+    const double wall = 0.5 / std::numbers::pi * 10 / 9;
+    EXPECT_GT(sum / 256 / wall, 0.03);
+    EXPECT_LT(sum / 256 / wall, 0.12);
+    EXPECT_LT(most / wall, 1.1);
 }
 
 }  // namespace

@@ -7,10 +7,13 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <string>
 #include <vector>
 
+#include "integrator/photons/photon_tracer.h"
 #include "integrator/photons/surface_patches.h"
+#include "integrator/scene/light_sampler.h"
 #include "integrator/transport/frame_renderer.h"
 #include "tests/integrator/scene_maker.h"
 
@@ -83,6 +86,54 @@ TEST(Plan, PhotonsGoWithTheFrameNotTheCrop) {
     EXPECT_GE(planOf(litFloor(), settings).globalPhotons, whole / 8);
     settings.width = settings.height = 1 << 16;
     EXPECT_LE(planOf(litFloor(), settings).globalPhotons, whole * 4);
+}
+
+// The maps of 8 passes of a huge frame fit into 0.55 GiB, whatever the number of passes asked for
+// and the memory there is: a picture with more passes begins with those of one with fewer.
+TEST(Plan, HugeFramesHaveMapsThatFit) {
+    SceneMaker caustics = litFloor();
+    MaterialDescription mirror;
+    mirror.kind = MaterialKind::kMirror;
+    mirror.glossy = Rgb(1.0f);
+    caustics.sphere({0, 0.3, 0}, 0.2, caustics.material(mirror));
+    for (const SceneMaker& maker : {litFloor(), caustics}) {
+        RenderSettings settings;
+        settings.width = settings.height = 16384;
+        settings.passes = 1;
+        const Plan one = planOf(maker, settings);
+        settings.passes = 8;
+        const Plan huge = planOf(maker, settings);
+        EXPECT_EQ(huge.photonsPerPass(), one.photonsPerPass());
+        EXPECT_LE(huge.heldMapBytes(8) + huge.buildingMapBytes(), std::uint64_t{560} << 20);
+        EXPECT_NE(huge.explain().find("no more, so that the maps of 8 passes fit into 560 MiB"),
+                  std::string::npos);
+        EXPECT_NE(huge.explain().find(std::to_string(huge.globalPhotons) + " photons a pass"),
+                  std::string::npos);
+        settings.height = 16383;
+        const Plan large = planOf(maker, settings);
+        EXPECT_GT(large.photonsPerPass(), huge.photonsPerPass());
+        EXPECT_EQ(large.explain().find("no more, so"), std::string::npos);
+        settings.height = 16384;
+        settings.photons = 480'000;
+        EXPECT_EQ(planOf(maker, settings).globalPhotons, 480'000u);
+    }
+}
+
+// Of huge frames alone, where it decides whether they fit.
+TEST(Plan, PhotonsOfHugeFramesAreTriedFirst) {
+    RenderSettings settings;
+    settings.width = settings.height = 1 << 15;
+    const auto scene = litFloor().build();
+    const Plan huge = makePlan(*scene, settings);
+    const PhotonTraceRequest many{PhotonKind::kGlobal, 200'000};
+    const PhotonBalance balance =
+        tracePhotons(*scene, LightSampler(*scene), many, std::atomic<bool>{false}, {}).balance;
+    const double landings =
+        static_cast<double>(balance.stored) / static_cast<double>(balance.emitted);
+    // Numbers up to 4 or so, of 4096 photons: four standard errors.
+    EXPECT_NEAR(huge.landingsOfPhoton, landings, 4 * std::sqrt(landings / 4096));
+    settings.width = settings.height = 1 << 10;
+    EXPECT_EQ(planOf(litFloor(), settings).landingsOfPhoton, 4.0);
 }
 
 TEST(Plan, NothingThatEmitsOrNothingDiffuseWantsNoPhotons) {

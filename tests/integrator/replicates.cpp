@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <span>
 
@@ -62,11 +63,11 @@ std::vector<Rect> squares(std::int32_t width, std::int32_t height, std::int32_t 
 }
 
 RegionMeans render(const std::shared_ptr<const Scene>& scene, const RenderSettings& settings,
-                   const std::vector<Rect>& regions) {
+                   const std::vector<Rect>& regions, std::uint32_t firstPass) {
     FrameRenderer renderer(scene, settings);
     RegionMeans mean(regions.size());
     for (std::uint32_t pass = 0; pass < settings.passes; ++pass) {
-        renderer.beginPass(pass, kNotCancelled, {});
+        renderer.beginPass(firstPass + pass, kNotCancelled, {});
         RegionMeans one(regions.size());
         tbb::parallel_for(std::size_t{0}, regions.size(),
                           [&](std::size_t r) { one[r] = renderRegion(renderer, regions[r]); });
@@ -76,10 +77,16 @@ RegionMeans render(const std::shared_ptr<const Scene>& scene, const RenderSettin
     return mean;
 }
 
+std::uint64_t firstSeed() {
+    const char* const given = std::getenv("PM_FIRST_SEED");
+    return given ? std::strtoull(given, nullptr, 10) : 1;
+}
+
 std::vector<RegionMeans> replicate(int count,
                                    const std::function<RegionMeans(std::uint64_t seed)>& render) {
     std::vector<RegionMeans> renders;
-    for (int i = 1; i <= count; ++i) renders.push_back(render(static_cast<std::uint64_t>(i)));
+    for (int i = 0; i < count; ++i)
+        renders.push_back(render(firstSeed() + static_cast<std::uint64_t>(i)));
     return renders;
 }
 

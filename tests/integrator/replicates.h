@@ -44,11 +44,15 @@ struct Replicated {
 // Squares of the frame, size pixels wide, row by row.
 std::vector<Rect> squares(std::int32_t width, std::int32_t height, std::int32_t size);
 
-// One render of all the settings' passes.
+// One render of as many passes as the settings have, from firstPass on.
 RegionMeans render(const std::shared_ptr<const Scene>& scene, const RenderSettings& settings,
-                   const std::vector<Rect>& regions);
+                   const std::vector<Rect>& regions, std::uint32_t firstPass = 0);
 
-// Independent renders: the seeds are 1, 2, ...
+// Of the first render of several: 1, or PM_FIRST_SEED of the environment, to see how much hangs on
+// it.
+std::uint64_t firstSeed();
+
+// Independent renders: the seeds are firstSeed() and those after it.
 std::vector<RegionMeans> replicate(int count,
                                    const std::function<RegionMeans(std::uint64_t seed)>& render);
 

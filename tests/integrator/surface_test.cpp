@@ -7,9 +7,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/camera.h"
+#include "integrator/scene/huge_triangles.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/transport/path_integrator.h"
 #include "tests/integrator/scene_maker.h"
@@ -212,11 +214,14 @@ TEST(Surface, TheSameDiscFromAnyDistance) {
         EXPECT_NEAR(discShare(distance), expected, 3e-4) << distance;
 }
 
-// Two balls under a lamp, on a ground of that half side.
-std::vector<float> picture(Vec3d shift, double ground = 4, bool indirectToo = true) {
+// Two balls under a lamp, on a ground of that half side, turned about z by `tilt` (radians).
+std::vector<float> picture(Vec3d shift, double ground = 4, bool indirectToo = true,
+                           double tilt = 0) {
     SceneMaker maker;
     const auto grey = maker.diffuse(Rgb(0.6f));
     maker.quad({-ground, 0, ground}, {2 * ground, 0, 0}, {0, 0, -2 * ground}, grey);
+    const double c = std::cos(tilt), s = std::sin(tilt);
+    maker.description.instances.back().transform = {c, -s, 0, 0, s, c, 0, 0, 0, 0, 1, 0};
     maker.meshSphere({-1, 1, 0}, 0.75, grey, false, 12);
     maker.sphere({1, 1, 0}, 0.75, grey);
     maker.quad({-1, 4, -1}, {2, 0, 0}, {0, 0, 2}, maker.diffuse({}, Rgb(5.0f)));
@@ -265,6 +270,94 @@ TEST(Surface, TheSamePictureOnAnyGround) {
             different += !(std::abs(small[i] - large[i]) <= 1e-4f * (1.0f + small[i]));
         EXPECT_LE(different, 3) << ground;
     }
+}
+
+// The same of grounds along no axis: their triangles are intersected in double.
+TEST(Surface, TheSamePictureOnAnyTiltedGround) {
+    for (const double tilt : {0.2, -0.03}) {
+        const std::vector<float> small = picture({0, 0, 0}, 50, false, tilt);
+        for (const double ground : {300.0, 1e3, 1e4, 1e5, 1e6, 1e9}) {
+            const std::vector<float> large = picture({0, 0, 0}, ground, false, tilt);
+            int different = 0;
+            for (std::size_t i = 0; i < small.size(); ++i)
+                different += !(std::abs(small[i] - large[i]) <= 1e-4f * (1.0f + small[i]));
+            EXPECT_LE(different, 3) << ground << " tilt " << tilt;
+        }
+    }
+}
+
+// A tilted ground and a ball at its middle.
+std::shared_ptr<const Scene> ballOnGround(double ground, bool emits) {
+    SceneMaker maker;
+    maker.quad({-ground, 0, ground}, {2 * ground, 0, 0}, {0, 0, -2 * ground},
+               maker.diffuse(Rgb(0.5f), Rgb(emits ? 1.0f : 0.0f)));
+    const double c = std::cos(0.3), s = std::sin(0.3);
+    maker.description.instances.back().transform = {c, -s, 0, 0, s, c, 0, 0, 0, 0, 1, 0};
+    maker.sphere({0, 1, 0}, 0.75, maker.diffuse(Rgb(0.6f)));
+    return maker.build();
+}
+
+// Rays that come from near and are aimed at a huge ground's diagonal meet it, where it is to
+// double; those that leave it don't.
+TEST(SurfaceOffset, HugeGroundsAreMetAndLeft) {
+    for (const double ground : {1e4, 1e6, 1e9}) {
+        const auto scene = ballOnGround(ground, true);
+        Random random(6);
+        int missed = 0, off = 0, metAgain = 0;
+        const Vec3d normal{-std::sin(0.3), std::cos(0.3), 0};
+        for (int n = 0; n < 20'000; ++n) {
+            // Across the diagonal, by less and less.
+            const double along = 4 * static_cast<double>(random.next()) - 2;
+            const double across = std::pow(10.0, -14.0 * static_cast<double>(random.next()));
+            const Vec3d flat{along + across, 0, -along};
+            const Vec3d target{flat.x * std::cos(0.3), flat.x * std::sin(0.3), flat.z};
+            const Vec3d eye = normal * 0.01 + target * 1.2;
+            Surface from, to;
+            const Vec3f start(eye - scene->centre());
+            if (!scene->intersect({start, Vec3f(target - eye)}, from) || from.shape != 0) {
+                ++missed;
+                continue;
+            }
+            // What rounding to float leaves of it.
+            const Vec3d p = Vec3d(from.position) + scene->centre();
+            off += std::abs(dot(p, normal)) > 3 * 0x1p-24 * (length(scene->centre()) + 10);
+            Vec3f d = leaving(from, random);
+            if (dot(d, from.geometricNormal) < 0.0f) d = -d;
+            // Nearer to the plane, float can't tell the side.
+            if (dot(Vec3d(d), normal) < 0x1p-22) continue;
+            metAgain += scene->intersect(rayFrom(from, d), to) && to.shape == 0;
+        }
+        EXPECT_EQ(missed, 0) << ground;
+        EXPECT_EQ(off, 0) << ground;
+        EXPECT_EQ(metAgain, 0) << ground;
+    }
+}
+
+// Few shapes: nothing says what is small. Many and all alike: none is huge.
+TEST(HugeTriangles, AreThoseBesideWhichAllIsSmall) {
+    const auto most = [](const std::vector<double>& sizes) {
+        HugeTriangles huge;
+        for (const double size : sizes) huge.addSize(size);
+        for (const double size : sizes) huge.addBox(size, Vec3d(0.0), Vec3d(size));
+        return huge.mostNotHuge();
+    };
+    const double none = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(most({}), none);
+    EXPECT_EQ(most({1e6}), none);
+    EXPECT_EQ(most({1e6, 1e6}), none);
+    EXPECT_EQ(most({1.0, 100.0, 10'000.0}), none);
+    EXPECT_EQ(most({0.0, 0.0, 1.0}), none);  // points are no measure
+    const double width = HugeTriangles::kTimes * std::sqrt(3.0);
+    EXPECT_NEAR(most({1e6, 1.0, 1e5}), width, 1e-9 * width);
+    EXPECT_NEAR(most({1.0, 1e9, 1e6, 1e9}), width, 1e-9 * width);
+    std::vector<double> many(HugeTriangles::kMost + 10, 2.0);
+    EXPECT_EQ(most(many), none);
+    many.front() = many.back() = 1e6;
+    EXPECT_NEAR(most(many), 2 * width, 1e-9 * width);
+    // Of more than are looked for none is huge.
+    std::vector<double> fine(HugeTriangles::kMost + 10, 1e6);
+    fine.back() = 1.0;
+    EXPECT_EQ(most(fine), none);
 }
 
 }  // namespace

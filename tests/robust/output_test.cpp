@@ -113,6 +113,13 @@ TEST_F(Outputs, onePixelAloneHasTheValueOfTheWhole) {
     EXPECT_EQ(red, picture.find("R")->values[7 * 16 + 9]);
 }
 
+// What is wrong with options together is told by the option's name, too.
+TEST_F(Outputs, refusedSettingsNameTheirOption) {
+    expectRefusal(render({"--bucket-size", "8", "--buckets", "0:99", "-o", "a.pmpart"}), 2,
+                  {"--buckets: setting buckets is '0:99'", "within the 4 buckets of the picture"});
+    expectRefusal(render({"--only-pixel", "16,3"}), 2, {"--only-pixel '16,3'", "X from 0 to 15"});
+}
+
 TEST_F(Outputs, errorLimit) {
     ASSERT_EQ(render({"-o", "a.exr"}).exitCode, 0);
     const Outcome same = render({"-o", "b.exr", "--reference", "a.exr", "--error-limit", "0"});

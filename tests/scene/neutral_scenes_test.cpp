@@ -64,13 +64,14 @@ TEST_F(NeutralScenes, DiffuseByPhotons) {
     hold("cornell-diffuse", kPhoton, {1.1, 3e-5, 0.01});
 }
 
-// Caustics are blurred at their outlines and the balls have corners, which the prediction from the
-// spread between passes knows nothing of.
+// Caustics are blurred at their outlines, indirect light in corners, and the balls have corners,
+// which the prediction from the spread between passes knows nothing of: renders of three seeds have
+// 2.2e-4 in common.
 TEST_F(NeutralScenes, CausticByPath) {
     hold("cornell-caustic", kPath, {1.2, 9e-5, 0.01});
 }
 TEST_F(NeutralScenes, CausticByPhotons) {
-    hold("cornell-caustic", kPhoton, {1.2, 9e-5, 0.01});
+    hold("cornell-caustic", kPhoton, {1.1, 2.2e-4, 0.01});
 }
 
 // The lamp is half a pixel wide; what shows it, straight or in the glass, is noise without bound. A

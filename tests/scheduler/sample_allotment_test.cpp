@@ -103,7 +103,7 @@ double rareLightOfAtoms(std::uint32_t seen, const SampleRule& rule = kRule) {
 }
 
 // The same by one pixel alone, whose halves decide for each other: the neighbours can't hide a
-// bias. Of 100,000 renders.
+// bias. A step far from it shows that pixels are unlike. Of 100,000 renders.
 double rareLightOfALonePixel(std::uint32_t seen, const SampleRule& rule) {
     return rareLightScore(100'000, [seen, &rule](std::mt19937_64& random) {
         FrameStore frame(kAtom, kChannels, 0, -1, -1, rule);
@@ -111,7 +111,7 @@ double rareLightOfALonePixel(std::uint32_t seen, const SampleRule& rule) {
             addPass(
                 frame, pass, kAtom,
                 [&](std::size_t pixel, std::uint32_t, std::uint32_t) {
-                    return pixel == 27 && random() % 50 == 0 ? 1.0f : 0.0f;
+                    return pixel % 8 > 5 || (pixel == 27 && random() % 50 == 0) ? 1.0f : 0.0f;
                 },
                 seen);
         return static_cast<double>(firstValue(frame, 3, 3));
@@ -127,7 +127,7 @@ TEST(SampleAllotment, rareLightIsNotLost) {
 // itself, by way of the other one.
 TEST(SampleAllotment, decidingByAllSamplesWouldLoseRareLight) {
     EXPECT_LT(rareLightOfAtoms(64), -10.0);
-    EXPECT_LT(rareLightOfALonePixel(64, kTwoAlone), -10.0);
+    EXPECT_LT(rareLightOfALonePixel(64, kTwoAlone), -5.0);
 }
 
 TEST(SampleAllotment, rareLightOfALonePixelIsNotLost) {
@@ -199,7 +199,8 @@ TEST(SampleAllotment, theFirstPassDecidesForTheSecond) {
                 [](std::size_t pixel, std::uint32_t half, std::uint32_t index) {
                     std::mt19937 random(static_cast<unsigned>(pixel) * 977 + half * 7919 +
                                         index * 104729);
-                    return static_cast<float>(random() % 1000) / 100.0f;
+                    const float value = static_cast<float>(random() % 1000) / 1000.0f;
+                    return value * value * value;
                 },
                 rule.least);
             counts[pass] = frame.sampleCount(3, 3);
