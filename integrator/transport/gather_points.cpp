@@ -21,7 +21,7 @@ constexpr float kReach = 1.0f;
 // Radius of the estimate of descended light over the clearance, and its least over that in the
 // open.
 constexpr float kDescendedReach = 0.25f;
-constexpr float kNarrowestDescended = 0.1f;
+constexpr float kNarrowestDescended = 0.3f;
 // Short rays that look for it where no point tells, on a golden spiral (Vogel 1979).
 constexpr std::uint32_t kLooksAround = 8;
 constexpr float kGoldenTurn = 0.381966011f;

@@ -58,7 +58,8 @@ TEST_F(Damage, WhatFollowsADamagedRecordIsGoneForGood) {
     writeFile(path("c"), bytes);
     render({{"checkpoint", path("c")}, {"resume", "1"}, {"bucketOrder", "spiral"}}, 21);
     const std::string after = readFile(path("c"));
-    EXPECT_FALSE(after.ends_with(m_bytes.substr(m_bytes.size() - 2000)));
+    // More than a record: which bucket is the last one before a cancel is a matter of time.
+    EXPECT_FALSE(after.ends_with(m_bytes.substr(m_bytes.size() - 4 * 6000)));
     expectSameBits(m_whole, resume());
 }
 
