@@ -75,8 +75,8 @@ TEST_F(NeutralScenes, CausticByPhotons) {
 }
 
 // The lamp is half a pixel wide; what shows it, straight or in the glass, is noise without bound. A
-// ball of triangles throws a caustic that is not quite that of the reference's true ball: renders of
-// three seeds have 7.2e-4 in common.
+// ball of triangles throws a caustic that is not quite that of the reference's true ball: renders
+// of three seeds have 7.2e-4 in common.
 TEST_F(NeutralScenes, SdsByPhotons) {
     hold("sds", kPhoton, {1.1, 7.2e-4, 0.015, 0.001});
 }
