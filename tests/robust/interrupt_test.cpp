@@ -137,8 +137,11 @@ TEST_F(Interrupt, whileATextureIsBaked) {
     write("wall.ppm", texels);
     write("box.mtl", "newmtl light\nKd 0 0 0\nKe 5 5 5\nnewmtl wall\nmap_Kd wall.ppm\n");
     const std::vector<std::string> arguments{"box.obj", "--explain", "--stats", "s.json"};
-    const int interrupted = terminateAt({0.4, 0.6, 0.8, 0.9}, arguments,
-                                        [&](const Outcome&) { EXPECT_EQ(textureFolder(), ""); });
+    // The undisturbed run may have been slower than all that are to be ended: then once more.
+    int interrupted = 0;
+    for (int round = 0; round < 4 && interrupted == 0; ++round)
+        interrupted = terminateAt({0.4, 0.6, 0.8, 0.9}, arguments,
+                                  [&](const Outcome&) { EXPECT_EQ(textureFolder(), ""); });
     EXPECT_GE(interrupted, 1);
 }
 
