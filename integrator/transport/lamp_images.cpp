@@ -38,8 +38,6 @@ constexpr double kLargest = 9.0;
 // Of the rectangle over the image itself.
 constexpr double kWider = 1.3;
 
-constexpr std::array<Lobe, 3> kDeltaLobes{Lobe::kReflection, Lobe::kRefraction, Lobe::kStraight};
-
 double lengthOf(const std::array<double, 2>& v) {
     return std::sqrt(v[0] * v[0] + v[1] * v[1]);
 }

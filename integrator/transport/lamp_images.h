@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "integrator/materials/bsdf.h"
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
@@ -14,6 +15,10 @@
 #include "integrator/values/vec.h"
 
 namespace pm {
+
+// Lobes that a path to a lamp that is seen may follow.
+inline constexpr std::array<Lobe, 3> kDeltaLobes{Lobe::kReflection, Lobe::kRefraction,
+                                                 Lobe::kStraight};
 
 // A rectangle of the frame, pixels.
 struct FrameArea {

@@ -30,7 +30,6 @@ constexpr std::uint64_t kPilotSeed = 0x7365656e6c616d70ull;
 
 // As in PathWalk: only light caught between lossless surfaces comes so far.
 constexpr int kMaxEvents = 1000;
-constexpr std::array<Lobe, 3> kDeltaLobes{Lobe::kReflection, Lobe::kRefraction, Lobe::kStraight};
 
 bool isAreaLight(const Light& light) {
     return light.kind == Light::Kind::kTriangle || light.kind == Light::Kind::kSphere;

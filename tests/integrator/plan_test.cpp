@@ -38,6 +38,15 @@ SceneMaker litFloor() {
     return maker;
 }
 
+SceneMaker mirrorBallOnFloor() {
+    SceneMaker maker = litFloor();
+    MaterialDescription mirror;
+    mirror.kind = MaterialKind::kMirror;
+    mirror.glossy = Rgb(1.0f);
+    maker.sphere({0, 0.3, 0}, 0.2, maker.material(mirror));
+    return maker;
+}
+
 TEST(Plan, ADiffuseSceneHasNoCausticMap) {
     const Plan plan = planOf(litFloor());
     EXPECT_TRUE(plan.tracePhotons);
@@ -48,11 +57,7 @@ TEST(Plan, ADiffuseSceneHasNoCausticMap) {
 }
 
 TEST(Plan, AMirrorWantsACausticMap) {
-    SceneMaker maker = litFloor();
-    MaterialDescription mirror;
-    mirror.kind = MaterialKind::kMirror;
-    mirror.glossy = Rgb(1.0f);
-    maker.sphere({0, 0.3, 0}, 0.2, maker.material(mirror));
+    const SceneMaker maker = mirrorBallOnFloor();
     EXPECT_TRUE(planOf(maker).causticMap);
     RenderSettings settings;
     settings.photons = 1234;
@@ -91,12 +96,7 @@ TEST(Plan, PhotonsGoWithTheFrameNotTheCrop) {
 // The maps of 8 passes of a huge frame fit into 0.55 GiB, whatever the number of passes asked for
 // and the memory there is: a picture with more passes begins with those of one with fewer.
 TEST(Plan, HugeFramesHaveMapsThatFit) {
-    SceneMaker caustics = litFloor();
-    MaterialDescription mirror;
-    mirror.kind = MaterialKind::kMirror;
-    mirror.glossy = Rgb(1.0f);
-    caustics.sphere({0, 0.3, 0}, 0.2, caustics.material(mirror));
-    for (const SceneMaker& maker : {litFloor(), caustics}) {
+    for (const SceneMaker& maker : {litFloor(), mirrorBallOnFloor()}) {
         RenderSettings settings;
         settings.width = settings.height = 16384;
         settings.passes = 1;
