@@ -35,7 +35,6 @@ constexpr double kTrimmedShare = 0.001;
 constexpr double kFactor = 1.5;
 // Photons to an estimate of the reference; a narrow one has little bias.
 constexpr std::uint32_t kNarrow = 12;
-constexpr const char* kNarrowName = "photons, narrow";
 constexpr std::uint64_t kReferenceSeed = 1001;
 constexpr std::uint32_t kPathLevel = 6;  // 256 samples a pass
 
@@ -67,14 +66,28 @@ struct Reference {
     // Renders that the reference is the mean of, 0: none of those it is held against. Each is then
     // held against the mean of the others.
     double members = 0;
+    // Where not empty: the mean over the renders of the lamps that are seen, which takes the place
+    // of the reference's own; so many renders.
+    std::vector<double> lamps = {};
+    double lampMembers = 0;
 };
 
-Halves without(const Reference& reference, const std::vector<double>& member) {
+double withoutMember(double mean, double members, double member) {
+    return (mean * members - member) / (members - 1);
+}
+
+Halves without(const Reference& reference, const Judged& member) {
     Halves halves = reference.halves;
+    for (std::size_t i = 0; i < reference.lamps.size(); ++i) {
+        const double lamps =
+            withoutMember(reference.lamps[i], reference.lampMembers, member.emission[i]);
+        halves.even[i] += lamps - halves.evenEmission[i];
+        halves.odd[i] += lamps - halves.oddEmission[i];
+    }
     if (reference.members == 0) return halves;
-    for (std::size_t i = 0; i < member.size(); ++i)
+    for (std::size_t i = 0; i < member.rgb.size(); ++i)
         halves.even[i] = halves.odd[i] =
-            (halves.even[i] * reference.members - member[i]) / (reference.members - 1);
+            withoutMember(halves.even[i], reference.members, member.rgb[i]);
     return halves;
 }
 
@@ -115,14 +128,20 @@ std::vector<Reference> EstimateBench::references(const PassSource& source,
                                                  const NeutralScene& neutral,
                                                  const Renders& renders) const {
     std::vector<Reference> result;
-    std::vector<const std::vector<double>*> all;
-    for (const std::vector<Judged>& render : renders) all.push_back(&render.back().rgb);
+    std::vector<const std::vector<double>*> all, lamps;
+    for (const std::vector<Judged>& render : renders) {
+        all.push_back(&render.back().rgb);
+        lamps.push_back(&render.back().emission);
+    }
     const std::vector<double> mean = meanOf(all);
-    result.push_back({"other seeds", {mean, mean, {}, {}}, static_cast<double>(renders.size())});
+    const auto members = static_cast<double>(renders.size());
+    result.push_back({"other seeds", {mean, mean, {}, {}}, members});
     RenderSettings settings = settingsFor(
         m_options.size, static_cast<std::uint32_t>(m_options.referencePasses), kReferenceSeed);
     settings.estimatePhotons = kNarrow;
-    if (m_options.referencePasses > 0) result.push_back({kNarrowName, source.halves(settings), 0});
+    // Its own noise at lamps' rims is more than that of the renders, which have no bias there.
+    if (m_options.referencePasses > 0)
+        result.push_back({"photons, narrow", source.halves(settings), 0, meanOf(lamps), members});
     // Paths don't find the tiny light behind glass.
     if (m_options.pathPasses == 0 || neutral.name == "sds") return result;
     settings = settingsFor(m_options.size, static_cast<std::uint32_t>(m_options.pathPasses),
@@ -159,7 +178,7 @@ void EstimateBench::tell(const NeutralScene& neutral, const Renders& renders,
         Ratios all, trimmed;
         for (const std::vector<Judged>& render : renders) {
             const Judged& now = render[step];
-            const Halves r = without(reference, render.back().rgb);
+            const Halves r = without(reference, render.back());
             all.add(now.estimate.total(), commonError(now.rgb, now.rgb, r.even, r.odd, 0));
             trimmed.add(now.estimate.totalTrimmed(),
                         commonError(now.rgb, now.rgb, r.even, r.odd, kTrimmedShare));
@@ -218,8 +237,7 @@ void EstimateBench::judgeScene(const NeutralScene& neutral) {
         fmt::print(stderr, "{} seed {}\n", neutral.name, seed);
     }
     for (const Reference& reference : references(source, neutral, renders)) {
-        // The narrow one's own noise, at lamps' rims, is more than that of the renders.
-        if (reference.name != kNarrowName) tell(neutral, renders, reference);
+        tell(neutral, renders, reference);
         if (reference.members == 0) tellBias(neutral, renders, reference);
     }
 }

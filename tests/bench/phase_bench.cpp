@@ -54,28 +54,46 @@ struct Case {
     IntegratorKind kind;
     int threads;
     Phases phases{};
+    Phases aside[2]{};  // of a case with one thread: two such renders at the same time
 };
+
+// What the machine gains where nothing is shared but itself: caches, memory and its host.
+void renderSideBySide(Case& c) {
+    std::vector<std::jthread> both;
+    for (Phases& phases : c.aside)
+        both.emplace_back([&] { phases.add(c.maker, c.kind, c.threads); });
+}
 
 // calculations: seconds of calculate() with one thread and with two, by turns. cases: each with one
 // thread is followed by the same with two.
 void tellGains(Report& report, const std::vector<std::vector<double>>& calculations,
                const std::vector<Case>& cases) {
-    report.table("Two threads over one, of each phase; what the machine itself gains stands first",
-                 {"work", "ratio of speeds"});
-    std::vector<double> one = calculations[0];
-    for (double& seconds : one) seconds *= 2;  // two have twice the work
-    report.row({"arithmetic in registers, nothing shared", show(speedRatio(calculations[1], one))});
+    report.table(
+        "Two threads over one, of each phase; what the machine itself gains beside it and first",
+        {"work", "two threads", "two renders of one thread at the same time"});
+    // Two have twice the work.
+    const auto doubled = [](std::vector<double> seconds) {
+        for (double& s : seconds) s *= 2;
+        return seconds;
+    };
+    report.row({"arithmetic in registers, nothing shared", "",
+                show(speedRatio(calculations[1], doubled(calculations[0])))});
     for (std::size_t i = 0; i + 1 < cases.size(); i += 2) {
-        const Phases &single = cases[i].phases, &both = cases[i + 1].phases;
-        const auto row = [&](const char* phase, const auto& ours, const auto& theirs) {
-            report.row(
-                {fmt::format("{}: {}", cases[i].name, phase), show(speedRatio(ours, theirs))});
+        const Case &single = cases[i], &both = cases[i + 1];
+        const auto row = [&](const char* phase, std::vector<double> Phases::*seconds) {
+            std::vector<double> aside = single.aside[0].*seconds;
+            for (std::size_t turn = 0; turn < aside.size(); ++turn)
+                aside[turn] = (aside[turn] + (single.aside[1].*seconds)[turn]) / 2;
+            const std::vector<double>& alone = single.phases.*seconds;
+            report.row({fmt::format("{}: {}", single.name, phase),
+                        show(speedRatio(both.phases.*seconds, alone)),
+                        show(speedRatio(aside, doubled(alone)))});
         };
-        if (cases[i].kind == IntegratorKind::kPhoton) {
-            row("photons", both.photons, single.photons);
-            row("maps", both.maps, single.maps);
+        if (single.kind == IntegratorKind::kPhoton) {
+            row("photons", &Phases::photons);
+            row("maps", &Phases::maps);
         }
-        row("render", both.render, single.render);
+        row("render", &Phases::render);
     }
 }
 
@@ -91,11 +109,18 @@ void benchPhases(Report& report, int turns) {
         for (const auto& [name, kind] : {std::pair{"photon", IntegratorKind::kPhoton},
                                          std::pair{"path", IntegratorKind::kPath}})
             for (const int threads : {1, 2})
-                cases.push_back(
-                    {fmt::format("{}, {}, {}", scene, name, threads), maker, kind, threads});
+                cases.push_back({fmt::format("{}, {}, {}", scene, name, threads),
+                                 maker,
+                                 kind,
+                                 threads,
+                                 {},
+                                 {}});
     std::vector<std::vector<double>> calculations(2);
     for (int turn = 0; turn < turns; ++turn) {
-        for (Case& c : cases) c.phases.add(c.maker, c.kind, c.threads);
+        for (Case& c : cases) {
+            c.phases.add(c.maker, c.kind, c.threads);
+            if (c.threads == 1) renderSideBySide(c);
+        }
         for (const int threads : {1, 2})
             calculations[static_cast<std::size_t>(threads - 1)].push_back(
                 secondsOf([&] { calculate(threads); }));
