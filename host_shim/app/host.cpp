@@ -33,6 +33,10 @@ Log::Settings logSettings(const Options& options) {
 
 // The help of settings comes from the plugin; without one the rest is still of use.
 int printHelp(const Options& options) {
+    if (options.helpOfMerge) {
+        print(mergeHelpText());
+        return 0;
+    }
     try {
         const Plugin plugin(options.plugin);
         print(helpText(

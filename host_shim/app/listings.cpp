@@ -21,6 +21,8 @@ std::optional<PmrSettingInfo> findSetting(const PmrApi& api, const std::string& 
 std::string rangeText(const PmrSettingInfo& info) {
     if (info.type == PMR_SETTING_CHOICE) return info.choices;
     if (info.type == PMR_SETTING_TEXT) return "text";
+    constexpr double kNoEnd = 9e18;  // of 64-bit numbers
+    if (info.maximum > kNoEnd) return fmt::format("{} or more", info.minimum);
     return fmt::format("{} to {}", info.minimum, info.maximum);
 }
 
@@ -83,9 +85,13 @@ std::string listOrders(const PmrApi& api) {
 std::string settingHelp(const PmrApi& api, const std::string& name) {
     const auto info = findSetting(api, name);
     if (!info) return {};
-    const std::string choices =
-        info->type == PMR_SETTING_CHOICE ? fmt::format(" One of {}.", info->choices) : "";
-    return fmt::format("{}{} ({}) {}", info->help, choices, info->defaultText, info->cost);
+    std::string text = info->help;
+    if (info->type == PMR_SETTING_CHOICE)
+        text += fmt::format(" One of {}.", info->choices);
+    else if (info->type != PMR_SETTING_TEXT)
+        text += fmt::format(" Allowed: {}.", rangeText(*info));
+    if (*info->defaultText != '\0') text += fmt::format(" ({})", info->defaultText);
+    return std::string_view(info->cost) == "None." ? text : text + " " + info->cost;
 }
 
 }  // namespace pm::host

@@ -46,7 +46,11 @@ double Log::elapsedSeconds() const {
 
 void Log::message(Level level, std::string_view text) {
     std::string line(text);
-    std::ranges::replace(line, '\n', ' ');
+    // Names come from files: none may end the line or speak to the terminal.
+    const auto isControl = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
+    std::ranges::replace_if(
+        line, [](char c) { return c == '\n' || c == '\t'; }, ' ');
+    std::ranges::replace_if(line, isControl, '?');
     const char* colour = nullptr;
     if (level == Level::kError) {
         line = "pm_host: " + line;

@@ -144,7 +144,15 @@ std::string RenderRun::settingText(const std::string& name) const {
     });
 }
 
+void RenderRun::checkSettings(PmrStatus status, const std::string& what) const {
+    if (status == PMR_ERROR_ARGUMENT)
+        throw HostError(ExitCode::kUsage, withOption(m_context.lastError()));
+    m_context.check(status, what);
+}
+
 std::string RenderRun::explain() const {
+    std::uint64_t needed = 0;
+    checkSettings(api().explainRender(m_handle, nullptr, 0, &needed), "render");
     return pluginText([this](char* buffer, uint64_t capacity, uint64_t* needed) {
         return api().explainRender(m_handle, buffer, capacity, needed);
     });
@@ -158,19 +166,17 @@ std::string RenderRun::statistics() const {
 
 PmrStatus RenderRun::run() {
     constexpr double kPollSeconds = 0.05;
-    // What is wrong with the settings together is wrong with the command line.
     const PmrStatus started = api().startRender(m_handle);
-    if (started == PMR_ERROR_ARGUMENT)
-        throw HostError(ExitCode::kUsage, withOption(m_context.lastError()));
     const bool tooLarge = started == PMR_ERROR_MEMORY && !m_whyFrame.empty();
-    m_context.check(started, tooLarge ? m_whyFrame : "render");
+    checkSettings(started, tooLarge ? m_whyFrame : "render");
     while (!m_finished) {
         if (interruptSignal() != 0) api().cancelRender(m_handle);
         const PmrStatus status = api().pollRender(m_handle, kPollSeconds);
         if (status != PMR_OK && status != PMR_ERROR_TIMEOUT) m_context.check(status, "render");
     }
     if (m_failure) std::rethrow_exception(m_failure);
-    if (m_status != PMR_ERROR_CANCELLED) m_context.check(m_status, "render");
+    // Of a render that has ended, waitRender gives lastError its text.
+    if (m_status != PMR_ERROR_CANCELLED) m_context.check(api().waitRender(m_handle, 0.0), "render");
     return m_status;
 }
 

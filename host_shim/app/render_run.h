@@ -35,6 +35,7 @@ class RenderRun : public PictureSource {
     RenderRun(const RenderRun&) = delete;
     RenderRun& operator=(const RenderRun&) = delete;
 
+    // Errors: kUsage for settings that go together badly.
     std::string explain() const;
     // Whether the frame is too large for the memory limit, so that its pixels come bucket by bucket
     // and some BucketTaker is needed. Before run.
@@ -59,6 +60,9 @@ class RenderRun : public PictureSource {
 
   private:
     void apply(const GivenSetting& setting);
+    // Throws when status is an error; what: before its text. What is wrong with the settings
+    // together is wrong with the command line.
+    void checkSettings(PmrStatus status, const std::string& what) const;
     std::string withOption(const std::string& text) const;
     static void onMessage(void* user, PmrRender, int32_t level, int32_t code, const char* text);
     static void onProgress(void* user, PmrRender, double fraction, double remainingSeconds);

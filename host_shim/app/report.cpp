@@ -12,6 +12,8 @@
 #include <algorithm>
 #include <functional>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace pm::host {
 namespace {
@@ -79,7 +81,7 @@ std::string statusHtml(const Json& json) {
     std::string words =
         fmt::format("{}: {}. Exit code {}. {:.2f} s in all.", code == 0 ? "Done" : "Not done",
                     reason, code, number(part(json, "phases"), "elapsedSeconds"));
-    if (!error.empty()) words += " " + error;
+    if (!error.empty() && error != reason) words += " " + error;
     std::string html = fmt::format("<p class=\"status{}\">{}</p>\n", code == 0 ? "" : " bad",
                                    escaped(shortened(words)));
     std::vector<Row> rows;
@@ -190,6 +192,41 @@ std::string commandNote(const std::string& command) {
            codeBlock(command);
 }
 
+// Empty where there is none.
+PixelRect around(const std::vector<BucketTimes::Bucket>& buckets) {
+    PixelRect all;
+    for (const auto& bucket : buckets) {
+        const PmrRectangle& r = bucket.rectangle;
+        if (all.empty()) all = {r.x0, r.y0, r.x1, r.y1};
+        all = {std::min(all.x0, r.x0), std::min(all.y0, r.y0), std::max(all.x1, r.x1),
+               std::max(all.y1, r.y1)};
+    }
+    return all;
+}
+
+// allSeconds: of all buckets.
+std::string slowestHtml(std::vector<BucketTimes::Bucket> buckets, double allSeconds,
+                        const std::string& onePixelCommand) {
+    const std::size_t count = std::min(buckets.size(), kMostSlowest);
+    std::ranges::partial_sort(buckets, buckets.begin() + static_cast<std::ptrdiff_t>(count),
+                              std::greater<>(), &BucketTimes::Bucket::secondsPerPass);
+    std::vector<Row> rows;
+    for (std::size_t i = 0; i < count; ++i) {
+        const auto& bucket = buckets[i];
+        const PmrRectangle& r = bucket.rectangle;
+        rows.push_back(
+            {fmt::format("{}", bucket.index), fmt::format("{},{},{},{}", r.x0, r.y0, r.x1, r.y1),
+             fmt::format("{:.4f}", bucket.secondsPerPass()),
+             fmt::format("{:.1f} %", allSeconds > 0 ? 100 * bucket.seconds / allSeconds : 0),
+             onlyPixel((r.x0 + r.x1) / 2, (r.y0 + r.y1) / 2)});
+    }
+    return section(
+        "slowest", "Slowest buckets",
+        table({"bucket", "pixels x0,y0,x1,y1", "seconds a pass", "of all time", "its middle"},
+              rows) +
+            commandNote(onePixelCommand));
+}
+
 }  // namespace
 
 std::string Report::pictureHtml() const {
@@ -230,13 +267,7 @@ std::string Report::layersHtml() const {
 std::string Report::bucketsHtml(const std::string& onePixelCommand) const {
     auto buckets = m_bucketTimes.timed();
     PixelRect window = m_window;
-    if (window.empty())  // a render that failed: as far as it came
-        for (const auto& bucket : buckets) {
-            const PmrRectangle& r = bucket.rectangle;
-            if (window.empty()) window = {r.x0, r.y0, r.x1, r.y1};
-            window = {std::min(window.x0, r.x0), std::min(window.y0, r.y0),
-                      std::max(window.x1, r.x1), std::max(window.y1, r.y1)};
-        }
+    if (window.empty()) window = around(buckets);  // a render that failed: as far as it came
     const std::string map = bucketMap(buckets, window, kMapBytes);
     if (map.empty() && !m_bucketSamples.dataUri.empty())
         return section(
@@ -253,24 +284,7 @@ std::string Report::bucketsHtml(const std::string& onePixelCommand) const {
         map + paragraph(fmt::format("{} buckets, {:.3g} thread seconds from their starts to their "
                                     "ends; the line joins them in their order.",
                                     buckets.size(), all)));
-    const std::size_t count = std::min(buckets.size(), kMostSlowest);
-    std::ranges::partial_sort(buckets, buckets.begin() + static_cast<std::ptrdiff_t>(count),
-                              std::greater<>(), &BucketTimes::Bucket::secondsPerPass);
-    std::vector<Row> rows;
-    for (std::size_t i = 0; i < count; ++i) {
-        const auto& bucket = buckets[i];
-        const PmrRectangle& r = bucket.rectangle;
-        rows.push_back({fmt::format("{}", bucket.index),
-                        fmt::format("{},{},{},{}", r.x0, r.y0, r.x1, r.y1),
-                        fmt::format("{:.4f}", bucket.secondsPerPass()),
-                        fmt::format("{:.1f} %", all > 0 ? 100 * bucket.seconds / all : 0),
-                        onlyPixel((r.x0 + r.x1) / 2, (r.y0 + r.y1) / 2)});
-    }
-    return html + section("slowest", "Slowest buckets",
-                          table({"bucket", "pixels x0,y0,x1,y1", "seconds a pass", "of all time",
-                                 "its middle"},
-                                rows) +
-                              commandNote(onePixelCommand));
+    return html + slowestHtml(std::move(buckets), all, onePixelCommand);
 }
 
 std::string Report::brightestHtml(const std::string& onePixelCommand) const {

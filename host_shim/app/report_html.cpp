@@ -19,6 +19,7 @@ pre { background: #f3f3f3; padding: 8px; white-space: pre-wrap; overflow-wrap: a
 table { border-collapse: collapse; margin: 6px 0; }
 td, th { padding: 2px 14px 2px 0; text-align: left; vertical-align: top;
          border-bottom: 1px solid #eee; font-variant-numeric: tabular-nums; }
+td code { white-space: nowrap; }
 figure { margin: 8px 0; }
 figcaption { color: #555; }
 img, svg { display: block; max-width: 100%; height: auto; image-rendering: pixelated; }

@@ -30,6 +30,17 @@ void takeFrame(const MergeRun& run, Options& options) {
     if (!crop.empty()) options.crop = cropValue("crop", crop);
 }
 
+// The first few of the lines A:B, for a message.
+std::string shownRanges(const std::string& lines) {
+    constexpr std::ptrdiff_t kShown = 8;
+    const auto count = std::ranges::count(lines, '\n');
+    std::size_t end = 0;
+    for (std::ptrdiff_t i = 0; i < std::min(count, kShown); ++i) end = lines.find('\n', end) + 1;
+    std::string text = lines.substr(0, end > 0 ? end - 1 : lines.size());
+    std::ranges::replace(text, '\n', ' ');
+    return count > kShown ? text + fmt::format(" and {} more", count - kShown) : text;
+}
+
 }  // namespace
 
 void Session::checkBeforeMerging() {
@@ -49,8 +60,9 @@ int Session::merge() {
     if (const std::string missing = run.missing(); !missing.empty()) {
         std::fputs(missing.c_str(), stdout);
         throw HostError(ExitCode::kBadInput,
-                        "merge: buckets are missing, see standard output; make them with "
-                        "--buckets A:B -o NAME.pmpart");
+                        fmt::format("merge: buckets are missing: {}; make them with --buckets A:B "
+                                    "-o NAME.pmpart",
+                                    shownRanges(missing)));
     }
     takeFrame(run, m_options);
     const ColourPipeline colour = colourOfParts(run.settingText("hostIdentity"), m_options.colour);

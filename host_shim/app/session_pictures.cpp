@@ -80,7 +80,8 @@ int Session::finish(const PictureSource& source, PmrStatus status, const ColourP
 
 void Session::warnOfBlack() {
     warn(Warning::kBlackPicture,
-         "the picture is black though it shows surfaces: no light reaches their seen side; a "
+         "the picture is black though it shows surfaces: no light reaches their seen side; lamps "
+         "shine from the front of their faces, where the corners go round counter-clockwise; a "
          "room that is closed all round is seen from inside with --eye and --look-at only");
 }
 

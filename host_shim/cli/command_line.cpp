@@ -198,6 +198,7 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
     } catch (const CLI::ParseError& error) {
         throw HostError(ExitCode::kUsage, oneLine(error.what()) + " (see pm_host -h)");
     }
+    options.helpOfMerge = options.help && isMerge;
     if (options.help || options.version) return options;
     std::optional<std::int64_t> frame;
     if (!typed.frame.empty()) {
@@ -228,10 +229,15 @@ std::string helpText(const SettingHelp& settingHelp) {
     Typed typed;
     CLI::App app("pm: a photon-mapping bucket renderer", "pm_host");
     addAll(app, typed, options, settingHelp);
-    Typed mergeTyped;
+    return app.help() + "\n" + mergeHelpText();
+}
+
+std::string mergeHelpText() {
+    Options options;
+    Typed typed;
     CLI::App merge("pm_host merge: puts parts of one picture together", "pm_host merge");
-    addAllOfMerge(merge, mergeTyped, options);
-    return app.help() + "\n" + merge.help();
+    addAllOfMerge(merge, typed, options);
+    return merge.help();
 }
 
 }  // namespace pm::host

@@ -20,5 +20,7 @@ using SettingHelp = std::function<std::string(const std::string& setting)>;
 
 // The text of -h. Settings of the library are described by the library itself, when it is there.
 std::string helpText(const SettingHelp& settingHelp);
+// That of `pm_host merge -h`, which is the end of the other.
+std::string mergeHelpText();
 
 }  // namespace pm::host

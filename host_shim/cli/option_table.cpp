@@ -4,7 +4,9 @@
 
 #include <CLI/CLI.hpp>
 
+#include <algorithm>
 #include <array>
+#include <string_view>
 
 namespace pm::host {
 namespace {
@@ -30,33 +32,42 @@ constexpr std::array<SettingOption, 17> kSettingOptions{{
 }};
 
 // What is wrong with a value: an empty one, of a script's variable perhaps, is not the same as
-// none.
-std::string emptiness(const std::string& text) {
-    return text.empty() ? "its value is empty" : "";
+// none; and the option that follows is not the value that was forgotten.
+std::string valueFault(const std::string& text) {
+    constexpr std::array<std::string_view, 4> kShort{"-o", "-q", "-v", "-h"};
+    if (text.empty()) return "its value is empty";
+    if (text.starts_with("--") || std::ranges::find(kShort, text) != kShort.end())
+        return "its value is missing; '" + text + "' is an option";
+    return {};
 }
 
 void addText(CLI::App& app, const std::string& name, std::string& target,
              const std::string& placeholder, const std::string& help) {
-    app.add_option(name, target, help)->type_name(placeholder)->take_last()->check(emptiness);
+    app.add_option(name, target, help)->type_name(placeholder)->take_last()->check(valueFault);
 }
 
-void addOutputOptions(CLI::App& app, Typed& typed, Options& options) {
+void addOutputOptions(CLI::App& app, Typed& typed, Options& options, bool isMerge) {
+    const std::string picture =
+        "picture to write, may be repeated: .exr is scene-linear, .png .jpg .tif go through "
+        "display and view";
     app.add_option("-o,--output", typed.outputs,
-                   "picture to write, may be repeated: .exr is scene-linear, .png .jpg .tif go "
-                   "through display and view, .pmpart is a part for pm_host merge (SCENE.exr in "
-                   "the working folder)")
+                   picture + (isMerge ? ""
+                                      : ", .pmpart is a part for pm_host merge (SCENE.exr in the "
+                                        "working folder)"))
         ->type_name("FILE")
         ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    addText(app, "--frame", typed.frame, "N", "fills #### and %04d in SCENE and outputs");
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->check(valueFault);
+    addText(app, "--frame", typed.frame, "N",
+            std::string("fills #### and %04d in ") + (isMerge ? "PART" : "SCENE") + " and outputs");
     app.add_flag("--make-output-path", options.makeOutputPath, "make missing output folders");
     app.add_flag("--exr-half", options.exrHalf, "store colour as half; data stays float");
 }
 
 void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
     addText(app, "SCENE", typed.scene, "FILE", "the scene, an .obj");
-    addOutputOptions(app, typed, options);
-    addText(app, "--size", typed.size, "WxH", "pixels (640x480)");
+    addOutputOptions(app, typed, options, false);
+    addText(app, "--size", typed.size, "WxH", "pixels, 1 to 65536 each (640x480)");
     addText(app, "--eye", typed.eye, "x,y,z", "where the camera stands (framed from the bounds)");
     addText(app, "--look-at", typed.lookAt, "x,y,z", "what it looks at (centre of the bounds)");
     addText(app, "--up", typed.up, "x,y,z", "up in the picture (0,1,0)");
@@ -67,13 +78,31 @@ void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
     app.add_option("--aov", typed.layers, "extra channels in the EXR, see --list aovs")
         ->type_name("NAME[,NAME]")
         ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->check(valueFault);
+}
+
+void replaceAll(std::string& text, std::string_view from, std::string_view to) {
+    for (auto at = text.find(from); at != text.npos; at = text.find(from, at + to.size()))
+        text.replace(at, from.size(), to);
+}
+
+// What the library says of its setting, in the words of the command line.
+std::string optionHelp(const SettingOption& option, const SettingHelp& help) {
+    if (!help) return {};
+    std::string text = help(option.setting);
+    if (std::string_view(option.option) == "--aa")
+        text = "MIN: " + text + " MAX: " + help("aaLevelMost");
+    replaceAll(text, "aaLevelMost", "MAX");
+    replaceAll(text, "aaLevel", "MIN");
+    replaceAll(text, "where the host takes that (see delivery)", "where that can be");
+    return text;
 }
 
 void addRenderOptions(CLI::App& app, Typed& typed, Options& options, const SettingHelp& help) {
     for (const SettingOption& setting : kSettingOptions) {
         addText(app, setting.option, typed.settings[setting.option], setting.placeholder,
-                help ? help(setting.setting) : "");
+                optionHelp(setting, help));
     }
     addText(app, "--isa", options.isa, "NAME",
             "instruction set, for the same bits on unlike machines: best, sse2, sse4.2, avx, avx2, "
@@ -96,39 +125,42 @@ void addPieceOptions(CLI::App& app, Typed& typed, Options& options) {
 void addColourOptions(CLI::App& app, Typed& typed, Options& options) {
     ColourOptions& colour = options.colour;
     addText(app, "--ocio", colour.ocioFile, "FILE", "colour config (else $OCIO, else built in)");
-    addText(app, "--rendering-space", colour.renderingSpace, "NAME", "(the config's scene_linear)");
+    addText(app, "--rendering-space", colour.renderingSpace, "NAME",
+            "scene-linear space to render in, see --list spaces (the config's scene_linear)");
     addText(app, "--material-space", colour.materialSpace, "NAME",
             "space of the numbers of materials (linear Rec.709)");
-    addText(app, "--texture-space", colour.textureSpace, "NAME", "space of colour textures");
+    addText(app, "--texture-space", colour.textureSpace, "NAME",
+            "space of colour textures (by their files: float linear Rec.709, integer sRGB)");
     addText(app, "--display", colour.display, "NAME", "see --list views (the config's own)");
     addText(app, "--view", colour.view, "NAME", "see --list views (the display's own)");
-    addText(app, "--look", colour.look, "NAME", "look to apply before the view");
+    addText(app, "--look", colour.look, "NAME", "look to apply before the view (none)");
     app.add_option("--context", typed.context, "variable of the config, may be repeated")
         ->type_name("KEY=VALUE")
         ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->check(valueFault);
 }
 
 void addReportOptions(CLI::App& app, Typed& typed, Options& options) {
     app.add_option("--reference", options.reference, "EXR to report relMSE against")
         ->type_name("FILE")
-        ->check(emptiness);
+        ->check(valueFault);
     addText(app, "--error-limit", typed.errorLimit, "X",
             "exit 6 when the relMSE against --reference is above, or a value is not finite");
     addText(app, "--stats", options.statistics, "FILE", "statistics as JSON; - = standard output");
     app.add_option("--log", options.log, "all messages, also to a file")
         ->type_name("FILE")
-        ->check(emptiness);
+        ->check(valueFault);
     app.add_option("--report", options.report,
                    "a page to look at: status, picture, error, time of the buckets")
         ->type_name("FILE.html")
-        ->check(emptiness);
+        ->check(valueFault);
     app.add_flag("-q,--quiet", options.quiet, "only warnings and errors");
     app.add_flag("-v,--verbose", options.verbose, "more messages");
     app.add_option("--plugin", options.plugin,
                    "the library (else $PM_PLUGIN_PATH, else beside pm_host)")
         ->type_name("FILE")
-        ->check(emptiness);
+        ->check(valueFault);
     app.add_flag("-h,--help", options.help, "print and stop");
 }
 
@@ -163,7 +195,7 @@ void addAllOfMerge(CLI::App& app, Typed& typed, Options& options) {
     app.option_defaults()->always_capture_default(false);
     app.add_option("PART", typed.parts, "parts of one picture, that -o NAME.pmpart made")
         ->type_name("FILE...");
-    addOutputOptions(app, typed, options);
+    addOutputOptions(app, typed, options, true);
     addColourOptions(app, typed, options);
     addReportOptions(app, typed, options);
 }

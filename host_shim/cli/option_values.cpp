@@ -16,6 +16,11 @@ namespace pm::host {
 namespace {
 
 constexpr std::int64_t kLargestPixel = 1 << 24;
+constexpr std::int64_t kLargestSize = 1 << 16;  // the largest frame of the plugin
+
+struct Range {
+    std::int64_t low, high;
+};
 
 [[noreturn]] void refuse(const std::string& option, std::string_view text,
                          const std::string& allowed) {
@@ -34,13 +39,13 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
 
 template <std::size_t N>
 std::array<std::int32_t, N> pixels(const std::string& option, std::string_view text, char separator,
-                                   std::int64_t low, const std::string& allowed) {
+                                   Range range, const std::string& allowed) {
     const auto parts = split(text, separator);
     std::array<std::int32_t, N> values{};
     if (parts.size() != N) refuse(option, text, allowed);
     for (std::size_t i = 0; i < N; ++i) {
         std::int64_t value = 0;
-        if (!parseInteger(parts[i], value) || value < low || value > kLargestPixel) {
+        if (!parseInteger(parts[i], value) || value < range.low || value > range.high) {
             refuse(option, text, allowed);
         }
         values[i] = static_cast<std::int32_t>(value);
@@ -105,17 +110,18 @@ std::array<double, 3> pointValue(const std::string& option, std::string_view tex
 }
 
 std::array<std::int32_t, 2> sizeValue(const std::string& option, std::string_view text) {
-    return pixels<2>(option, text, 'x', 1,
-                     "WIDTHxHEIGHT in whole pixels above 0 is wanted, such as 640x480");
+    return pixels<2>(option, text, 'x', {1, kLargestSize},
+                     "WIDTHxHEIGHT in whole pixels from 1 to 65536 is wanted, such as 640x480");
 }
 
 std::array<std::int32_t, 2> pixelValue(const std::string& option, std::string_view text) {
-    return pixels<2>(option, text, ',', -kLargestPixel, "X,Y in pixels is wanted, such as 12,40");
+    return pixels<2>(option, text, ',', {-kLargestPixel, kLargestPixel},
+                     "X,Y in pixels is wanted, such as 12,40");
 }
 
 PixelRect cropValue(const std::string& option, std::string_view text) {
     const std::string allowed = "x0,y0,x1,y1 in pixels with x0 < x1 and y0 < y1 is wanted";
-    const auto v = pixels<4>(option, text, ',', -kLargestPixel, allowed);
+    const auto v = pixels<4>(option, text, ',', {-kLargestPixel, kLargestPixel}, allowed);
     const PixelRect crop{v[0], v[1], v[2], v[3]};
     if (crop.empty()) refuse(option, text, allowed);
     return crop;

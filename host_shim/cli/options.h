@@ -49,6 +49,7 @@ struct Options {
     std::string list;  // empty, views, spaces, aovs, orders or settings
     bool version{};
     bool help{};
+    bool helpOfMerge{};
     ProgressStyle progress{ProgressStyle::kAuto};
     bool quiet{};
     bool verbose{};

@@ -32,10 +32,27 @@ Point unit(const Point& a) {
     return {a[0] / length, a[1] / length, a[2] / length};
 }
 
+// A plate that stands along the view would be seen as a line: from 45 degrees above or beside it,
+// with the ball around it in the picture.
+Point eyeOfPlate(const Bounds& bounds, double fov, double aspect, bool fromNegativeZ) {
+    const Point centre = bounds.centre();
+    const Point size = minus(bounds.high, bounds.low);
+    const double halfAngle = std::atan(std::tan(fov / 2) * std::min(1.0, aspect));
+    const double distance = std::sqrt(dot(size, size)) / 2 / std::sin(halfAngle) * kMargin;
+    const double step = distance / std::numbers::sqrt2;
+    const bool lies = size[1] <= size[0];
+    return {centre[0] + (lies ? 0 : step), centre[1] + (lies ? step : 0),
+            centre[2] + (fromNegativeZ ? -step : step)};
+}
+
 // The nearest face of the bounds is the widest to be seen, so when it fits, all of them does.
 Point defaultEye(const Bounds& bounds, double fov, double aspect, bool fromNegativeZ) {
     const Point centre = bounds.centre();
     const Point size = minus(bounds.high, bounds.low);
+    constexpr double kFlat = 1e-4;  // of its depth
+    const auto [thin, wide] = std::minmax(size[0], size[1]);
+    if (thin <= kFlat * size[2] && wide > kFlat * size[2] && size[2] > 0)
+        return eyeOfPlate(bounds, fov, aspect, fromNegativeZ);
     const double tangent = std::tan(fov / 2);
     double distance = std::max(size[1] / 2 / tangent, size[0] / 2 / (tangent * aspect)) * kMargin;
     if (!(distance > 0)) distance = size[2] > 0 ? size[2] : 1.0;

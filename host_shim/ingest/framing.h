@@ -32,6 +32,7 @@ bool opensTowardsNegativeZ(const SceneData& scene);
 // A perspective camera. By default it stands on the +z side (or -z, as the options say) of the
 // bounds and looks along -z at their centre, fov 40 degrees, just far enough that the front face of
 // the bounds fits with a margin of 5 %: for a box that is open to the front, the usual picture.
+// What is flat in y or x, as a ground alone, is seen from 45 degrees above or beside it.
 // aspect is width / height, > 0. Errors: kUsage when eye and look-at are the same point.
 CameraPose frameCamera(const CameraOptions& options, const Bounds& bounds, double aspect);
 

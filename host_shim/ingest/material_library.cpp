@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/ingest/material_library.h"
 
+#include "host_shim/ingest/file_names.h"
 #include "host_shim/ingest/materials.h"
 #include "host_shim/ingest/obj_reader.h"
 #include "host_shim/ingest/text_lines.h"
@@ -31,17 +32,11 @@ std::string takeEscapedWord(std::string_view& rest) {
 // The files that one mtllib line means: the whole of it when there is such a file (names may hold
 // blanks), else each of its words.
 std::vector<fs::path> libraryFiles(std::string_view argument, const fs::path& folder) {
-    std::error_code error;
-    std::string name(argument);
-    for (const bool otherSlashes : {false, true}) {
-        if (otherSlashes) std::ranges::replace(name, '\\', '/');
-        if (fs::is_regular_file(folder / name, error)) return {folder / name};
-    }
+    if (const auto whole = findFile(folder, argument)) return {*whole};
     std::vector<fs::path> files;
-    for (std::string_view rest = argument; !rest.empty();) {
-        std::string word = takeEscapedWord(rest);
-        if (!fs::is_regular_file(folder / word, error)) std::ranges::replace(word, '\\', '/');
-        files.push_back(folder / word);
+    for (std::string_view rest = withoutComment(argument); !rest.empty();) {
+        const std::string word = takeEscapedWord(rest);
+        files.push_back(findFile(folder, word).value_or(folder / word));
     }
     return files;
 }
@@ -64,7 +59,11 @@ MaterialLibrary loadMaterials(const ObjText& text, const std::string& fileName,
                               const fs::path& folder, const WarningSink& warn) {
     MaterialLibrary library;
     std::map<std::string, MaterialData> found;
-    const std::set<std::string> used(text.materialNames.begin(), text.materialNames.end());
+    std::set<std::string> used;
+    for (const std::string& name : text.materialNames) {
+        used.insert(name);
+        used.emplace(withoutComment(name));
+    }
     for (const std::string& argument : text.materialFiles) {
         for (const fs::path& file : libraryFiles(argument, folder)) {
             try {
@@ -79,7 +78,8 @@ MaterialLibrary loadMaterials(const ObjText& text, const std::string& fileName,
     }
     std::vector<std::string> missing;
     for (const std::string& name : text.materialNames) {
-        const auto material = found.find(name);
+        auto material = found.find(name);
+        if (material == found.end()) material = found.find(std::string(withoutComment(name)));
         if (material == found.end()) missing.push_back(name);
         library.materials.push_back(material != found.end() ? material->second
                                                             : defaultMaterial(name));

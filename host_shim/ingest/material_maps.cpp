@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/ingest/material_maps.h"
 
+#include "host_shim/ingest/file_names.h"
 #include "host_shim/ingest/text_lines.h"
 
 #include <algorithm>
@@ -28,18 +29,14 @@ std::optional<TextureUse> MapReader::read(const std::string& name,
     return use;
 }
 
-// As it stands, beside the library; else with the slashes of another system; else only its last
-// part, for absolute names of the machine where the scene was made. A name that none of them finds
-// is returned as the first of them, for the message.
+// Beside the library; else only its last part, for absolute names of the machine where the scene
+// was made. A name that is not found is returned as it stands, for the message.
 std::string MapReader::locate(std::string name) const {
-    std::error_code error;
+    if (const auto found = findFile(m_folder, name)) return found->string();
     const fs::path first = m_folder / name;
-    if (fs::exists(first, error)) return first.string();
     std::ranges::replace(name, '\\', '/');
-    for (const fs::path& candidate : {m_folder / name, m_folder / fs::path(name).filename()}) {
-        if (fs::exists(candidate, error)) return candidate.string();
-    }
-    return first.string();
+    const auto found = findFile(m_folder, fs::path(name).filename().string());
+    return found ? found->string() : first.string();
 }
 
 }  // namespace pm::host

@@ -55,6 +55,7 @@ class MaterialReader {
                  fmt::format("'{} {}' is not understood and left out", statement, text));
         }
         readMaps();
+        noteLeftOut();
         readColours();
         decideKind();
         readKind();
@@ -99,6 +100,23 @@ class MaterialReader {
         }
     }
 
+    void noteLeftOut() const {
+        const std::array<std::pair<const char*, double>, 4> numbers{
+            {{"Pr", m_parsed.roughness},
+             {"Pm", m_parsed.metallic},
+             {"Ps", m_parsed.sheen},
+             {"Pc", m_parsed.clearcoat_thickness}}};
+        for (const auto& [statement, value] : numbers) {
+            if (!given(statement) || value == 0) continue;
+            note(Warning::kMaterialPart, statement,
+                 fmt::format("{} is not rendered yet and left out", statement));
+        }
+        if (given("illum") && (m_parsed.illum < 0 || m_parsed.illum > 10)) {
+            note(Warning::kMaterialValue, "illum",
+                 fmt::format("illum {} is outside [0, 10] and left out", m_parsed.illum));
+        }
+    }
+
     // The number beside a map multiplies it, so one that is not given counts as 1.
     std::array<float, 3> colour(const char* statement, const tinyobj::real_t (&value)[3],
                                 bool hasMap) const {
@@ -119,12 +137,16 @@ class MaterialReader {
             "Ks", colour("Ks", m_parsed.specular, m_material.glossyTexture.has_value()));
         m_material.emission =
             colour("Ke", m_parsed.emission, m_material.emissionTexture.has_value());
+        std::string faults;
         for (float& channel : m_material.emission) {
             if (channel >= 0 && std::isfinite(channel)) continue;
-            note(Warning::kMaterialValue, "Ke",
-                 fmt::format("Ke {} is not in [0, {}]; 0 is taken", channel,
-                             std::numeric_limits<float>::max()));
+            faults += fmt::format(" {}", channel);
             channel = 0;
+        }
+        if (!faults.empty()) {
+            note(Warning::kMaterialValue, "Ke",
+                 fmt::format("Ke{} is not in [0, {}]; 0 is taken", faults,
+                             std::numeric_limits<float>::max()));
         }
         const bool saysNothing = !given("Kd") && !given("Ks") && !given("Ke") && !given("Tf") &&
                                  !given("Kt") && !m_material.diffuseTexture &&

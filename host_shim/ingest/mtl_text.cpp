@@ -15,6 +15,9 @@ constexpr std::array<std::string_view, 6> kColours{"Ka", "Kd", "Ks", "Ke", "Kt",
 constexpr std::array<std::string_view, 9> kNumbers{"Ns", "Ni", "d",  "Tr", "illum",
                                                    "Pr", "Pm", "Ps", "Pc"};
 
+// Of no weight here, or told by its number (materials.cpp): known, but not for the parser.
+constexpr std::array<std::string_view, 5> kNotRead{"sharpness", "aniso", "anisor", "Pcr", "decal"};
+
 bool isMap(std::string_view word) {
     return word.starts_with("map_") || word == "bump" || word == "disp" || word == "norm" ||
            word == "refl";
@@ -93,6 +96,8 @@ void addStatement(std::string_view line, std::uint64_t number, MtlSection& secti
     } else if (isMap(word)) {
         if (word == "map_opacity" || word == "map_D") word = "map_d";
         section.cleaned.append(word).append(" ").append(cleanedMapLine(rest)).append("\n");
+    } else if (std::ranges::find(kNotRead, word) == kNotRead.end()) {
+        section.notUnderstood.insert_or_assign(std::string(word), std::string(rest));
     }
 }
 

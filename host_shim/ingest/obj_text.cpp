@@ -119,21 +119,27 @@ class ObjScan {
         ++m_out.counts[0];
     }
 
-    // A texture coordinate or normal. A number that is none becomes 0, with a warning: many
-    // exporters write nan for the normal of a face without area.
+    // A texture coordinate or normal. One that is none becomes 0 0 or 0 0 0, which is no normal,
+    // with a warning: many exporters write nan or 0 0 0 for the normal of a face without area.
     void attribute(std::string_view rest, std::size_t kind, int needed) {
         std::string numbers;
         const int wanted = kind == 1 ? 2 : 3;
+        bool isGood = true, isZero = true;
         for (int i = 0; i < wanted; ++i) {
             const std::string_view word = takeWord(rest);
             double value = 0;
             const bool isNumber = parseNumber(word, value) && std::isfinite(value) &&
                                   std::abs(value) <= kLargestCoordinate;
-            if (!isNumber && (i < needed || !word.empty())) {
-                leaveOut(kind == 1 ? "texture coordinates that are not finite numbers (taken as 0)"
-                                   : "normals that are not finite numbers (taken as none)");
-            }
+            if (!isNumber && (i < needed || !word.empty())) isGood = false;
+            if (isNumber && value != 0) isZero = false;
             numbers.append(isNumber ? word : std::string_view("0")).append(" ");
+        }
+        if (!isGood) {
+            leaveOut(kind == 1 ? "texture coordinates that are not finite numbers (taken as 0)"
+                               : "normals that are not finite numbers");
+            numbers = kind == 1 ? "0 0" : "0 0 0";
+        } else if (kind == 2 && isZero) {
+            leaveOut("normals of length 0");
         }
         emit(kind == 1 ? "vt" : "vn", trimmed(numbers));
         ++m_out.counts[kind];

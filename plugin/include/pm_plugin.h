@@ -485,7 +485,8 @@ typedef struct PmrApi {
     PmrStatus(PMR_CALL* setSettingText)(PmrRender render, const char* name, const char* value);
     PmrStatus(PMR_CALL* settingText)(PmrRender render, const char* name, char* buffer,
                                      uint64_t capacity, uint64_t* needed);
-    /* What the scene needs, one reason a line; allowed before startRender. */
+    /* What the scene needs, one reason a line; allowed before startRender. PMR_ERROR_ARGUMENT for
+     * settings that startRender would refuse of a run of buckets. */
     PmrStatus(PMR_CALL* explainRender)(PmrRender render, char* buffer, uint64_t capacity,
                                        uint64_t* needed);
     PmrStatus(PMR_CALL* startRender)(PmrRender render);

@@ -162,12 +162,14 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
 }
 
 std::string MemoryPlan::explain() const {
+    std::string text = fmt::format("memory: {}", figures(need));
     if (byBuckets)
-        return fmt::format(
-            "memory: {}, bucket by bucket with the maps of all passes; the whole "
-            "frame would need {:.2f} GiB, the limit is {:.2f} GiB\n",
-            figures(need), toGib(whole.total()), toGib(limit));
-    return fmt::format("memory: {}, the limit is {:.2f} GiB\n", figures(need), toGib(limit));
+        text += fmt::format(
+            ", bucket by bucket with the maps of all passes; the whole frame would need {:.2f} GiB",
+            toGib(whole.total()));
+    text += fmt::format(", the limit is {:.2f} GiB", toGib(limit));
+    if (need.total() > limit) text += ": the render would be refused";
+    return text + "\n";
 }
 
 void MemoryPlan::check() const {

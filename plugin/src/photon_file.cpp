@@ -151,7 +151,8 @@ PhotonFileReader::PhotonFileReader(const std::string& file, Wanted wanted)
         throw unusable(file, "there is no such photon map; photonsOnly makes one");
     // Nobody is waited for who might write into a pipe.
     m_file = OwnedFile(file, O_RDONLY | O_NONBLOCK);
-    if (!fs::is_regular_file(file, error)) throw unusable(file, "is no photon map, but no file");
+    if (!fs::is_regular_file(file, error))
+        throw unusable(file, "is no photon map, nor a file at all");
     m_size = m_file.size();
     readHead();
     readEntries();

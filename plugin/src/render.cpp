@@ -10,6 +10,8 @@
 #include "plugin/src/call_error.h"
 #include "plugin/src/callback_scope.h"
 #include "plugin/src/entry.h"
+#include "plugin/src/render_pieces.h"
+#include "scheduler/bucket_order.h"
 
 namespace pm::plugin {
 
@@ -78,7 +80,10 @@ MemoryPlan Render::memoryPlan(const Plan& plan) const {
 
 std::string Render::explain() const {
     if (const auto running = work()) return explain(running->plan(), running->memory());
-    const Plan plan = makePlan(*m_built, settings().toRenderSettings());
+    const SettingValues values = settings();
+    checkedRun(values, findBucketOrder(values.word(Setting::kBucketOrder))->isCorrelated,
+               bucketsOf(values).cellCount());
+    const Plan plan = makePlan(*m_built, values.toRenderSettings());
     return explain(plan, memoryPlan(plan));
 }
 

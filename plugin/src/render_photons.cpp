@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "plugin/src/call_error.h"
@@ -68,8 +70,12 @@ std::uint64_t RenderPhotons::bytes() const {
 std::string explainPhotons(const SettingValues& values, const Plan& plan) {
     const std::string& file = values.word(Setting::kPhotonMap);
     if (file.empty()) return {};
+    std::error_code ignored;
     if (!RenderPhotons::isOnly(values))
-        return fmt::format("photons: read from {}, which saves the time of tracing them\n", file);
+        return fmt::format("photons: read from {}, which {}\n", file,
+                           std::filesystem::exists(file, ignored)
+                               ? "saves the time of tracing them"
+                               : "is not there: the render would be refused");
     const double bytes =
         static_cast<double>(plan.landingsPerPass()) * sizeof(Photon) * values.passLimit();
     return fmt::format(

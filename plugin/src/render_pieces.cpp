@@ -46,13 +46,17 @@ std::vector<float> cutOut(const Rect& rect, const Rect& part, std::span<const fl
 
 }  // namespace
 
+BucketRange checkedRun(const SettingValues& values, bool isCorrelated, std::uint32_t bucketCount) {
+    checkRun(values, isCorrelated);
+    return bucketRange(values.word(Setting::kBuckets), bucketCount);
+}
+
 RenderPieces::RenderPieces(const SettingValues& values, const Identity& scene,
                            const BucketGrid& grid, bool isCorrelated,
                            std::vector<std::uint32_t>& order)
     : m_grid(grid), m_part(values.word(Setting::kPart)) {
-    checkRun(values, isCorrelated);
     const auto bucketCount = static_cast<std::uint32_t>(order.size());
-    const BucketRange range = bucketRange(values.word(Setting::kBuckets), bucketCount);
+    const BucketRange range = checkedRun(values, isCorrelated, bucketCount);
     order = {order.begin() + range.first, order.begin() + range.last};
     for (const std::uint32_t cell : order) m_buckets.push_back(grid.cellRect(cell));
     for (const Rect& bucket : m_buckets) m_pixels += static_cast<std::uint64_t>(bucket.area());

@@ -20,6 +20,10 @@
 
 namespace pm::plugin {
 
+// The buckets that the setting asks for; all where it is empty. bucketCount: of the frame. Errors:
+// CallError(ARGUMENT) for a run that is not there, or that goes with other settings badly.
+BucketRange checkedRun(const SettingValues& values, bool isCorrelated, std::uint32_t bucketCount);
+
 // What a render makes and keeps of itself in pieces: a run of its buckets only, a checkpoint, a
 // part. Does nothing where the settings ask for none of them.
 class RenderPieces {

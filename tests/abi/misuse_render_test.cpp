@@ -78,6 +78,26 @@ TEST(MisuseRender, MemoryLimitRefusesBeforeAnyRay) {
     EXPECT_EQ(PMR_OK, api().destroyRender(render));
 }
 
+// An explanation of a run that startRender refuses would be one of another render.
+TEST(MisuseRender, RunsThatAreNotThereAreNotExplained) {
+    const BoxHost host;
+    std::uint64_t needed = 0;
+    for (const std::map<std::string, std::string>& settings :
+         {std::map<std::string, std::string>{{"buckets", "900:901"}},
+          std::map<std::string, std::string>{{"buckets", "1/2"}, {"bucketOrder", "correlated"}},
+          std::map<std::string, std::string>{{"buckets", "1/2"}, {"errorTarget", "0.1"}}}) {
+        const PmrRender render = host.makeRender(settings);
+        EXPECT_EQ(PMR_ERROR_ARGUMENT, api().explainRender(render, nullptr, 0, &needed));
+        const std::string explained = host.lastError();
+        EXPECT_EQ(PMR_ERROR_ARGUMENT, api().startRender(render));
+        EXPECT_EQ(explained, host.lastError());
+        EXPECT_TRUE(explained.starts_with("setting buckets ")) << explained;
+        EXPECT_EQ(PMR_OK, api().setSettingText(render, "buckets", ""));
+        EXPECT_EQ(PMR_OK, api().explainRender(render, nullptr, 0, &needed)) << host.lastError();
+        EXPECT_EQ(PMR_OK, api().destroyRender(render));
+    }
+}
+
 TEST(MisuseRender, HugeSettingsAreRefused) {
     const BoxHost host;
     for (const std::map<std::string, std::string>& settings :

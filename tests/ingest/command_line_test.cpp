@@ -149,6 +149,31 @@ TEST(CommandLine, refusalsSayWhatIsAllowed) {
     }
 }
 
+// A forgotten value doesn't take the option that follows; numbers and OCIO's looks may begin with
+// -.
+TEST(CommandLine, anOptionIsNoValue) {
+    for (const Arguments& bad : std::vector<Arguments>{{"--reference", "-o", "x.exr"},
+                                                       {"-o", "--passes", "3"},
+                                                       {"--aov", "-q"},
+                                                       {"--ocio", "--view"}}) {
+        const std::string text = refusal(bad);
+        EXPECT_TRUE(text.starts_with("2 ") &&
+                    text.find("its value is missing; '" + bad[1]) != std::string::npos)
+            << text;
+    }
+    EXPECT_EQ(parseCommandLine({"s.obj", "--eye", "-1,-.5,0"}).camera.eye->at(0), -1);
+    EXPECT_EQ(parseCommandLine({"s.obj", "--look", "-warm"}).colour.look, "-warm");
+    EXPECT_EQ(parseCommandLine({"s.obj", "--stats", "-"}).statistics, "-");
+}
+
+TEST(CommandLine, sizesTellTheirRange) {
+    for (const char* size : {"0x5", "65537x1", "1x65537", "99999999x2"})
+        EXPECT_EQ(refusal({"--size", size}),
+                  std::string("2 --size '") + size +
+                      "': WIDTHxHEIGHT in whole pixels from 1 to 65536 is wanted, such as 640x480");
+    EXPECT_EQ(parseCommandLine({"s.obj", "--size", "65536x1"}).width, 65536);
+}
+
 // Outside of the picture there is nothing, unless a crop asks for it.
 TEST(CommandLine, onlyPixelIsInThePicture) {
     const auto parsed = [](const Arguments& more) {
@@ -216,6 +241,11 @@ TEST(CommandLine, helpNamesEveryOptionAndAsksThePlugin) {
     for (const char* part : {"--output", "--bucket-order", "about bucketOrder", "--only-pixel"}) {
         EXPECT_NE(text.find(part), std::string::npos) << part;
     }
+    EXPECT_NE(text.find("MIN: about MIN MAX: about MAX"), std::string::npos) << text;
+    EXPECT_TRUE(text.ends_with(mergeHelpText()));
+    EXPECT_EQ(mergeHelpText().find("SCENE"), std::string::npos) << mergeHelpText();
+    EXPECT_TRUE(parseCommandLine({"merge", "-h"}).helpOfMerge);
+    EXPECT_FALSE(parseCommandLine({"-h"}).helpOfMerge);
 }
 
 }  // namespace

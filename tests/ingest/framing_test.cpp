@@ -50,6 +50,34 @@ TEST(Framing, flatBoundsAndPointsStillHaveACamera) {
     for (const double value : pose.transform) EXPECT_TRUE(std::isfinite(value));
 }
 
+// A ground, or a wall along the view, would be a line from the front.
+TEST(Framing, platesAreSeenFromTheSide) {
+    for (const Bounds& bounds : {Bounds{{-1, 0, -1}, {2, 0, 1}}, Bounds{{5, -1, -1}, {5, 2, 1}},
+                                 Bounds{{-1e4, 0, -1e4}, {1e4, 0.5, 1e4}}}) {
+        for (const bool fromNegativeZ : {false, true}) {
+            CameraOptions options;
+            options.fromNegativeZ = fromNegativeZ;
+            const CameraPose pose = frameCamera(options, bounds, 1.5);
+            double least = 1, most = -1;
+            for (int corner = 0; corner < 4; ++corner) {
+                const double across = (corner & 1) != 0 ? 1 : 0;
+                const bool lies = bounds.high[1] - bounds.low[1] < 1;
+                std::array<double, 3> point = bounds.low;
+                const std::size_t axis = lies ? 0 : 1;
+                point[axis] += across * (bounds.high[axis] - bounds.low[axis]);
+                if ((corner & 2) != 0) point[2] = bounds.high[2];
+                const auto at = project(pose, point, 1.5);
+                EXPECT_LT(std::max(std::abs(at[0]), std::abs(at[1])), 1);
+                least = std::min(least, at[lies ? 1 : 0]);
+                most = std::max(most, at[lies ? 1 : 0]);
+            }
+            EXPECT_GT(most - least, 0.3);
+            EXPECT_EQ(pose.eye[2] < bounds.centre()[2], fromNegativeZ);
+        }
+    }
+    EXPECT_EQ(frameCamera({}, {{-1, 0, 0}, {1, 0, 0}}, 1.0).eye[1], 0) << "a line stays one";
+}
+
 // One quad whose front faces along z: the default eye stands where the front is seen.
 TEST(Framing, standsWhereFrontsAreSeen) {
     SceneData scene;

@@ -93,6 +93,27 @@ TEST(Material, valuesOutOfRangeAreClampedWithTheLine) {
     EXPECT_TRUE(infinite.heard.has(Warning::kMaterialValue, "Ke inf is not in [0, "));
 }
 
+TEST(Material, whatIsUnknownOrNotRenderedIsSaid) {
+    EXPECT_TRUE(read("kd 0.5 0.5 0.5\n")
+                    .heard.has(Warning::kMaterialValue, "a.mtl:2: material m: 'kd 0.5 0.5 0.5'"));
+    const Result shiny = read("Kd 0.5 0.5 0.5\nPr 0.3\nPm 0\nPs 0\nPc 1\n");
+    EXPECT_EQ(shiny.heard.list.size(), 2u);
+    EXPECT_TRUE(shiny.heard.has(Warning::kMaterialPart, "a.mtl:3: material m: Pr is not rendered"));
+    EXPECT_TRUE(shiny.heard.has(Warning::kMaterialPart, "a.mtl:6: material m: Pc is not rendered"));
+    EXPECT_TRUE(
+        read("illum 11\n").heard.has(Warning::kMaterialValue, "illum 11 is outside [0, 10]"));
+    // What exporters write and nobody misses.
+    const Result usual = read(
+        "Ka 1 1 1\nKd 0.5 0.5 0.5\nillum 2\nsharpness 60\naniso 0\nanisor 0\nPcr 0\nTf 1 1 1\n");
+    EXPECT_TRUE(usual.heard.list.empty()) << usual.heard.list.front().second;
+}
+
+TEST(Material, oneLineForAllChannels) {
+    const Result r = read("Ke -1 2 -3\n");
+    EXPECT_EQ(r.heard.list.size(), 1u);
+    EXPECT_TRUE(r.heard.has(Warning::kMaterialValue, "Ke -1 -3 is not in"));
+}
+
 TEST(Material, noSurfaceReflectsMoreThanItGets) {
     const Result r = read("Kd 0.8 0.8 0.8\nKs 1 1 1\nNs 250\nillum 2\n");
     EXPECT_FLOAT_EQ(r.material.diffuse[0] + r.material.glossy[0], 1.0f);

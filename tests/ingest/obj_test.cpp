@@ -114,6 +114,16 @@ TEST(Obj, aNormalOfLengthZeroIsNone) {
     EXPECT_EQ(scene.meshes[0].normalIndices, (std::vector<std::uint32_t>{kNoIndex, 0, 0}));
 }
 
+// A normal with one number that is none is none, and counts once.
+TEST(Obj, badNormalsAreNoneAndCountOnce) {
+    Heard heard;
+    const SceneData scene = readObj(kQuad + "vn nan nan 1\nvn 0 0 1\nvn 0 -0 0\nf 1//1 2//2 3//3\n",
+                                    "scene.obj", ".", heard.sink);
+    EXPECT_EQ(scene.meshes[0].normalIndices, (std::vector<std::uint32_t>{kNoIndex, 0, kNoIndex}));
+    EXPECT_TRUE(heard.has(Warning::kGeometry, "scene.obj:5: 1 normals that are not finite"));
+    EXPECT_TRUE(heard.has(Warning::kGeometry, "scene.obj:7: 1 normals of length 0 left out"));
+}
+
 TEST(Obj, groupsBecomeMeshesWithMaterialSlots) {
     Heard heard;
     const SceneData scene =

@@ -78,7 +78,7 @@ TEST_F(Farm, WhatIsMissingIsRenderedAgain) {
     ASSERT_EQ(run(command({"-o", "a.exr"})).exitCode, 0);
     fs::remove(path("p2.pmpart"));
     const Outcome without = merge();
-    expectNoPicture(without, {"p2.pmpart", "buckets are missing"});
+    expectNoPicture(without, {"p2.pmpart", "buckets are missing: 6:13; make"});
     EXPECT_EQ(without.out, "6:13\n");
     // What the output says is what --buckets takes.
     const std::string range = without.out.substr(0, without.out.size() - 1);

@@ -187,7 +187,8 @@ TEST_F(PhotonHost, MakesNoPictureAndNoBuckets) {
 }
 
 TEST_F(PhotonHost, IsExplained) {
-    EXPECT_NE(std::string::npos, explain({{"photonMap", "maps"}}).find("photons: read from maps"));
+    EXPECT_NE(std::string::npos,
+              explain({{"photonMap", "maps"}}).find("photons: read from maps, which is not there"));
     const std::string only = explain({{"photonMap", "maps"}, {"photonsOnly", "1"}});
     EXPECT_NE(std::string::npos, only.find("photons only: those of 5 passes are traced into maps"));
     EXPECT_NE(std::string::npos, only.find("frame 0.00"));

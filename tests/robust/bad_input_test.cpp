@@ -141,6 +141,49 @@ TEST_F(BadInput, layersWantAnExr) {
     expectRefusal(run({"box.obj", "--aov", "N", "-o", "x.png"}), 2, {"--aov N", ".exr"});
 }
 
+// What is found after the start, by the render's own thread, is told as well.
+TEST_F(BadInput, faultsThatShowLateAreTold) {
+    const std::vector<std::string> kept{"-o", "a.exr",    "--checkpoint",
+                                        "c",  "--resume", "--keep-checkpoint"};
+    ASSERT_EQ(render(kept).exitCode, 0);
+    std::vector<std::string> fewer = kept;
+    fewer.insert(fewer.end(), {"--passes", "1"});
+    const Outcome late = render(fewer);
+    EXPECT_EQ(late.exitCode, 3);
+    EXPECT_NE(late.err.find("has 2 passes; 1 were asked for"), std::string::npos) << late.err;
+    std::vector<std::string> photons{"box.obj", "--size",         "16x16", "--passes",
+                                     "2",       "--photons",      "1000",  "--photon-map",
+                                     "ph",      "--photons-only", "-q"};
+    ASSERT_EQ(run(photons).exitCode, 0);
+    std::string bytes = readText(path("ph"));
+    bytes[bytes.size() / 2] ^= 1;
+    write("ph", bytes);
+    std::erase(photons, "--photons-only");
+    const Outcome damaged = run(photons);
+    EXPECT_EQ(damaged.exitCode, 3);
+    EXPECT_NE(damaged.err.find("ph: the photon map is damaged"), std::string::npos) << damaged.err;
+}
+
+TEST_F(BadInput, explainRefusesWhatTheRenderWould) {
+    expectRefusal(run({"box.obj", "--explain", "--buckets", "900:901", "-o", "p.pmpart"}), 2,
+                  {"--buckets", "900:901", "within the 300 buckets"});
+    const Outcome good = run({"box.obj", "--explain", "--buckets", "299:300", "-o", "p.pmpart"});
+    EXPECT_EQ(good.exitCode, 0) << good.err;
+    EXPECT_NE(good.out.find("memory: "), std::string::npos);
+    EXPECT_EQ(good.out.find("would be refused"), std::string::npos) << good.out;
+    EXPECT_NE(run({"box.obj", "--explain", "--memory-limit", "0.01"}).out.find("would be refused"),
+              std::string::npos);
+}
+
+// Names come from files, and may hold what a terminal obeys.
+TEST_F(BadInput, controlCharactersOfNamesAreNotPrinted) {
+    write("evil.obj", kTriangle + "usemtl a\x1b[31m\x07\x7f\tb\nf 1 2 3\n");
+    const Outcome outcome = run({"evil.obj", "--size", "8x8", "--passes", "1", "--log", "log"});
+    EXPECT_NE(outcome.err.find("'a?[31m?? b'"), std::string::npos) << outcome.err;
+    for (const std::string& text : {outcome.err, readText(path("log"))})
+        EXPECT_EQ(text.find_first_of("\x1b\x07\x7f"), std::string::npos) << text;
+}
+
 TEST_F(BadInput, aRangeIsToldByTheHost) {
     expectRefusal(run({"box.obj", "--threads", "3000"}), 2, {"--threads '3000'", "[0, 1024]"});
 }

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // --report of the real pm_host: a page that needs no other file, for renders that end in whatever
 // way, and that changes nothing of the picture.
+#include "host_shim/app/report.h"
 #include "host_shim/app/report_command.h"
 #include "host_shim/app/report_html.h"
 #include "host_shim/app/report_pictures.h"
@@ -158,6 +159,15 @@ TEST_F(ReportPage, isCheckedBeforeTheFirstRay) {
 TEST(ReportHtml, textsCanHoldNoTags) {
     EXPECT_EQ(escaped("<a b=\"c\">&'"), "&lt;a b=&quot;c&quot;&gt;&amp;&#39;");
     EXPECT_EQ(escaped(std::string("a\x01\x1b[31m\n\tb")), "a\uFFFD\uFFFD[31m\n\tb");
+}
+
+// An interrupted render's reason is its error, too.
+TEST(ReportHtml, theReasonIsToldOnce) {
+    const std::string page =
+        Report().page(R"({"stopReason": "interrupted", "error": "interrupted", "exitCode": 130})");
+    EXPECT_NE(page.find("Not done: interrupted. Exit code 130. 0.00 s in all.</p>"),
+              std::string::npos)
+        << page;
 }
 
 TEST(ReportCommand, isReadByAShellAsItWasGiven) {
