@@ -7,10 +7,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 
 #include "integrator/photons/aim_shadows.h"
 #include "integrator/photons/caustic_casters.h"
+#include "integrator/photons/place_groups.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
 
@@ -18,7 +18,7 @@ namespace pm {
 
 namespace {
 
-constexpr std::size_t kMostGroups = 64;
+constexpr std::size_t kGroups = 64;
 // Points of emission from which casters are judged, over all lights by power.
 constexpr std::uint32_t kViewpoints = 32;
 // Distance over the scene's radius from which lights that are infinitely far judge them.
@@ -30,6 +30,8 @@ constexpr float kEvenPoints = 0.1f;
 constexpr double kLeastWorth = 0.05, kMostWorth = 2.0;
 // Photons that an expectation counts for beside what a pilot has measured.
 constexpr double kPriorPhotons = 8.0;
+
+constexpr const char* kAiming = "aiming at what casts caustics";
 
 // Flux, and in how many photons, of a pilot.
 struct Landing {
@@ -148,11 +150,11 @@ AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights,
     }
     m_casters = findCasters(scene, viewpoints, cancel);
     if (m_casters.empty()) return;
-    groupLights();
+    groupLights(cancel);
     m_guess.resize(all.size());
     const std::uint32_t points = all.size() <= 1024 ? 16 : 4;
     tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
-        cancel.throwIfSet("aiming at what casts caustics");
+        cancel.throwIfSet(kAiming);
         m_guess[i] = fluxTowardsCasters(static_cast<std::uint32_t>(i), points);
     });
     m_choice = LightChoice(m_guess);
@@ -216,35 +218,19 @@ double AimedEmission::fluxTowardsCasters(std::uint32_t index, std::uint32_t poin
     return share / points * light.powerMean;
 }
 
-// Divided by place at the median, the axis in turn, until there are enough groups.
-void AimedEmission::groupLights() {
-    const std::size_t count = m_scene.lights().size();
-    std::vector<Vec3d> places(count);
-    std::vector<std::uint32_t> order(count);
-    std::iota(order.begin(), order.end(), 0u);
-    for (std::uint32_t i = 0; i < count; ++i) places[i] = viewpoint(i, {0.5f, 0.5f}).position;
-    m_group.assign(count, 0);
-    std::size_t groups = 1;
-    for (int axis = 0; groups < kMostGroups; groups *= 2, axis = (axis + 1) % 3) {
-        std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-            if (m_group[a] != m_group[b]) return m_group[a] < m_group[b];
-            return places[a][axis] < places[b][axis];
-        });
-        for (std::size_t i = 0; i < count;) {
-            std::size_t end = i;
-            while (end < count && m_group[order[end]] == m_group[order[i]]) ++end;
-            const std::size_t middle = i + (end - i + 1) / 2;
-            for (; i < end; ++i)
-                m_group[order[i]] =
-                    static_cast<std::uint8_t>(2 * m_group[order[i]] + (i < middle ? 0 : 1));
-        }
-    }
-    m_worth.assign(groups * m_casters.size(), 1.0f);
+void AimedEmission::groupLights(const CancelCheck& cancel) {
+    std::vector<Vec3d> places(m_scene.lights().size());
+    tbb::parallel_for(std::size_t{0}, places.size(), [&](std::size_t i) {
+        cancel.throwIfSet(kAiming);
+        places[i] = viewpoint(static_cast<std::uint32_t>(i), {0.5f, 0.5f}).position;
+    });
+    m_group = groupByPlace(places, kGroups, cancel);
+    m_worth.assign(kGroups * m_casters.size(), 1.0f);
 }
 
 void AimedEmission::refine(std::span<const EmissionRecord> pilot) {
     if (empty()) return;
-    std::vector<Landing> casters(m_worth.size()), lights(m_group.size()), groups(kMostGroups);
+    std::vector<Landing> casters(m_worth.size()), lights(m_group.size()), groups(kGroups);
     Landing total;
     for (const EmissionRecord& record : pilot) {
         if (record.caster == kNoCaster) continue;

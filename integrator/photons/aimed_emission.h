@@ -19,8 +19,7 @@ namespace pm {
 struct AimedPhoton : EmittedPhoton {
     std::uint32_t light = 0;
     std::uint32_t caster = kNoCaster;
-    std::uint32_t part =
-        0;  // of the environment: the part of the sky (SkyParts) that it comes from
+    std::uint32_t part = 0;  // of an environment's light: of the sky (SkyParts), where it is from
 };
 
 // What became of one photon of a pilot; flux in any unit, summed over the channels.
@@ -91,7 +90,7 @@ class AimedEmission {
                       Vec2f uDirection, AimedPhoton& photon) const;
     void place(std::uint32_t light, float& uCaster, Vec2f uPoint, Origin& origin) const;
     double fluxTowardsCasters(std::uint32_t light, std::uint32_t points) const;
-    void groupLights();
+    void groupLights(const CancelCheck& cancel);
     std::span<const float> worthOf(std::uint32_t light) const {
         return std::span(m_worth).subspan(m_group[light] * m_casters.size(), m_casters.size());
     }

@@ -109,19 +109,9 @@ class PhotonWalk {
                 return landed;
             }
             Rgb scattered = flux * sample.weight;
-            if (sample.lobe != Lobe::kDiffuse) {
-                if (stage == Stage::kStraight) stage = Stage::kSpecular;
-            } else if (stage == Stage::kStraight) {
-                stage = Stage::kDiffuse;
-            } else if (stage == Stage::kSpecular) {
-                stage = Stage::kDescended;
-                if (isCaustic(m_request.kind)) {
-                    if (sampler.next1D() >= m_request.descent) {
-                        balance.fluxAbsorbed += sum(flux);
-                        return landed;
-                    }
-                    scattered *= 1.0f / m_request.descent;
-                }
+            if (!advance(stage, sample.lobe, sampler, scattered)) {
+                balance.fluxAbsorbed += sum(flux);
+                return landed;
             }
             if (!isFinite(scattered)) break;
             balance.fluxAbsorbed += sum(flux) - sum(scattered);
@@ -131,6 +121,22 @@ class PhotonWalk {
         ++balance.lost;
         balance.fluxLost += sum(flux);
         return landed;
+    }
+
+    // By a lobe, with the flux that it carries on. False: the photon is not of the share that is
+    // followed on from caustics.
+    bool advance(Stage& stage, Lobe lobe, Sampler& sampler, Rgb& flux) const {
+        if (lobe != Lobe::kDiffuse) {
+            if (stage == Stage::kStraight) stage = Stage::kSpecular;
+        } else if (stage == Stage::kStraight) {
+            stage = Stage::kDiffuse;
+        } else if (stage == Stage::kSpecular) {
+            stage = Stage::kDescended;
+            if (!isCaustic(m_request.kind)) return true;
+            if (sampler.next1D() >= m_request.descent) return false;
+            flux *= 1.0f / m_request.descent;
+        }
+        return true;
     }
 
     // Nothing that comes after a diffuse scattering at this stage is asked for.

@@ -99,8 +99,9 @@ struct Buckets {
           last(static_cast<std::int32_t>(std::clamp<std::size_t>(entries / 8, 8, kMostBuckets) -
                                          1)) {
         scale = static_cast<float>(last + 1) / (hi - lo);
-        // Too narrow or too wide to be divided: one bucket for all.
-        if (!(scale > 0.0f && scale < 1e30f)) scale = 0.0f;
+        // Too narrow or too wide to be divided: one bucket for all, by no difference that may be
+        // infinite.
+        if (!(scale > 0.0f && scale < 1e30f)) lo = scale = 0.0f;
     }
     std::uint8_t of(float coordinate) const {
         return static_cast<std::uint8_t>(

@@ -21,6 +21,12 @@ struct Gathered {
     bool isWaiting = false;
     Vec3f position, normal;
     Rgb reflected;
+
+    void scale(float factor) {
+        radiance.wide *= factor;
+        radiance.narrow *= factor;
+        reflected *= factor;
+    }
 };
 
 // Follows a gather ray to the diffuse surfaces where the irradiance sites end it. Light that it

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include "integrator/materials/bsdf.h"
@@ -21,7 +22,7 @@ namespace {
 
 // Paths through the frame, and rays and lamp samples at the end of each.
 constexpr std::size_t kColumns = 24, kRows = 24;
-constexpr std::uint32_t kRays = 16, kLampSamples = 4;
+constexpr std::uint32_t kRays = 16, kRaysOfSet = 32, kLampSamples = 4;
 constexpr std::uint64_t kSeed = 0x6761746865727069ull;
 // As in relMSE.
 constexpr double kOffset = 0.01;
@@ -47,59 +48,130 @@ struct Moments {
 
 class GatherPilot {
   public:
-    GatherPilot(const Scene& scene, const LightSampler& lights, const IrradianceSites& sites)
-        : m_scene(scene), m_lights(lights), m_sites(sites) {}
+    // Of a point that the path leaves by the diffuse lobe. guide: null: the rays go by the cosine.
+    GatherPilot(const Scene& scene, const IrradianceSites& sites, const PathStop& stop,
+                const GatherGuide* guide)
+        : m_scene(scene), m_sites(sites), m_stop(stop), m_frame(stop.bsdf.facingShadingNormal()) {
+        if (guide) m_directions = guide->at(stop.surface.position, m_frame);
+    }
 
-    // Of a point that the path leaves by the diffuse lobe.
-    double spreadAt(const PilotStop& stop) const {
-        const auto& [surface, bsdf, throughput, lobe, sampler] = stop;
+    Rgb direct(const LightSampler& lights) const {
         std::uint32_t rays = 0;
-        const Rgb direct = estimateDirect(m_scene, m_lights, surface, bsdf,
-                                          LampStrategy::kNextEventOnly, kLampSamples, sampler, rays)
-                               .diffuse;
-        Moments moments[3];
-        const Frame frame(bsdf.facingShadingNormal());
-        for (std::uint32_t i = 0; i < kRays; ++i) {
-            const Vec3f direction =
-                normalize(frame.toWorld(sampleCosineHemisphere(sampler.next2D())));
-            Rgb radiance;
-            if (dot(direction, bsdf.facingGeometricNormal()) > 0.0f)
-                radiance = finalGather(m_scene, m_sites, rayFrom(surface, direction), sampler)
-                               .radiance.wide;
-            const Rgb seen = throughput * bsdf.diffuse() * radiance;
-            for (int c = 0; c < 3; ++c) moments[c].add(static_cast<double>(seen[c]));
+        const Rgb direct =
+            estimateDirect(m_scene, lights, m_stop.surface, m_stop.bsdf,
+                           LampStrategy::kNextEventOnly, kLampSamples, m_stop.sampler, rays)
+                .diffuse;
+        return m_stop.throughput * direct;
+    }
+
+    // What the eye sees of a gather ray.
+    Rgb seen(Vec2f u, bool guided, Sampler& sampler) const {
+        const auto warped =
+            guided ? m_directions->warp(u) : GatherGuide::Directions::Warped{u, 1.0f};
+        const Vec3f direction = normalize(m_frame.toWorld(sampleCosineHemisphere(warped.u)));
+        if (!(dot(direction, m_stop.bsdf.facingGeometricNormal()) > 0.0f)) return {};
+        const Rgb radiance =
+            finalGather(m_scene, m_sites, rayFrom(m_stop.surface, direction), sampler)
+                .radiance.wide;
+        return m_stop.throughput * m_stop.bsdf.diffuse() * (radiance / warped.density);
+    }
+
+    // Of kRaysOfSet rays, as well spread as a gather point's.
+    Rgb meanOfSet(bool guided) const {
+        const auto sequence = static_cast<std::uint64_t>(m_stop.sampler.next1D() * 0x1p24f);
+        const Sampler shared(kSeed, 0, sequence, 0);
+        Rgb sum;
+        for (std::uint32_t i = 0; i < kRaysOfSet; ++i) {
+            Sampler sampler = shared.at(i);
+            const Vec2f u = sampler.next2D();
+            sum += seen(u, guided, sampler);
         }
-        double spread = 0;
-        for (int c = 0; c < 3; ++c) {
-            const double r = moments[c].mean() + static_cast<double>(throughput[c] * direct[c]);
-            spread += moments[c].variance() / (r * r + kOffset);
-        }
-        return std::min(spread / 3, kLargestSpread);
+        return sum / static_cast<float>(kRaysOfSet);
     }
 
   private:
     const Scene& m_scene;
-    const LightSampler& m_lights;
     const IrradianceSites& m_sites;
+    const PathStop& m_stop;
+    Frame m_frame;
+    std::optional<GatherGuide::Directions> m_directions;
 };
+
+double spreadAt(const GatherPilot& pilot, const LightSampler& lights, Sampler& sampler) {
+    const Rgb direct = pilot.direct(lights);
+    Moments moments[3];
+    for (std::uint32_t i = 0; i < kRays; ++i) {
+        const Vec2f u = sampler.next2D();
+        const Rgb seen = pilot.seen(u, false, sampler);
+        for (int c = 0; c < 3; ++c) moments[c].add(static_cast<double>(seen[c]));
+    }
+    double spread = 0;
+    for (int c = 0; c < 3; ++c) {
+        const double r = moments[c].mean() + static_cast<double>(direct[c]);
+        spread += moments[c].variance() / (r * r + kOffset);
+    }
+    return std::min(spread / 3, kLargestSpread);
+}
+
+// By two sets of rays each way: half of the square of what they differ by is the variance of one.
+GatherRivals rivalsAt(const GatherPilot& pilot, const LightSampler& lights) {
+    const Rgb direct = pilot.direct(lights);
+    const Rgb cosine[2] = {pilot.meanOfSet(false), pilot.meanOfSet(false)};
+    const Rgb guide[2] = {pilot.meanOfSet(true), pilot.meanOfSet(true)};
+    GatherRivals rivals;
+    for (int c = 0; c < 3; ++c) {
+        const auto of = [c](const Rgb& rgb) { return static_cast<double>(rgb[c]); };
+        const double r = (of(guide[0]) + of(guide[1])) / 2 + of(direct);
+        const double scale = kRaysOfSet / 2.0 / (r * r + kOffset) / 3;
+        rivals.byCosine += std::pow(of(cosine[0]) - of(cosine[1]), 2) * scale;
+        rivals.byGuide += std::pow(of(guide[0]) - of(guide[1]), 2) * scale;
+    }
+    return {std::min(rivals.byCosine, kLargestSpread), std::min(rivals.byGuide, kLargestSpread)};
+}
+
+// Calls use(path, stop) at the first diffuse surface of each path through the lattice.
+template <typename Use>
+void visitPlaces(const Scene& scene, const Camera& camera, const FrameLattice& lattice,
+                 const RenderSettings& settings, const CancelCheck& cancel, const Use& use) {
+    followPilotPaths(scene, camera, lattice, combineBits(settings.seed, kSeed), cancel,
+                     [&](std::size_t path, const PathStop& stop) {
+                         if (stop.next != Lobe::kDiffuse) return true;
+                         use(path, stop);
+                         return false;
+                     });
+}
 
 }  // namespace
 
 double gatherSpread(const Scene& scene, const Camera& camera, const LightSampler& lights,
                     const IrradianceSites& sites, const RenderSettings& settings,
                     const CancelCheck& cancel) {
-    const GatherPilot pilot(scene, lights, sites);
     const FrameLattice lattice = FrameLattice::fixed(settings, kColumns, kRows);
     std::vector<double> spreads(lattice.size());
-    followPilotPaths(scene, camera, lattice, combineBits(settings.seed, kSeed), cancel,
-                     [&](std::size_t path, const PilotStop& stop) {
-                         if (stop.next != Lobe::kDiffuse) return true;
-                         spreads[path] = pilot.spreadAt(stop);
-                         return false;
-                     });
+    visitPlaces(scene, camera, lattice, settings, cancel,
+                [&](std::size_t path, const PathStop& stop) {
+                    spreads[path] = spreadAt({scene, sites, stop, nullptr}, lights, stop.sampler);
+                });
     double sum = 0;
     for (const double spread : spreads) sum += spread;
     return sum / static_cast<double>(spreads.size());
+}
+
+GatherRivals gatherRivals(const Scene& scene, const Camera& camera, const LightSampler& lights,
+                          const IrradianceSites& sites, const GatherGuide& guide,
+                          const RenderSettings& settings, const CancelCheck& cancel) {
+    const FrameLattice lattice = FrameLattice::fixed(settings, kColumns, kRows);
+    std::vector<GatherRivals> all(lattice.size());
+    visitPlaces(scene, camera, lattice, settings, cancel,
+                [&](std::size_t path, const PathStop& stop) {
+                    all[path] = rivalsAt({scene, sites, stop, &guide}, lights);
+                });
+    GatherRivals mean;
+    for (const GatherRivals& rivals : all) {
+        mean.byCosine += rivals.byCosine / static_cast<double>(all.size());
+        mean.byGuide += rivals.byGuide / static_cast<double>(all.size());
+    }
+    return mean;
 }
 
 // With n rays a pass takes the time C + n c and has the variance R + V / n; their product, the time

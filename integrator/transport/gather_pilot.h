@@ -8,6 +8,7 @@
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/gather_guide.h"
 #include "integrator/transport/render_settings.h"
 #include "integrator/values/cancel_check.h"
 
@@ -21,6 +22,15 @@ namespace pm {
 double gatherSpread(const Scene& scene, const Camera& camera, const LightSampler& lights,
                     const IrradianceSites& sites, const RenderSettings& settings,
                     const CancelCheck& cancel = {});
+
+// The same of rays by the cosine and by a guide, each as well spread over the directions as those
+// of a gather point: 32 times the variance of the mean of 32.
+struct GatherRivals {
+    double byCosine = 0, byGuide = 0;
+};
+GatherRivals gatherRivals(const Scene& scene, const Camera& camera, const LightSampler& lights,
+                          const IrradianceSites& sites, const GatherGuide& guide,
+                          const RenderSettings& settings, const CancelCheck& cancel = {});
 
 // Rays of a gather point that pay at that spread, where `rays` are planned: half of those, or
 // those, or twice or four times as many.

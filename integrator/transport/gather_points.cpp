@@ -117,48 +117,36 @@ void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
     const std::size_t index = cell.row * static_cast<std::size_t>(m_tiles.columns()) + cell.column;
     Sampler sampler(m_request.seed, streamOf(m_request.pass), kPointSequences + index, 0);
     const Vec2f jitter = sampler.next2D();
-    const auto first = [](std::size_t at) {
+    const auto start = [](std::size_t at) {
         return static_cast<float>(static_cast<std::int32_t>(at) - PointTiles::kMargin);
     };
     Point& point = tile.points[cell.inTile()];
-    point.screen = {(first(cell.column) + jitter.x) * m_request.spacing,
-                    (first(cell.row) + jitter.y) * m_request.spacing};
+    point.screen = {(start(cell.column) + jitter.x) * m_request.spacing,
+                    (start(cell.row) + jitter.y) * m_request.spacing};
     point.normal = Vec3f(0.0f);
-    PathWalk path(
-        m_camera.ray(static_cast<double>(point.screen.x), static_cast<double>(point.screen.y)));
-    while (true) {
-        Surface surface;
-        if (!m_scene.intersect(path.ray, surface)) return;
-        const Bsdf bsdf(m_scene, surface, -path.ray.direction, Transport::kRadiance,
-                        path.throughput);
-        if (bsdf.isBlackBody()) return;
-        BsdfSample sample;
-        const float uLobe = sampler.next1D();
-        const bool valid = bsdf.sample(uLobe, sampler.next2D(), sample);
-        if (sample.lobe == Lobe::kDiffuse) {
-            point.position = surface.position;
-            point.normal = bsdf.facingShadingNormal();
-            tile.origins[cell.inTile()] = {bsdf.facingGeometricNormal(), surface.offset};
-            return;
-        }
-        if (!valid || !path.scatter(surface, bsdf, sample, sampler)) return;
-    }
+    const Ray first =
+        m_camera.ray(static_cast<double>(point.screen.x), static_cast<double>(point.screen.y));
+    followCameraPath(m_scene, first, sampler, [&](const PathStop& stop) {
+        if (stop.next != Lobe::kDiffuse) return true;
+        point.position = stop.surface.position;
+        point.normal = stop.bsdf.facingShadingNormal();
+        tile.origins[cell.inTile()] = {stop.bsdf.facingGeometricNormal(), stop.surface.offset};
+        return false;
+    });
 }
 
-GatherPoints::Value GatherPoints::compute(const Tile& tile, const Cell& cell,
-                                          std::uint64_t& rays) const {
-    const auto columns = static_cast<std::size_t>(m_tiles.columns());
-    const std::size_t sequence = (cell.row / kShared) * columns + cell.column / kShared;
-    const std::size_t part = (cell.row % kShared) * kShared + cell.column % kShared;
-    const Point& point = tile.points[cell.inTile()];
-    const Origin& origin = tile.origins[cell.inTile()];
+// The point's part of the directions that it shares.
+GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origin,
+                                         const Sampler& shared, std::size_t part,
+                                         std::uint64_t& rays) const {
     const Vec3f& geometricNormal = origin.geometricNormal;
     const Vec3f start = point.position + geometricNormal * origin.offset;
     const Frame frame(point.normal);
+    std::optional<GatherGuide::Directions> directions;
+    if (m_request.guide) directions = m_request.guide->at(point.position, frame);
     std::array<double, 6> sum{};
     float clearance = std::numeric_limits<float>::max();
-    std::uint32_t lamps = 0;
-    const Sampler shared(m_request.seed, streamOf(m_request.pass), kRaySequences + sequence, 0);
+    float lamps = 0;
     Gathered last;
     const auto addLast = [&] {
         endGather(m_sites, last);
@@ -166,15 +154,19 @@ GatherPoints::Value GatherPoints::compute(const Tile& tile, const Cell& cell,
     };
     for (std::uint32_t i = 0; i < m_request.rays; ++i) {
         Sampler sampler = shared.at(static_cast<std::uint32_t>(part) * m_request.rays + i);
-        const Vec3f direction = normalize(frame.toWorld(sampleCosineHemisphere(sampler.next2D())));
+        const auto [u, density] = GatherGuide::warp(directions, sampler.next2D());
+        const float weight = 1 / density;
+        const Vec3f direction = normalize(frame.toWorld(sampleCosineHemisphere(u)));
         if (dot(direction, geometricNormal) <= 0.0f) continue;
-        const Gathered found = followGather(m_scene, m_sites, {start, direction}, sampler);
+        Gathered found = followGather(m_scene, m_sites, {start, direction}, sampler);
+        found.scale(weight);
         rays += found.rays;
         if (!found.hitAny) {
-            lamps += m_scene.seesFarLight(direction);
+            if (m_scene.seesFarLight(direction)) lamps += weight;
             continue;
         }
-        lamps += found.first.light != kNoLight && dot(direction, found.first.geometricNormal) < 0;
+        if (found.first.light != kNoLight && dot(direction, found.first.geometricNormal) < 0)
+            lamps += weight;
         const float distance = length(found.first.position - point.position);
         clearance = std::min(clearance, std::max(distance, m_planeTolerance));
         addLast();
@@ -186,12 +178,29 @@ GatherPoints::Value GatherPoints::compute(const Tile& tile, const Cell& cell,
         return Rgb(static_cast<float>(sum[at] * scale), static_cast<float>(sum[at + 1] * scale),
                    static_cast<float>(sum[at + 2] * scale));
     };
-    TwoRadii total{irradiance(0), irradiance(3)};
+    return {{irradiance(0), irradiance(3)}, lamps / static_cast<float>(count), clearance};
+}
+
+GatherPoints::Value GatherPoints::compute(const Tile& tile, const Cell& cell,
+                                          std::uint64_t& rays) const {
+    const auto columns = static_cast<std::size_t>(m_tiles.columns());
+    const std::size_t sequence = (cell.row / kShared) * columns + cell.column / kShared;
+    const std::size_t part = (cell.row % kShared) * kShared + cell.column % kShared;
+    const Sampler shared(m_request.seed, streamOf(m_request.pass), kRaySequences + sequence, 0);
+    const Vec3f& position = tile.points[cell.inTile()].position;
+    const Origin& origin = tile.origins[cell.inTile()];
+    const Vec3f& normal = origin.geometricNormal;
+    Value value = gather(tile.points[cell.inTile()], origin, shared, part, rays);
     if (m_request.descended)
-        total += descended(point.position, geometricNormal, clearance,
-                           descendedRadius(point.position, geometricNormal),
-                           static_cast<std::uint32_t>(cell.row * columns + cell.column));
-    return {total, static_cast<float>(lamps) / static_cast<float>(count), clearance};
+        value.irradiance +=
+            descended(position, normal, value.clearance, descendedRadius(position, normal),
+                      static_cast<std::uint32_t>(cell.row * columns + cell.column));
+    return value;
+}
+
+// Radius of the mean in the scene over the clearance, in this pass.
+float GatherPoints::reachOfClearance() const {
+    return kReach * m_request.radiusFactor;
 }
 
 float GatherPoints::descendedRadius(const Vec3f& position, const Vec3f& normal) const {
@@ -270,20 +279,18 @@ std::size_t GatherPoints::findNear(const Place& place, std::array<Near, kMostNea
     return count;
 }
 
-// The clearance straight above the place, or infinity beyond `farthest`. Points in the open, beside
-// a gap, see nothing of what makes it one.
-float GatherPoints::probe(const Place& place, float farthest) const {
+// The distance from the place to what is met in a direction, or nothing beyond `farthest`.
+std::optional<float> GatherPoints::distanceAlong(const Vec3f& direction, const Place& place,
+                                                 float farthest) const {
     const Vec3f start = place.position + place.geometricNormal * place.offset;
-    Surface above;
-    if (!m_scene.intersect({start, place.geometricNormal, farthest}, above))
-        return std::numeric_limits<float>::infinity();
-    return std::max(length(above.position - place.position), m_planeTolerance);
+    Surface met;
+    if (!m_scene.intersect({start, direction, farthest}, met)) return std::nullopt;
+    return std::max(length(met.position - place.position), m_planeTolerance);
 }
 
 // What a point's gather rays tell of its clearance, by few short rays: beyond `farthest` infinity.
 // Straight up alone would not do: in a corner what is near is beside the place.
 float GatherPoints::lookAround(const Place& place, float farthest, std::uint32_t pattern) const {
-    const Vec3f start = place.position + place.geometricNormal * place.offset;
     const Frame frame(place.geometricNormal);
     const std::uint64_t random = mixBits(pattern);
     const float turn = toUnitFloat(static_cast<std::uint32_t>(random));
@@ -294,45 +301,49 @@ float GatherPoints::lookAround(const Place& place, float farthest, std::uint32_t
         const float turns = turn + kGoldenTurn * at;
         const Vec3f direction = frame.toWorld(
             sampleCosineHemisphere({(at + shift) / kLooksAround, turns - std::floor(turns)}));
-        Surface met;
-        if (!m_scene.intersect({start, direction, std::min(farthest, clearance)}, met)) continue;
-        clearance = std::max(length(met.position - place.position), m_planeTolerance);
+        clearance =
+            distanceAlong(direction, place, std::min(farthest, clearance)).value_or(clearance);
     }
     return clearance;
 }
 
-bool GatherPoints::estimate(const Place& place, Estimate& result) const {
-    std::array<Near, kMostNear> near;
-    const std::size_t count = findNear(place, near);
-    if (count == 0) return false;
+// What the points near a place tell of its clearance, once they are filled, and a ray straight up.
+// Points in the open, beside a gap, see nothing of what makes it one.
+float GatherPoints::clearanceAt(const Place& place, std::span<const Near> near) const {
     // What is near the place is at least as near as this, whichever point it was seen from.
     float clearance = std::numeric_limits<float>::max(), farthestSquared = 0.0f;
-    for (std::size_t i = 0; i < count; ++i) {
-        const Kept& kept = near[i].kept();
-        if (!kept.ready.load(std::memory_order_acquire)) fill(*near[i].tile, near[i].cell);
-        clearance = std::min(clearance, kept.number(7) + std::sqrt(near[i].distanceSquared));
-        farthestSquared = std::max(farthestSquared, near[i].distanceSquared);
+    for (const Near& point : near) {
+        const Kept& kept = point.kept();
+        if (!kept.ready.load(std::memory_order_acquire)) fill(*point.tile, point.cell);
+        clearance = std::min(clearance, kept.clearance() + std::sqrt(point.distanceSquared));
+        farthestSquared = std::max(farthestSquared, point.distanceSquared);
     }
     // What is so far up that the reach would still be twice the farthest point's makes no
     // difference.
-    const float reachOfClearance = kReach * m_request.radiusFactor;
-    const float farthest = 2.0f * std::sqrt(farthestSquared) / reachOfClearance;
-    clearance = std::min(clearance, probe(place, std::min(clearance, farthest)));
-    result.clearance = clearance;
+    const float farthest = 2.0f * std::sqrt(farthestSquared) / reachOfClearance();
+    const auto above = distanceAlong(place.geometricNormal, place, std::min(clearance, farthest));
+    return std::min(clearance, above.value_or(clearance));
+}
+
+bool GatherPoints::estimate(const Place& place, Estimate& result) const {
+    std::array<Near, kMostNear> all;
+    const auto near = std::span<const Near>(all).first(findNear(place, all));
+    if (near.empty()) return false;
+    result.clearance = clearanceAt(place, near);
     result.rays = 1;
-    const float reach = reachOfClearance * clearance;
+    const float reach = reachOfClearance() * result.clearance;
     const float inverseReach = 1.0f / (reach * reach);
     float weights = 0, narrowWeights = 0, lamps = 0;
     TwoRadii sum;
     Rgb narrowSum;
-    for (std::size_t i = 0; i < count; ++i) {
+    for (const Near& point : near) {
         // Epanechnikov's kernel over both distances.
-        const float q = near[i].screenDistanceSquared + near[i].distanceSquared * inverseReach;
+        const float q = point.screenDistanceSquared + point.distanceSquared * inverseReach;
         if (!(q < 1.0f)) continue;
         const float weight = 1.0f - q, narrowWeight = std::max(0.0f, 1.0f - 2.0f * q);
         weights += weight;
         narrowWeights += narrowWeight;
-        const Value value = near[i].kept().value();
+        const Value value = point.kept().value();
         lamps += value.lampShare * weight;
         sum += {value.irradiance.wide * weight, value.irradiance.narrow * weight};
         narrowSum += value.irradiance.narrow * narrowWeight;

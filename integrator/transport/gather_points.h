@@ -7,13 +7,16 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 
 #include "integrator/photons/caustic_map.h"
 #include "integrator/photons/irradiance_sites.h"
 #include "integrator/photons/surface_estimate.h"
+#include "integrator/sampling/sampler.h"
 #include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/gather_guide.h"
 #include "integrator/transport/point_tiles.h"
 
 namespace pm {
@@ -46,6 +49,8 @@ class GatherPoints {
         const SurfaceEstimate* descended = nullptr;
         // Its radii in the first pass, from place to place; null where `descended` is.
         const PilotRadius* descendedRadius = nullptr;
+        // Where the rays go by; null: by the cosine alone.
+        const GatherGuide* guide = nullptr;
     };
     // A place that a camera path came to.
     struct Place {
@@ -119,10 +124,11 @@ class GatherPoints {
         std::atomic<std::uint32_t> ready{0};
 
         float number(std::size_t i) const { return numbers[i].load(std::memory_order_relaxed); }
+        float clearance() const { return number(7); }
         Value value() const {
             return {{{number(0), number(1), number(2)}, {number(3), number(4), number(5)}},
                     number(6),
-                    number(7)};
+                    clearance()};
         }
     };
     struct Tile {
@@ -155,11 +161,16 @@ class GatherPoints {
     Tile* tileAt(std::size_t slot) const;
     std::size_t findNear(const Place& place, std::array<Near, kMostNear>& near) const;
     void fill(Tile& tile, const Cell& cell) const;
-    float probe(const Place& place, float farthest) const;
+    float reachOfClearance() const;
+    float clearanceAt(const Place& place, std::span<const Near> near) const;
+    std::optional<float> distanceAlong(const Vec3f& direction, const Place& place,
+                                       float farthest) const;
     float lookAround(const Place& place, float farthest, std::uint32_t pattern) const;
     float descendedRadius(const Vec3f& position, const Vec3f& normal) const;
     TwoRadii descended(const Vec3f& position, const Vec3f& normal, float clearance, float radius,
                        std::uint32_t pattern) const;
+    Value gather(const Point& point, const Origin& origin, const Sampler& shared, std::size_t part,
+                 std::uint64_t& rays) const;
     Value compute(const Tile& tile, const Cell& cell, std::uint64_t& rays) const;
 
     const Scene& m_scene;

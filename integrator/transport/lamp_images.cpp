@@ -10,6 +10,7 @@
 #include <span>
 
 #include "integrator/materials/bsdf.h"
+#include "integrator/transport/path_walk.h"
 
 namespace pm {
 
@@ -102,14 +103,6 @@ std::optional<Linear> fit(std::span<const LampRay> rays, const LampBall& lamp, d
                   (qy * xx - qx * xy) * (1 / determinant)};
 }
 
-// How far a path has come.
-struct Carried {
-    Rgb throughput{1.0f};
-    float etaScale = 1.0f;  // undoes the factors eta^2 of refraction, as PathWalk
-
-    float amount() const { return maxChannel(throughput) * etaScale; }
-};
-
 // What a ray meets.
 struct Arrival {
     Surface surface;
@@ -125,8 +118,7 @@ struct Arrival {
     bool follow(Lobe lobe, Carried& carried, Ray& next) const {
         BsdfSample sample;
         if (!bsdf || !bsdf->follow(lobe, sample)) return false;
-        carried.throughput = carried.throughput * sample.weight;
-        if (lobe == Lobe::kRefraction) carried.etaScale *= bsdf->etaSquared();
+        carried.followLobe(*bsdf, sample);
         next = rayFrom(surface, sample.direction);
         return true;
     }

@@ -29,7 +29,7 @@ std::vector<LitPlace> findLitPlaces(const Scene& scene, const Camera& camera,
     std::vector<std::vector<LitPlace>> found(lattice.size());
     followPilotPaths(
         scene, camera, lattice, combineBits(settings.seed, kPlaceSeed), cancel,
-        [&](std::size_t path, const PilotStop& stop) {
+        [&](std::size_t path, const PathStop& stop) {
             if (stop.bsdf.has(Lobe::kDiffuse) || stop.bsdf.has(Lobe::kGlossy))
                 found[path].push_back({stop.surface, stop.bsdf.facingGeometricNormal()});
             return found[path].size() < kMostPlacesOfAPath &&

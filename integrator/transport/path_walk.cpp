@@ -8,19 +8,16 @@ namespace pm {
 
 namespace {
 
-// No path is longer than this; only light caught between lossless surfaces is.
-constexpr int kMaxEvents = 1000;
 constexpr int kEventsBeforeRoulette = 5;
 
 }  // namespace
 
 bool PathWalk::scatter(const Surface& surface, const Bsdf& bsdf, const BsdfSample& sample,
                        Sampler& sampler) {
-    throughput *= sample.weight;
-    if (sample.lobe == Lobe::kRefraction) m_etaScale *= bsdf.etaSquared();
-    if (++m_events == kMaxEvents) return false;
+    followLobe(bsdf, sample);
+    if (++m_events == kMostPathEvents) return false;
     if (m_events >= kEventsBeforeRoulette) {
-        const float survival = std::min(1.0f, maxChannel(throughput) * m_etaScale);
+        const float survival = std::min(1.0f, amount());
         if (survival < 1.0f) {
             if (sampler.next1D() >= survival) return false;
             throughput *= 1.0f / survival;

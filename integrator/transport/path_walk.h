@@ -5,16 +5,33 @@
 #include "integrator/materials/bsdf.h"
 #include "integrator/rays/ray_tracer.h"
 #include "integrator/sampling/sampler.h"
+#include "integrator/scene/scene.h"
 #include "integrator/scene/surface.h"
 #include "integrator/values/rgb.h"
 
 namespace pm {
 
-// A path from the camera on its way from surface to surface: the ray to follow next and what light
-// found along it counts for.
-struct PathWalk {
+// Where a path from the camera ends at last; only light caught between lossless surfaces comes so
+// far.
+inline constexpr int kMostPathEvents = 1000;
+
+// What a path from the camera carries on from where it has come.
+struct Carried {
+    Rgb throughput{1.0f};  // what light found from here on counts for
+    // Undoes the factors eta^2 of refraction, which say nothing about what the path will bring.
+    float etaScale = 1.0f;
+
+    // Of light found from here on, the share that reaches the camera; 1 where the path begins.
+    float amount() const { return maxChannel(throughput) * etaScale; }
+    void followLobe(const Bsdf& bsdf, const BsdfSample& sample) {
+        throughput *= sample.weight;
+        if (sample.lobe == Lobe::kRefraction) etaScale *= bsdf.etaSquared();
+    }
+};
+
+// A path from the camera on its way from surface to surface, with the ray to follow next.
+struct PathWalk : Carried {
     Ray ray;
-    Rgb throughput{1.0f};
 
     explicit PathWalk(const Ray& first) : ray(first) {}
 
@@ -25,8 +42,34 @@ struct PathWalk {
 
   private:
     int m_events = 0;
-    // Undoes the factors eta^2 of refraction, which say nothing about what the path will bring.
-    float m_etaScale = 1.0f;
 };
+
+// A surface, not black, that a camera path has met.
+struct PathStop {
+    const Surface& surface;
+    const Bsdf& bsdf;
+    const Rgb& throughput;  // of the path up to here
+    Lobe next;              // by which the path would leave
+    Sampler& sampler;       // of the path
+};
+
+// Follows a path from the camera until visit(PathStop) returns false, or it ends as one of any kind
+// would.
+template <typename Visit>
+void followCameraPath(const Scene& scene, const Ray& first, Sampler& sampler, const Visit& visit) {
+    PathWalk path(first);
+    while (true) {
+        Surface surface;
+        if (!scene.intersect(path.ray, surface)) return;
+        const Bsdf bsdf(scene, surface, -path.ray.direction, Transport::kRadiance, path.throughput);
+        if (bsdf.isBlackBody()) return;
+        BsdfSample sample;
+        const float uLobe = sampler.next1D();
+        const bool goesOn = bsdf.sample(uLobe, sampler.next2D(), sample);
+        if (!visit(PathStop{surface, bsdf, path.throughput, sample.lobe, sampler}) || !goesOn ||
+            !path.scatter(surface, bsdf, sample, sampler))
+            return;
+    }
+}
 
 }  // namespace pm

@@ -28,6 +28,10 @@ std::uint32_t ownGatherRays(const GatherPoints* points) {
                   : kFewestOwnRays;
 }
 
+bool reflectsLamps(const Bsdf& bsdf) {
+    return bsdf.has(Lobe::kDiffuse) || bsdf.has(Lobe::kGlossy);
+}
+
 }  // namespace
 
 SampleRadiance PhotonIntegrator::sample(Vec2f screen, const Ray& ray, Sampler& sampler,
@@ -85,15 +89,8 @@ void PhotonIntegrator::follow(Vec2f screen, Branch& branch, std::optional<Branch
                         path.throughput);
         if (first) recordFirstHit(surface, bsdf, result);
         if (bsdf.isBlackBody()) return;
-        StillToFind still;
-        if (bsdf.has(Lobe::kDiffuse))
-            still = readMaps(screen, surface, bsdf, path.throughput, scratch, result);
-        const bool reflectsLamps = bsdf.has(Lobe::kDiffuse) || bsdf.has(Lobe::kGlossy);
-        if (reflectsLamps) {
-            const DirectRadiance direct = estimateDirect(
-                m_scene, m_lights, surface, bsdf, still.lamps, lampSamples, sampler, result.rays);
-            result.direct += path.throughput * (direct.diffuse + direct.glossy);
-        }
+        const StillToFind still =
+            addReflected(screen, surface, bsdf, branch, sampler, scratch, result);
         if (bsdf.isDiffuseOnly() && still.lamps == LampStrategy::kNextEventOnly && !still.indirect)
             return;
         BsdfSample sample;
@@ -108,8 +105,27 @@ void PhotonIntegrator::follow(Vec2f screen, Branch& branch, std::optional<Branch
         if (sample.lobe == Lobe::kDiffuse)
             return followDiffuse(surface, bsdf, branch, still, uLobe, directions, result);
         if (!valid || !branch.goOn(surface, bsdf, sample, sampler)) return;
-        if (reflectsLamps) lampSamples = 1;
+        if (reflectsLamps(bsdf)) lampSamples = 1;
     }
+}
+
+// All light that a surface reflects by lobes that are not delta, but for what a ray along the
+// diffuse one has to find.
+PhotonIntegrator::StillToFind PhotonIntegrator::addReflected(Vec2f screen, const Surface& surface,
+                                                             const Bsdf& bsdf, const Branch& branch,
+                                                             Sampler& sampler,
+                                                             NearestPhotons& scratch,
+                                                             SampleRadiance& result) const {
+    const Rgb& throughput = branch.path.throughput;
+    StillToFind still;
+    if (bsdf.has(Lobe::kDiffuse))
+        still = readMaps(screen, surface, bsdf, throughput, scratch, result);
+    if (reflectsLamps(bsdf)) {
+        const DirectRadiance direct = estimateDirect(m_scene, m_lights, surface, bsdf, still.lamps,
+                                                     branch.lampSamples, sampler, result.rays);
+        result.direct += throughput * (direct.diffuse + direct.glossy);
+    }
+    return still;
 }
 
 PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(Vec2f screen, const Surface& surface,

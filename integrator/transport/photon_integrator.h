@@ -67,6 +67,9 @@ class PhotonIntegrator {
     // To its end; `reflected` gets what the first glass reflects, null: it is not divided.
     void follow(Vec2f screen, Branch& branch, std::optional<Branch>* reflected, Sampler& sampler,
                 NearestPhotons& scratch, bool withSeenLamps, SampleRadiance& result) const;
+    StillToFind addReflected(Vec2f screen, const Surface& surface, const Bsdf& bsdf,
+                             const Branch& branch, Sampler& sampler, NearestPhotons& scratch,
+                             SampleRadiance& result) const;
     StillToFind readMaps(Vec2f screen, const Surface& surface, const Bsdf& bsdf,
                          const Rgb& throughput, NearestPhotons& scratch,
                          SampleRadiance& result) const;

@@ -19,6 +19,8 @@ namespace {
 
 // Descended light is smoother than caustics: so many times as many photons an estimate.
 constexpr std::uint32_t kDescendedPhotons = 2;
+// Gather rays go by a guide where that leaves less than this of their variance.
+constexpr double kGuidePays = 0.5;
 
 }  // namespace
 
@@ -145,6 +147,20 @@ void PhotonPass::aim(Control& control) {
     m_aim->refine(landed.records);
 }
 
+void PhotonPass::chooseGatherRays(const PhotonMap& pilot, const CancelCheck& check) {
+    m_raysOfPoint = m_plan.gatherRays;
+    if (!m_plan.gatherRaysByPilot) return;
+    const IrradianceSites sites(m_scene, pilot, m_globalRadius);
+    m_raysOfPoint = gatherRaysFor(
+        gatherSpread(m_scene, m_camera, m_lights, sites, m_settings, check), m_plan.gatherRays);
+    const bool always = m_settings.plan == PlanKind::kEverything;
+    if (m_raysOfPoint <= m_plan.gatherRays && !always) return;
+    auto guide = std::make_unique<GatherGuide>(pilot, m_globalRadius);
+    const auto [byCosine, byGuide] =
+        gatherRivals(m_scene, m_camera, m_lights, sites, *guide, m_settings, check);
+    if (byGuide < kGuidePays * byCosine || always) m_guide = std::move(guide);
+}
+
 void PhotonPass::findRadii(Control& control) {
     // Where a pilot finds next to nothing, estimates reach a hundredth of the scene.
     const auto fallback = static_cast<float>(0.01 * m_scene.radius());
@@ -155,13 +171,7 @@ void PhotonPass::findRadii(Control& control) {
             trace(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0, control).photons,
             estimatePhotons, fallback, check);
         m_globalRadius = pilot.typical();
-        m_raysOfPoint = m_plan.gatherRays;
-        if (m_plan.gatherRaysByPilot) {
-            const IrradianceSites sites(m_scene, pilot.photons(), m_globalRadius);
-            m_raysOfPoint =
-                gatherRaysFor(gatherSpread(m_scene, m_camera, m_lights, sites, m_settings, check),
-                              m_plan.gatherRays);
-        }
+        chooseGatherRays(pilot.photons(), check);
     }
     if (m_plan.causticMap) {
         if (!m_source) aim(control);
@@ -217,9 +227,16 @@ void PhotonPass::buildIndirect(PassMaps& maps, Control& control) {
     maps.sites =
         std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor,
                                           sitesHavePatches() ? m_patches.get() : nullptr, factor);
-    const GatherPoints::Request request{
-        m_settings.width, m_settings.height, m_plan.gatherSpacing, m_raysOfPoint,          factor,
-        m_settings.seed,  maps.pass,         maps.descended.get(), m_descendedRadius.get()};
+    const GatherPoints::Request request{m_settings.width,
+                                        m_settings.height,
+                                        m_plan.gatherSpacing,
+                                        m_raysOfPoint,
+                                        factor,
+                                        m_settings.seed,
+                                        maps.pass,
+                                        maps.descended.get(),
+                                        m_descendedRadius.get(),
+                                        m_guide.get()};
     maps.points = std::make_unique<GatherPoints>(m_scene, m_camera, *maps.sites, request);
     const std::lock_guard lock(m_mutex);
     m_mapSeconds += watch.seconds();
@@ -273,6 +290,7 @@ void PhotonPass::addTo(RenderCounters& counters) const {
     counters.photonsEmitted += m_allKinds.emitted;
     counters.photonsLost += m_allKinds.lost;
     counters.gatherRaysOfPoint = m_raysOfPoint;
+    counters.gatherRaysGuided = m_guide != nullptr;
     counters.fluxEmitted += m_global.fluxEmitted;
     counters.fluxAbsorbed += m_global.fluxAbsorbed;
     counters.fluxEscaped += m_global.fluxEscaped;

@@ -88,6 +88,7 @@ class PhotonPass {
     bool sitesHavePatches() const;
     void buildIndirect(PassMaps& maps, Control& control);
     void aim(Control& control);
+    void chooseGatherRays(const PhotonMap& pilot, const CancelCheck& check);
     void findRadii(Control& control);
     void buildMaps(std::uint32_t pass, Control& control);
     void count(PhotonKind kind, const PhotonBalance& balance);
@@ -108,6 +109,7 @@ class PhotonPass {
     bool m_haveRadii = false;
     float m_globalRadius = 0.0f;
     std::uint32_t m_raysOfPoint = 0;       // gather rays; 0 until the radii are known
+    std::unique_ptr<GatherGuide> m_guide;  // of gather rays; null: by the cosine alone
     std::unique_ptr<AimedEmission> m_aim;  // of caustic photons
     std::unique_ptr<PilotRadius> m_causticRadius, m_descendedRadius;
     std::unique_ptr<SurfacePatches> m_patches;  // filled as the passes go on

@@ -7,8 +7,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "integrator/transport/path_walk.h"
-
 namespace pm {
 
 namespace {
@@ -32,25 +30,15 @@ FrameLattice FrameLattice::fixed(const RenderSettings& settings, std::size_t col
 
 void followPilotPaths(const Scene& scene, const Camera& camera, const FrameLattice& lattice,
                       std::uint64_t seed, const CancelCheck& cancel,
-                      const std::function<bool(std::size_t path, const PilotStop& stop)>& visit) {
+                      const std::function<bool(std::size_t path, const PathStop& stop)>& visit) {
     tbb::parallel_for(std::size_t{0}, lattice.size(), [&](std::size_t i) {
         cancel.throwIfSet("looking where light will be asked for");
         Sampler sampler(seed, 0, i, 0);
         const Vec2f jitter = sampler.next2D();
         const double x = static_cast<double>(i % lattice.columns) + static_cast<double>(jitter.x);
         const double y = static_cast<double>(i / lattice.columns) + static_cast<double>(jitter.y);
-        PathWalk path(camera.ray(x * lattice.cellWidth, y * lattice.cellHeight));
-        Surface surface;
-        while (scene.intersect(path.ray, surface)) {
-            const Bsdf bsdf(scene, surface, -path.ray.direction, Transport::kRadiance,
-                            path.throughput);
-            if (bsdf.isBlackBody()) return;
-            BsdfSample sample;
-            const float uLobe = sampler.next1D();
-            const bool goesOn = bsdf.sample(uLobe, sampler.next2D(), sample);
-            if (!visit(i, {surface, bsdf, path.throughput, sample.lobe, sampler})) return;
-            if (!goesOn || !path.scatter(surface, bsdf, sample, sampler)) return;
-        }
+        followCameraPath(scene, camera.ray(x * lattice.cellWidth, y * lattice.cellHeight), sampler,
+                         [&](const PathStop& stop) { return visit(i, stop); });
     });
 }
 

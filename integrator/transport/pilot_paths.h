@@ -6,14 +6,11 @@
 #include <cstdint>
 #include <functional>
 
-#include "integrator/materials/bsdf.h"
-#include "integrator/sampling/sampler.h"
 #include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
-#include "integrator/scene/surface.h"
+#include "integrator/transport/path_walk.h"
 #include "integrator/transport/render_settings.h"
 #include "integrator/values/cancel_check.h"
-#include "integrator/values/rgb.h"
 
 namespace pm {
 
@@ -32,15 +29,6 @@ struct FrameLattice {
     std::size_t size() const { return columns * rows; }
 };
 
-// A surface, not black, that a pilot path has met.
-struct PilotStop {
-    const Surface& surface;
-    const Bsdf& bsdf;
-    const Rgb& throughput;  // of the path up to here
-    Lobe next;              // by which the path would leave
-    Sampler& sampler;       // of the path
-};
-
 // Follows camera paths, one from a jittered place in each cell, before anything is rendered: to
 // where a render will ask for light. visit gets the cell's number and what the path meets there;
 // the path ends where it returns false, and where a camera path of any kind would.
@@ -48,6 +36,6 @@ struct PilotStop {
 // one cell from one. Throws Error(kCancelled) soon after cancel is set.
 void followPilotPaths(const Scene& scene, const Camera& camera, const FrameLattice& lattice,
                       std::uint64_t seed, const CancelCheck& cancel,
-                      const std::function<bool(std::size_t path, const PilotStop& stop)>& visit);
+                      const std::function<bool(std::size_t path, const PathStop& stop)>& visit);
 
 }  // namespace pm

@@ -175,7 +175,9 @@ void planGlobalMap(const RenderSettings& settings, Plan& plan) {
         "indirect light: final gathering at a point for every {:.1f} x {:.1f} pixels, {} rays "
         "each{}, and the mean of the points near a sample",
         plan.gatherSpacing, plan.gatherSpacing, plan.gatherRays,
-        plan.gatherRaysByPilot ? " or half, twice, four times as many, as a pilot finds" : ""));
+        plan.gatherRaysByPilot ? " or half, twice, four times as many, as a pilot finds, "
+                                 "and half of them towards bright places where that pays"
+                               : ""));
     plan.reasons.push_back(fmt::format(
         "global map: {} photons a pass, its irradiance kept at sites for what the gather rays "
         "meet",

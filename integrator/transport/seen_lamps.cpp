@@ -28,9 +28,6 @@ constexpr double kFilterReach = 1.0;
 constexpr std::uint32_t kPathsOfImage = 16;
 constexpr std::uint64_t kPilotSeed = 0x7365656e6c616d70ull;
 
-// As in PathWalk: only light caught between lossless surfaces comes so far.
-constexpr int kMaxEvents = 1000;
-
 bool isAreaLight(const Light& light) {
     return light.kind == Light::Kind::kTriangle || light.kind == Light::Kind::kSphere;
 }
@@ -172,10 +169,10 @@ bool SeenLamps::step(Branch& branch, Waiting& waiting, Sampler& sampler, Rgb& fo
     if (!m_scene.intersect(branch.ray, surface)) return false;
     const Vec3f out = -branch.ray.direction;
     if (surface.light != kNoLight)
-        found += branch.throughput * m_lights.emittedRadiance(surface, out);
-    if (!mayHaveDelta(m_scene.material(surface.material)) || ++branch.events == kMaxEvents)
+        found += branch.carried.throughput * m_lights.emittedRadiance(surface, out);
+    if (!mayHaveDelta(m_scene.material(surface.material)) || ++branch.events == kMostPathEvents)
         return false;
-    const Bsdf bsdf(m_scene, surface, out, Transport::kRadiance, branch.throughput);
+    const Bsdf bsdf(m_scene, surface, out, Transport::kRadiance, branch.carried.throughput);
     if (bsdf.isBlackBody()) return false;
     const Branch arrived = branch;
     if (waiting.divisions >= waiting.effort.divisions) {
@@ -202,18 +199,16 @@ bool SeenLamps::step(Branch& branch, Waiting& waiting, Sampler& sampler, Rgb& fo
 bool SeenLamps::goOn(const Branch& from, const Surface& surface, const Bsdf& bsdf,
                      const BsdfSample& sample, const Effort& effort, Sampler& sampler,
                      Branch& next) const {
-    next.throughput = from.throughput * sample.weight;
-    next.etaScale = from.etaScale;
-    if (sample.lobe == Lobe::kRefraction) next.etaScale *= bsdf.etaSquared();
+    next.carried = from.carried;
+    next.carried.followLobe(bsdf, sample);
     next.events = from.events;
-    const float carried = maxChannel(next.throughput) * next.etaScale;
+    const float amount = next.carried.amount();
     float least = effort.leastThroughput;
-    if (from.events >= effort.events)
-        least = std::max(least, maxChannel(from.throughput) * from.etaScale);
-    if (carried < least) {
-        const float survival = carried / least;
+    if (from.events >= effort.events) least = std::max(least, from.carried.amount());
+    if (amount < least) {
+        const float survival = amount / least;
         if (!(sampler.next1D() < survival)) return false;
-        next.throughput *= 1.0f / survival;
+        next.carried.throughput *= 1.0f / survival;
     }
     next.ray = rayFrom(surface, sample.direction);
     return true;

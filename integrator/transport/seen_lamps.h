@@ -18,6 +18,7 @@
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/lamp_images.h"
+#include "integrator/transport/path_walk.h"
 #include "integrator/transport/pixel_cell.h"
 #include "integrator/transport/render_settings.h"
 #include "integrator/values/rgb.h"
@@ -83,9 +84,7 @@ class SeenLamps {
     // How far a path has come.
     struct Branch {
         Ray ray;
-        Rgb throughput{1.0f};
-        // Undoes the factors eta^2 of refraction, as PathWalk.
-        float etaScale = 1.0f;
+        Carried carried{};
         int events = 0;
     };
     // Branches of one path that wait to be followed.

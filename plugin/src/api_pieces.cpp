@@ -6,8 +6,8 @@
 
 #include "plugin/src/api_functions.h"
 #include "plugin/src/entry.h"
+#include "plugin/src/layer_table.h"
 #include "plugin/src/merge_object.h"
-#include "plugin/src/struct_reader.h"
 
 namespace pm::plugin::api {
 
@@ -43,19 +43,13 @@ PmrStatus PMR_CALL mergeSettingText(PmrMerge merge, const char* name, char* buff
 }
 
 PmrStatus PMR_CALL mergeLayerCount(PmrMerge merge, uint32_t* count) noexcept {
-    return onObject<MergeObject>(merge, [&](const MergePointer& object) {
-        if (count == nullptr) throw argumentError("count is null");
-        *count = static_cast<uint32_t>(object->layers().size());
-    });
+    return onObject<MergeObject>(
+        merge, [&](const MergePointer& object) { writeLayerCount(object->layers(), count); });
 }
 
 PmrStatus PMR_CALL mergeLayerInfo(PmrMerge merge, uint32_t index, PmrLayerInfo* info) noexcept {
-    return onObject<MergeObject>(merge, [&](const MergePointer& object) {
-        const std::vector<Layer> layers = object->layers();
-        checkIndex(index, layers.size());
-        const LayerSpec& spec = layerSpecs()[static_cast<std::size_t>(layers[index])];
-        writeStruct(info, toInfo(spec), "PmrLayerInfo");
-    });
+    return onObject<MergeObject>(
+        merge, [&](const MergePointer& object) { writeLayerInfo(object->layers(), index, info); });
 }
 
 PmrStatus PMR_CALL readMergedPixels(PmrMerge merge, const PmrRectangle* rectangle,

@@ -177,18 +177,13 @@ PmrStatus PMR_CALL destroyRender(PmrRender render) noexcept {
 }
 
 PmrStatus PMR_CALL renderLayerCount(PmrRender render, uint32_t* count) noexcept {
-    return onObject<Render>(render, [&](const RenderPointer& object) {
-        if (count == nullptr) throw argumentError("count is null");
-        *count = static_cast<uint32_t>(object->layers().size());
-    });
+    return onObject<Render>(
+        render, [&](const RenderPointer& object) { writeLayerCount(object->layers(), count); });
 }
 
 PmrStatus PMR_CALL renderLayerInfo(PmrRender render, uint32_t index, PmrLayerInfo* info) noexcept {
     return onObject<Render>(render, [&](const RenderPointer& object) {
-        const std::vector<Layer> layers = object->layers();
-        checkIndex(index, layers.size());
-        const LayerSpec& spec = layerSpecs()[static_cast<std::size_t>(layers[index])];
-        writeStruct(info, toInfo(spec), "PmrLayerInfo");
+        writeLayerInfo(object->layers(), index, info);
     });
 }
 

@@ -4,6 +4,10 @@
 
 #include <array>
 
+#include "plugin/src/call_error.h"
+#include "plugin/src/named_table.h"
+#include "plugin/src/struct_reader.h"
+
 namespace pm::plugin {
 
 namespace {
@@ -35,12 +39,7 @@ constexpr std::array<LayerSpec, kLayerCount> kLayers = {{
      "passes); 0 where it is still one of a group."},
 }};
 
-constexpr bool inOrder() {
-    for (std::size_t i = 0; i < kLayers.size(); ++i)
-        if (static_cast<std::size_t>(kLayers[i].id) != i) return false;
-    return true;
-}
-static_assert(inOrder());
+static_assert(isInOrderOfIds(kLayers));
 
 }  // namespace
 
@@ -49,9 +48,7 @@ std::span<const LayerSpec, kLayerCount> layerSpecs() {
 }
 
 const LayerSpec* findLayer(std::string_view name) {
-    for (const LayerSpec& spec : kLayers)
-        if (name == spec.name) return &spec;
-    return nullptr;
+    return findByName(kLayers, name);
 }
 
 std::vector<std::string_view> layerNames() {
@@ -70,6 +67,17 @@ PmrLayerInfo toInfo(const LayerSpec& spec) {
     info.kind = spec.kind;
     info.isDefault = spec.isDefault ? 1 : 0;
     return info;
+}
+
+void writeLayerCount(const std::vector<Layer>& layers, std::uint32_t* count) {
+    if (count == nullptr) throw argumentError("count is null");
+    *count = static_cast<std::uint32_t>(layers.size());
+}
+
+void writeLayerInfo(const std::vector<Layer>& layers, std::uint32_t index, PmrLayerInfo* info) {
+    checkIndex(index, layers.size());
+    const LayerSpec& spec = kLayers[static_cast<std::size_t>(layers[index])];
+    writeStruct(info, toInfo(spec), "PmrLayerInfo");
 }
 
 }  // namespace pm::plugin

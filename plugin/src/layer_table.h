@@ -50,4 +50,9 @@ std::vector<std::string_view> layerNames();
 
 PmrLayerInfo toInfo(const LayerSpec& spec);
 
+// What a host asks of a picture's layers. Throw CallError where it gave a null pointer, an index
+// beyond them or a struct of no known size.
+void writeLayerCount(const std::vector<Layer>& layers, std::uint32_t* count);
+void writeLayerInfo(const std::vector<Layer>& layers, std::uint32_t index, PmrLayerInfo* info);
+
 }  // namespace pm::plugin

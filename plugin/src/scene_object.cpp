@@ -62,6 +62,17 @@ void refuseOtherCameras(const PmrCameraDesc& desc) {
     if (desc.reserved != 0) throw argumentError("PmrCameraDesc: reserved must be 0");
 }
 
+// What a commit makes, by so many threads; it needs nothing but what it is given.
+std::pair<std::shared_ptr<const Scene>, Identity> build(SceneDescription description,
+                                                        const SceneTextures& textures, int threads,
+                                                        const std::string& isa,
+                                                        const CancelCheck& cancel) {
+    WorkerArena arena(threads);
+    auto scene = arena.execute([&] { return Scene::build(std::move(description), isa, cancel); });
+    Identity identity = sceneIdentity(*scene, textures, cancel);
+    return {std::move(scene), std::move(identity)};
+}
+
 }  // namespace
 
 SceneObject::SceneObject(std::shared_ptr<Context> context, const PmrSceneDesc& desc)
@@ -187,16 +198,12 @@ void SceneObject::commit() {
         description.environment->texture = textures->add(m_environmentTexture);
     description.textures = textures;
     const auto start = std::chrono::steady_clock::now();
-    auto [built, identity] = runLeavable(
-        m_context->buildCheck(), "building the scene",
-        [description = std::move(description), textures, threads = m_context->threads(),
-         isa = m_context->isa()](const CancelCheck& cancel) mutable {
-            WorkerArena arena(threads);
-            auto scene =
-                arena.execute([&] { return Scene::build(std::move(description), isa, cancel); });
-            Identity identity = sceneIdentity(*scene, *textures, cancel);
-            return std::pair(std::move(scene), std::move(identity));
-        });
+    auto [built, identity] =
+        runLeavable(m_context->buildCheck(), "building the scene",
+                    [description = std::move(description), textures, threads = m_context->threads(),
+                     isa = m_context->isa()](const CancelCheck& cancel) mutable {
+                        return build(std::move(description), *textures, threads, isa, cancel);
+                    });
     m_identity = std::move(identity);
     m_scene = std::move(built);
     m_textures = textures;

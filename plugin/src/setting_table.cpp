@@ -5,6 +5,8 @@
 #include <array>
 #include <limits>
 
+#include "plugin/src/named_table.h"
+
 namespace pm::plugin {
 
 namespace {
@@ -127,12 +129,7 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
      "On disk 28 bytes a photon that landed."},
 }};
 
-constexpr bool inOrder() {
-    for (std::size_t i = 0; i < kSettings.size(); ++i)
-        if (static_cast<std::size_t>(kSettings[i].id) != i) return false;
-    return true;
-}
-static_assert(inOrder());
+static_assert(isInOrderOfIds(kSettings));
 
 }  // namespace
 
@@ -141,9 +138,7 @@ std::span<const SettingSpec, kSettingCount> settingSpecs() {
 }
 
 const SettingSpec* findSetting(std::string_view name) {
-    for (const SettingSpec& spec : kSettings)
-        if (name == spec.name) return &spec;
-    return nullptr;
+    return findByName(kSettings, name);
 }
 
 PmrSettingInfo toInfo(const SettingSpec& spec) {

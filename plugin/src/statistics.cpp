@@ -92,6 +92,7 @@ Json planJson(const Plan& plan, const RenderCounters& counters) {
             {"causticMap", plan.causticMap},
             {"globalPhotonsPerPass", plan.globalPhotons},
             {"gatherRaysPerPoint", counters.gatherRaysOfPoint},
+            {"gatherRaysGuided", counters.gatherRaysGuided},
             {"causticPhotonsPerPass", plan.causticPhotons},
             {"lampSamples", counters.lampSamples},
             {"lines", plan.reasons}};

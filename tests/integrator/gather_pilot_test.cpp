@@ -139,22 +139,35 @@ TEST(GatherPilot, RaysForASpread) {
     EXPECT_EQ(1u, gatherRaysFor(0.0, 1));
 }
 
-// A lamp that lights the ceiling alone: all other light comes from one bright patch.
+// A lamp in a corner, most of whose light is reflected by a small part of two walls; or one in the
+// middle of the ceiling.
+SceneMaker litRoom(bool inACorner) {
+    SceneMaker maker;
+    const double half = inACorner ? 0.02 : 0.25, at = inACorner ? -0.96 : 0;
+    maker.box({-1, -1, -1}, {1, 1, 1}, maker.diffuse(Rgb(0.8f)), true);
+    maker.quad({at - half, 0.98, at - half}, {2 * half, 0, 0}, {0, 0, 2 * half},
+               maker.diffuse(Rgb(0.0f), Rgb(inACorner ? 1000.0f : 10.0f)));
+    maker.camera({0.9, 0, 0.9}, {0, -0.4, 0}, {0, 1, 0}, 70);
+    return maker;
+}
+
 TEST(GatherPilot, ARenderObeysIt) {
-    const auto raysOf = [](bool upwards, std::uint32_t asked) {
-        SceneMaker maker = openRoom();
-        const std::uint32_t lamp = maker.diffuse(Rgb(0.0f), Rgb(60.0f));
-        if (upwards)
-            maker.quad({-0.25, 0.6, -0.25}, {0, 0, 0.5}, {0.5, 0, 0}, lamp);
-        else
-            maker.quad({-0.25, 0.99, -0.25}, {0.5, 0, 0}, {0, 0, 0.5}, lamp);
+    const auto countersOf = [](bool inACorner, std::uint32_t asked, PlanKind plan) {
         RenderSettings settings = smallFrame(32, 32, IntegratorKind::kPhoton, 1, 2);
         settings.gatherRays = asked;
-        return measure(maker.build(), settings).counters.gatherRaysOfPoint;
+        settings.plan = plan;
+        return measure(litRoom(inACorner).build(), settings).counters;
     };
-    EXPECT_EQ(128u, raysOf(true, 0));
-    EXPECT_LE(raysOf(false, 0), 64u);
-    EXPECT_EQ(24u, raysOf(true, 24));
+    const RenderCounters bright = countersOf(true, 0, PlanKind::kAuto);
+    EXPECT_TRUE(bright.gatherRaysGuided);
+    EXPECT_GE(bright.gatherRaysOfPoint, 64u);
+    const RenderCounters even = countersOf(false, 0, PlanKind::kAuto);
+    EXPECT_FALSE(even.gatherRaysGuided);
+    EXPECT_LE(even.gatherRaysOfPoint, 64u);
+    EXPECT_TRUE(countersOf(false, 0, PlanKind::kEverything).gatherRaysGuided);
+    const RenderCounters asked = countersOf(true, 24, PlanKind::kAuto);
+    EXPECT_FALSE(asked.gatherRaysGuided);
+    EXPECT_EQ(24u, asked.gatherRaysOfPoint);
 }
 
 }  // namespace

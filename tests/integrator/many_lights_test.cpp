@@ -88,7 +88,7 @@ TEST(ManyLights, DensitiesMatch) {
         wrong += std::abs(pdf / sample.pdfSolidAngle - 1.0f) > 5e-3f;
     }
     EXPECT_GT(compared, 200);
-    EXPECT_GT(behind, 20);
+    EXPECT_GT(behind, compared / 100);
     EXPECT_LE(wrong, compared / 100);
 }
 

@@ -321,6 +321,10 @@ TEST(PhotonMap, TheTreeIsAsDefined) {
     sets.push_back(std::vector<Photon>(30'000, photonAt({0.3f, 0.2f, 0.1f})));
     for (std::size_t i = 0; i < sets.back().size(); i += 1000)
         sets.back()[i].position = {-0.0f, static_cast<float>(i), 0.0f};
+    // Wider than what a float can hold.
+    sets.push_back(inSpace(5000, 19));
+    for (Photon& photon : sets.back())
+        photon.position = (photon.position * 2.0f - Vec3f(1.0f)) * 3e38f;
     for (const std::vector<Photon>& photons : sets) {
         std::vector<std::uint32_t> all(photons.size()), order;
         std::iota(all.begin(), all.end(), 0u);
