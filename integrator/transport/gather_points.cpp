@@ -142,8 +142,7 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
     const Vec3f& geometricNormal = origin.geometricNormal;
     const Vec3f start = point.position + geometricNormal * origin.offset;
     const Frame frame(point.normal);
-    std::optional<GatherGuide::Directions> directions;
-    if (m_request.guide) directions = m_request.guide->at(point.position, frame);
+    const auto directions = directionsAt(point.position, frame);
     std::array<double, 6> sum{};
     float clearance = std::numeric_limits<float>::max();
     float lamps = 0;

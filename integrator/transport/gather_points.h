@@ -89,6 +89,12 @@ class GatherPoints {
     void forget(const Rect& region, const Rect& all) const;
 
     std::uint32_t raysOfPoint() const { return m_request.rays; }
+    // By which gather rays leave a place; none: by the cosine alone.
+    std::optional<GatherGuide::Directions> directionsAt(const Vec3f& position,
+                                                        const Frame& frame) const {
+        if (!m_request.guide) return std::nullopt;
+        return m_request.guide->at(position, frame);
+    }
     // Gather rays so far.
     std::uint64_t raysTraced() const { return m_raysTraced.load(std::memory_order_relaxed); }
     // The most that the points took so far.

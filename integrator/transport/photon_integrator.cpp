@@ -168,14 +168,20 @@ void PhotonIntegrator::followDiffuse(const Surface& surface, const Bsdf& bsdf, c
                                      SampleRadiance& result) const {
     const std::uint32_t rays = still.indirect ? ownGatherRays(m_maps.points) : 1;
     const Rgb share = branch.path.throughput / static_cast<float>(rays);
+    std::optional<GatherGuide::Directions> guide;
+    // For lamps that such rays meet, too: the weights of the two strategies sum to 1 in every
+    // direction, by whichever density the rays come.
+    if (still.indirect && m_maps.points)
+        guide = m_maps.points->directionsAt(surface.position, Frame(bsdf.facingShadingNormal()));
     for (std::uint32_t i = 0; i < rays; ++i) {
         // All those of a pixel are one low-discrepancy sequence.
         Sampler part = directions.part(rays, i);
         BsdfSample sample;
-        if (!bsdf.sample(uLobe, part.next2D(), sample)) continue;
+        const auto [u, density] = GatherGuide::warp(guide, part.next2D());
+        if (!bsdf.sample(uLobe, u, sample)) continue;
         const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle,
                                branch.lampSamples};
-        gatherAlong(last, still, share * sample.weight, part, result);
+        gatherAlong(last, still, share * sample.weight / density, part, result);
     }
 }
 

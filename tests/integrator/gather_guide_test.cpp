@@ -166,5 +166,25 @@ TEST(GatherGuide, SameMeanAndLessNoise) {
     EXPECT_LT(guided.variance, 0.5 * plain.variance);
 }
 
+// Samples in corners, without a point in reach, send rays of their own by the same guide, which may
+// meet lamps.
+TEST(GatherGuide, WholePicturesHaveTheSameMean) {
+    const auto scene = lampInACorner();
+    const auto rendered = [&](std::uint32_t rays) {
+        RenderSettings settings = smallFrame(24, 24, IntegratorKind::kPhoton, 32, 3);
+        settings.gatherRays = rays;
+        return measure(scene, settings);
+    };
+    const MeasuredLayers guided = rendered(0), plain = rendered(64);
+    EXPECT_TRUE(guided.counters.gatherRaysGuided);
+    EXPECT_FALSE(plain.counters.gatherRaysGuided);
+    for (const auto layer : {&MeasuredLayers::direct, &MeasuredLayers::indirect}) {
+        const Measured &a = guided.*layer, &b = plain.*layer;
+        const double error = std::hypot(a.standardError[1], b.standardError[1]);
+        EXPECT_NEAR(a.mean[1], b.mean[1], 4 * error);
+        EXPECT_LT(error, 0.005 * b.mean[1]);
+    }
+}
+
 }  // namespace
 }  // namespace pm::test
