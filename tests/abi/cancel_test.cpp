@@ -19,7 +19,8 @@ namespace {
 // A picture of 2 : 1, every texel of it another.
 std::string writePicture(std::uint32_t columns) {
     const std::uint32_t rows = columns / 2;
-    const std::string name = ::testing::TempDir() + "pm_cancel_" + std::to_string(columns) + ".ppm";
+    const std::string name = ::testing::TempDir() + "pm_cancel_" + std::to_string(columns) + "." +
+                             std::to_string(getpid()) + ".ppm";
     std::vector<unsigned char> texels;
     for (std::uint32_t i = 0; i < columns * rows; ++i)
         for (const std::uint32_t step : {1u, 7u, 31u})

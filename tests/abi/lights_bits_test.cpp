@@ -133,7 +133,8 @@ class LightsBits : public ::testing::TestWithParam<const char*> {
         }
     }
     void addSky() {
-        const std::string name = ::testing::TempDir() + "pm_bits_" + GetParam() + ".ppm";
+        const std::string name = ::testing::TempDir() + "pm_bits_" + GetParam() + "." +
+                                 std::to_string(getpid()) + ".ppm";
         std::FILE* file = std::fopen(name.c_str(), "wb");
         std::fputs("P6\n16 8\n255\n", file);
         for (int i = 0; i < 16 * 8 * 3; ++i) std::fputc(i * 37 % 256, file);

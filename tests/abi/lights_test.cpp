@@ -8,6 +8,7 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <string>
 
 #include "tests/abi/host.h"
 
@@ -121,7 +122,8 @@ TEST_F(Lights, AnEnvironmentIsSeenWithoutCoverage) {
 
 // Red, green over blue, white: middle towards -z, red on the left of what the camera sees.
 TEST_F(Lights, ThePictureOfAnEnvironment) {
-    const std::string name = ::testing::TempDir() + "pm_sky_texels.ppm";
+    const std::string name =
+        ::testing::TempDir() + "pm_sky_texels." + std::to_string(getpid()) + ".ppm";
     const unsigned char texels[12] = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255};
     FILE* file = std::fopen(name.c_str(), "wb");
     std::fputs("P6\n2 2\n255\n", file);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // Textures through the interface: a square in front of the camera that emits its picture.
 #include <cstdio>
+#include <string>
 
 #include "tests/abi/host.h"
 
@@ -11,7 +12,8 @@ namespace {
 
 // 2 x 2 texels, top row first: red, green / blue, white.
 std::string writePicture() {
-    const std::string name = ::testing::TempDir() + "pm_four_texels.ppm";
+    const std::string name =
+        ::testing::TempDir() + "pm_four_texels." + std::to_string(getpid()) + ".ppm";
     const unsigned char texels[12] = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255};
     FILE* file = std::fopen(name.c_str(), "wb");
     std::fputs("P6\n2 2\n255\n", file);
