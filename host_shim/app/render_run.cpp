@@ -151,11 +151,12 @@ void RenderRun::checkSettings(PmrStatus status, const std::string& what) const {
 }
 
 std::string RenderRun::explain() const {
-    std::uint64_t needed = 0;
-    checkSettings(api().explainRender(m_handle, nullptr, 0, &needed), "render");
-    return pluginText([this](char* buffer, uint64_t capacity, uint64_t* needed) {
-        return api().explainRender(m_handle, buffer, capacity, needed);
+    PmrStatus status = PMR_OK;
+    const std::string text = pluginText([&](char* buffer, uint64_t capacity, uint64_t* needed) {
+        return status = api().explainRender(m_handle, buffer, capacity, needed);
     });
+    checkSettings(status, "render");
+    return text;
 }
 
 std::string RenderRun::statistics() const {
