@@ -87,25 +87,8 @@ FrameStore::FrameStore(const Rect& window, std::int32_t channels, std::int32_t b
     checkOptional("bias probe", biasProbeFirst, m_channels);
     checkOptional("emission", emissionFirst, m_channels);
     if (rule) checkSampleRule(*rule);
-    const auto pixels = static_cast<std::size_t>(m_area.area());
     try {
-        m_sums.resize(pixels * static_cast<std::size_t>(m_channels));
-        m_weights.resize(pixels);
-        m_deviations.resize(pixels * kBeautyChannels);
-        m_passes.resize(pixels);
-        m_evenSums.resize(pixels * evenChannels(m_channels, biasProbeFirst, isAdaptive()));
-        m_evenWeights.resize(pixels);
-        m_evenPasses.resize(pixels);
-        if (rule) {
-            m_allotted.assign(2 * pixels, static_cast<std::uint16_t>(rule->least));
-            m_seen.resize(2 * pixels);
-        }
-        if (rule && rule->isAlone()) {
-            m_passWeights = m_allotted;
-            m_halfWeights.resize(2 * pixels);
-        }
-        if (hasGroups()) m_groups.assign(pixels, kUnseen);
-        m_bandLocks = std::make_unique<std::mutex[]>(bandCount(window));
+        allocate();
     } catch (const std::exception&) {  // bad_alloc, or length_error for sizes beyond any memory
         throw Error(
             Status::kOutOfMemory,
@@ -113,6 +96,27 @@ FrameStore::FrameStore(const Rect& window, std::int32_t channels, std::int32_t b
                         window.width(), window.height(), channels,
                         memoryBytes(window, channels, biasProbeFirst, isAdaptive(), hasGroups())));
     }
+}
+
+void FrameStore::allocate() {
+    const auto pixels = static_cast<std::size_t>(m_area.area());
+    m_sums.resize(pixels * static_cast<std::size_t>(m_channels));
+    m_weights.resize(pixels);
+    m_deviations.resize(pixels * kBeautyChannels);
+    m_passes.resize(pixels);
+    m_evenSums.resize(pixels * evenChannels(m_channels, m_biasProbeFirst, isAdaptive()));
+    m_evenWeights.resize(pixels);
+    m_evenPasses.resize(pixels);
+    if (m_rule) {
+        m_allotted.assign(2 * pixels, static_cast<std::uint16_t>(m_rule->least));
+        m_seen.resize(2 * pixels);
+    }
+    if (m_rule && m_rule->isAlone()) {
+        m_passWeights = m_allotted;
+        m_halfWeights.resize(2 * pixels);
+    }
+    if (hasGroups()) m_groups.assign(pixels, kUnseen);
+    m_bandLocks = std::make_unique<std::mutex[]>(bandCount(m_window));
 }
 
 std::uint64_t FrameStore::memoryBytes(const Rect& window, std::int32_t channels,
@@ -130,24 +134,29 @@ std::uint64_t FrameStore::memoryBytes(const Rect& window, std::int32_t channels,
            bandCount(window) * sizeof(std::mutex);
 }
 
-void FrameStore::addPass(std::uint32_t pass, const Rect& rect, std::span<const float> pixels,
-                         std::span<const float> weights) {
-    if (rect.empty()) return;
+void FrameStore::checkPass(const Rect& rect, std::size_t floats, std::size_t weights) const {
     if (intersect(rect, m_area) != rect || (isAdaptive() && wholeAtoms(rect) != rect)) {
         throw Error(
             Status::kInvalidArgument,
             fmt::format("pass of [{},{}) x [{},{}) is not {} the frame's window", rect.x0, rect.x1,
                         rect.y0, rect.y1, isAdaptive() ? "of whole atoms of" : "within"));
     }
-    const FpEnvironment guard;
     const auto area = static_cast<std::size_t>(rect.area());
-    const auto channels = static_cast<std::size_t>(passChannels());
-    if (pixels.size() != area * channels || weights.size() != area) {
+    const std::size_t wanted = area * static_cast<std::size_t>(passChannels());
+    if (floats != wanted || weights != area) {
         throw Error(Status::kInvalidArgument,
                     fmt::format("pass of {} pixels has {} floats and {} weights; it must have {} "
                                 "and {}",
-                                area, pixels.size(), weights.size(), area * channels, area));
+                                area, floats, weights, wanted, area));
     }
+}
+
+void FrameStore::addPass(std::uint32_t pass, const Rect& rect, std::span<const float> pixels,
+                         std::span<const float> weights) {
+    if (rect.empty()) return;
+    checkPass(rect, pixels.size(), weights.size());
+    const FpEnvironment guard;
+    const auto channels = static_cast<std::size_t>(passChannels());
     std::size_t source = 0;
     for (std::int32_t y = rect.y0; y < rect.y1; ++y) {
         const std::lock_guard lock(bandLock(y));

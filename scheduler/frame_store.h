@@ -150,6 +150,8 @@ class FrameStore {
                   std::int64_t pixelStrideBytes, std::int64_t rowStrideBytes,
                   ReadPixel readPixel) const;
 
+    void allocate();
+    void checkPass(const Rect& rect, std::size_t floats, std::size_t weights) const;
     void addPixel(std::size_t pixel, const float* values, double weight);
     void addToEvenPasses(std::size_t pixel, const float* values, double weight);
     bool isAdaptive() const { return m_rule.has_value(); }

@@ -7,6 +7,7 @@
 
 #include <exception>
 #include <new>
+#include <system_error>
 
 namespace pm::host {
 
@@ -25,6 +26,12 @@ int guarded(Log& log, const std::function<int()>& work, std::string* errorText) 
     } catch (const std::bad_alloc&) {
         code = kOutOfMemory;
         text = "out of memory";
+    } catch (const std::system_error& error) {
+        // Threads need memory, too, and their number may be limited.
+        const bool isThread = error.code() == std::errc::resource_unavailable_try_again;
+        if (isThread) code = kOutOfMemory;
+        text = isThread ? "no thread can be started: out of memory or of processes"
+                        : std::string("internal error: ") + error.what();
     } catch (const std::exception& error) {
         text = std::string("internal error: ") + error.what();
     } catch (...) {

@@ -11,7 +11,7 @@
 namespace pm::host {
 
 // Installs handlers for SIGINT and SIGTERM: the first is noted, a second ends the process at once
-// with 128 + signal. Only main calls this.
+// with 128 + signal; within 0.1 s it counts as the first. Only main calls this.
 void installInterruptHandlers();
 
 // Who reads what this process prints may go away before the picture is finished: then printing

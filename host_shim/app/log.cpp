@@ -72,6 +72,10 @@ void Log::warning(int code, std::string_view text) {
     if (warning.count <= kShownOfEachCode) message(Level::kWarning, text);
 }
 
+void Log::libraryWarning(int code, std::string_view text) {
+    warning(code, m_subject.empty() ? std::string(text) : fmt::format("{}: {}", m_subject, text));
+}
+
 void Log::reportHiddenWarnings() {
     for (const auto& [code, warning] : m_warnings) {
         if (warning.count <= kShownOfEachCode) continue;

@@ -40,6 +40,9 @@ class Log {
     void info(std::string_view text) { message(Level::kInfo, text); }
     // Counted by code; of each code the first few are shown, the rest only counted.
     void warning(int code, std::string_view text);
+    // What the library's warnings are about until the next call; empty: they say it themselves.
+    void setSubject(std::string_view subject) { m_subject = subject; }
+    void libraryWarning(int code, std::string_view text);
     // Says how many warnings were only counted.
     void reportHiddenWarnings();
 
@@ -58,6 +61,7 @@ class Log {
     std::chrono::steady_clock::time_point m_start{std::chrono::steady_clock::now()};
     std::ofstream m_file;
     std::map<int, WarningCount> m_warnings;
+    std::string m_subject;
     bool m_hasStatusLine{};
 };
 

@@ -54,8 +54,8 @@ PmrTexture MaterialBuilder::texture(const std::optional<TextureUse>& use,
                                baked.badTexels));
         }
     } catch (const HostError& error) {
-        m_warn(Warning::kTexture,
-               fmt::format("material {}: {}; its number is used alone", material, error.what()));
+        m_warn(Warning::kTexture, fmt::format("{}: material {}: {}; its number is used alone",
+                                              use->place, material, error.what()));
         return nullptr;
     }
     auto desc = PMR_INIT(PmrTextureDesc);

@@ -37,7 +37,7 @@ void makeFolder(const fs::path& file) {
 void checkTextName(const fs::path& file) {
     for (const char* extension : {".obj", ".mtl", ".pov", ".inc", ".ocio", ".exr", ".png", ".jpg",
                                   ".jpeg", ".tif", ".tiff", ".tga", ".hdr", ".bmp", ".tx"}) {
-        if (identity(file).extension() != extension) continue;
+        if (lowerCaseExtension(identity(file)) != extension) continue;
         throw HostError(
             ExitCode::kUsage,
             fmt::format("{}: statistics, logs, reports, parts, checkpoints and photon maps may not "

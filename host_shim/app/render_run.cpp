@@ -12,7 +12,7 @@ void PMR_CALL logPluginMessage(void* user, PmrRender, int32_t level, int32_t cod
                                const char* text) {
     Log& log = *static_cast<Log*>(user);
     if (level == PMR_LEVEL_WARNING) {
-        log.warning(code, text);
+        log.libraryWarning(code, text);
     } else {
         // The plugin's errors reach the user as exceptions, once.
         log.message(level == PMR_LEVEL_INFO ? Level::kInfo : Level::kDebug, text);
@@ -152,7 +152,7 @@ void RenderRun::checkSettings(PmrStatus status, const std::string& what) const {
 
 std::string RenderRun::explain() const {
     PmrStatus status = PMR_OK;
-    const std::string text = pluginText([&](char* buffer, uint64_t capacity, uint64_t* needed) {
+    std::string text = pluginText([&](char* buffer, uint64_t capacity, uint64_t* needed) {
         return status = api().explainRender(m_handle, buffer, capacity, needed);
     });
     checkSettings(status, "render");

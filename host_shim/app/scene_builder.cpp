@@ -72,7 +72,7 @@ PluginScene::~PluginScene() {
 
 void PluginScene::build(const SceneData& data, const std::string& sceneName, Subdivide subdivide,
                         const CameraPose& camera, const ColourPipeline& colour,
-                        MaterialBuilder& materials, const WarningSink& warn) {
+                        MaterialBuilder& materials) {
     const PmrApi& api = m_context.api();
     auto desc = PMR_INIT(PmrSceneDesc);
     desc.renderingSpace = colour.renderingSpace().c_str();
@@ -94,9 +94,10 @@ void PluginScene::build(const SceneData& data, const std::string& sceneName, Sub
     }
     if (!data.hasLight()) {
         addDefaultLight(camera, data.bounds);
-        warn(Warning::kDefaultLight,
-             fmt::format("{}: no light (no material with Ke); a point light at the camera is added",
-                         sceneName));
+        m_log.warning(
+            static_cast<int>(Warning::kDefaultLight),
+            fmt::format("{}: no light (no material with Ke); a point light at the camera is added",
+                        sceneName));
     }
     auto view = PMR_INIT(PmrCameraDesc);
     view.kind = PMR_CAMERA_PERSPECTIVE;
@@ -107,22 +108,33 @@ void PluginScene::build(const SceneData& data, const std::string& sceneName, Sub
     m_context.check(api.commitScene(m_handle), sceneName);
 }
 
+PmrMesh PluginScene::createMesh(const MeshData& mesh, Subdivide subdivide,
+                                const std::string& where) {
+    const PmrApi& api = m_context.api();
+    const PmrMeshDesc desc = describe(mesh);
+    const bool isCage =
+        subdivide == Subdivide::kAll || (subdivide == Subdivide::kTagged && mesh.tags.has_value());
+    PmrMesh handle = nullptr;
+    PmrStatus status = PMR_OK;
+    m_log.setSubject(where);
+    if (isCage) {
+        const CageTags tags = mesh.tags.value_or(CageTags{});
+        const PmrCageDesc cage = describeCage(desc, tags);
+        status = api.createCage(m_context.handle(), &cage, &handle);
+    } else {
+        status = api.createMesh(m_context.handle(), &desc, &handle);
+    }
+    m_log.setSubject({});
+    m_context.check(status, where);
+    return handle;
+}
+
 void PluginScene::addMesh(const MeshData& mesh, const SceneData& data, const std::string& sceneName,
                           Subdivide subdivide, const std::vector<PmrMaterial>& materials) {
     const PmrApi& api = m_context.api();
     const std::string where =
         mesh.name.empty() ? sceneName : fmt::format("{}: group {}", sceneName, mesh.name);
-    const PmrMeshDesc desc = describe(mesh);
-    const bool isCage =
-        subdivide == Subdivide::kAll || (subdivide == Subdivide::kTagged && mesh.tags.has_value());
-    PmrMesh handle = nullptr;
-    if (isCage) {
-        const CageTags tags = mesh.tags.value_or(CageTags{});
-        const PmrCageDesc cage = describeCage(desc, tags);
-        m_context.check(api.createCage(m_context.handle(), &cage, &handle), where);
-    } else {
-        m_context.check(api.createMesh(m_context.handle(), &desc, &handle), where);
-    }
+    const PmrMesh handle = createMesh(mesh, subdivide, where);
     std::vector<PmrMaterial> slots;
     for (const uint32_t material : mesh.slotMaterials) slots.push_back(materials[material]);
     const auto transform = translation(data.centre);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include "host_shim/app/log.h"
 #include "host_shim/app/material_builder.h"
 #include "host_shim/app/plugin.h"
 #include "host_shim/cli/options.h"
@@ -13,7 +14,7 @@ namespace pm::host {
 // A scene of the plugin; released with this.
 class PluginScene {
   public:
-    explicit PluginScene(const PluginContext& context) : m_context(context) {}
+    PluginScene(const PluginContext& context, Log& log) : m_context(context), m_log(log) {}
     ~PluginScene();
     PluginScene(const PluginScene&) = delete;
     PluginScene& operator=(const PluginScene&) = delete;
@@ -21,8 +22,7 @@ class PluginScene {
     // Hands everything over and commits it. sceneName is for messages. A scene without any light
     // gets one at the camera, with a warning. Errors: those of the plugin, as exitCodeOf.
     void build(const SceneData& data, const std::string& sceneName, Subdivide subdivide,
-               const CameraPose& camera, const ColourPipeline& colour, MaterialBuilder& materials,
-               const WarningSink& warn);
+               const CameraPose& camera, const ColourPipeline& colour, MaterialBuilder& materials);
 
     PmrScene handle() const { return m_handle; }
     const PluginContext& context() const { return m_context; }
@@ -30,9 +30,11 @@ class PluginScene {
   private:
     void addMesh(const MeshData& mesh, const SceneData& data, const std::string& sceneName,
                  Subdivide subdivide, const std::vector<PmrMaterial>& materials);
+    PmrMesh createMesh(const MeshData& mesh, Subdivide subdivide, const std::string& where);
     void addDefaultLight(const CameraPose& camera, const Bounds& bounds);
 
     const PluginContext& m_context;
+    Log& m_log;
     PmrScene m_handle{};
     uint32_t m_nextId{};
 };

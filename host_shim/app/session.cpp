@@ -9,6 +9,7 @@
 #include "host_shim/app/scene_builder.h"
 #include "host_shim/app/session_files.h"
 #include "host_shim/colour/display_picture.h"
+#include "host_shim/ingest/lamps.h"
 #include "host_shim/ingest/obj_reader.h"
 #include "host_shim/pictures/compare.h"
 #include "host_shim/pictures/picture_io.h"
@@ -110,7 +111,7 @@ void Session::checkBeforeReading() {
     checkOutputs({}, otherOutputs(m_options), m_options.makeOutputPath);
     m_mayWriteStatistics = true;
     checkSceneFile(scene);
-    if (scene.extension() != ".obj" && scene.extension() != ".OBJ") {
+    if (lowerCaseExtension(scene) != ".obj") {
         throw HostError(ExitCode::kBadInput,
                         fmt::format("{}: '{}' is no scene format that can be read; allowed is .obj",
                                     scene.string(), scene.extension().string()));
@@ -161,6 +162,7 @@ void Session::buildScene(const ColourPipeline& colour, const PluginContext& cont
     SceneData data;
     phase("readSceneSeconds",
           [&] { data = readObjFile(m_options.scene, sink, throwIfInterrupted); });
+    warnOfLampsWithoutArea(data, m_options.scene.string(), sink);
     m_mayWriteStatistics = false;
     checkNotInputs(allOutputs(m_options), inputsOf(m_options, &data));
     m_mayWriteStatistics = true;
@@ -179,8 +181,7 @@ void Session::buildScene(const ColourPipeline& colour, const PluginContext& cont
                               camera.eye[2], camera.lookAt[0], camera.lookAt[1], camera.lookAt[2]));
     phase("buildSceneSeconds", [&] {
         const InterruptWatch watch([&] { context.api().cancelBuilds(context.handle(), 1); });
-        scene.build(data, m_options.scene.string(), m_options.subdivide, camera, colour, materials,
-                    sink);
+        scene.build(data, m_options.scene.string(), m_options.subdivide, camera, colour, materials);
     });
 }
 
@@ -191,7 +192,7 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
     // The builder keeps a reference to it.
     const WarningSink sink = [this](Warning code, const std::string& text) { warn(code, text); };
     MaterialBuilder materials(context, colour, folder, sink);
-    PluginScene scene(context);
+    PluginScene scene(context, m_log);
     buildScene(colour, context, materials, scene);
     Progress progress(m_options.progress, m_options.quiet, m_log);
     RenderRun run(scene, m_options, colourIdentity(colour), m_log, progress,

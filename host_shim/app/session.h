@@ -38,11 +38,14 @@ class Session {
     void checkBeforeMerging();
     PmrContextDesc contextDesc(const Plugin& plugin);
     // What comes after the render (session_pictures.cpp).
+    [[noreturn]] static void throwStopped(PmrStatus status);
     int finishPhotons(PmrStatus status);
     int finish(const PictureSource& source, PmrStatus status, const ColourPipeline& colour,
                const std::optional<DisplayTransform>& display);
     // The same for a render whose buckets went to files as they came (session_tiles.cpp).
     int finishTiles(PmrStatus status, TiledOutput& output);
+    void noteEnd();
+    void lookForLight(const Picture& picture);
     void warnOfBlack();
     void warnOfClamped(const std::filesystem::path& file, const ExrReport& report);
     // " estimated relMSE ..." for lines that tell what was written.

@@ -23,11 +23,14 @@ constexpr int kErrorLimitPassed = 6;
 
 }  // namespace
 
+// Of a render that ended before its time.
+void Session::throwStopped(PmrStatus status) {
+    throwIfInterrupted();
+    throw HostError(static_cast<ExitCode>(exitCodeOf(status)), "the render was cancelled");
+}
+
 int Session::finishPhotons(PmrStatus status) {
-    if (status != PMR_OK) {
-        throwIfInterrupted();
-        throw HostError(static_cast<ExitCode>(exitCodeOf(status)), "the render was cancelled");
-    }
+    if (status != PMR_OK) throwStopped(status);
     m_statistics.outputs.push_back(m_options.photonMap.string());
     m_statistics.stopReason = m_statistics.libraryStopReason();
     m_log.info(
@@ -53,10 +56,15 @@ int Session::finish(const PictureSource& source, PmrStatus status, const ColourP
     }
     report();
     m_statistics.phaseSeconds["writePicturesSeconds"] = m_log.elapsedSeconds() - start;
-    if (!complete) {
-        throwIfInterrupted();
-        throw HostError(static_cast<ExitCode>(exitCodeOf(status)), "the render was cancelled");
-    }
+    if (!complete) throwStopped(status);
+    noteEnd();
+    lookForLight(picture);
+    if (m_options.onlyPixel) printPixel(picture);
+    return m_reference ? compareWithReference(picture) : 0;
+}
+
+// All is written.
+void Session::noteEnd() {
     if (!m_options.part.empty()) {
         m_statistics.outputs.push_back(m_options.part.string());
         m_log.info("wrote " + m_options.part.string());
@@ -68,20 +76,22 @@ int Session::finish(const PictureSource& source, PmrStatus status, const ColourP
     m_statistics.stopReason = m_statistics.libraryStopReason();
     if (m_statistics.stopReason == "error target" || m_statistics.stopReason == "time limit")
         m_log.info("stopped by the " + m_statistics.stopReason);
+}
+
+void Session::lookForLight(const Picture& picture) {
     if (isBlackThoughHit(picture)) warnOfBlack();
     // A crop may well be of the background.
     if (!m_options.crop && m_options.merge.empty() && showsNothing(picture))
         warn(Warning::kBlackPicture,
              "nothing of the scene is in the picture: the camera looks past it; see --eye and "
              "--look-at");
-    if (m_options.onlyPixel) printPixel(picture);
-    return m_reference ? compareWithReference(picture) : 0;
 }
 
 void Session::warnOfBlack() {
     warn(Warning::kBlackPicture,
-         "the picture is black though it shows surfaces: no light reaches their seen side; lamps "
-         "shine from the front of their faces, where the corners go round counter-clockwise; a "
+         "the picture is black though it shows surfaces: no light reaches their seen side, or they "
+         "reflect none; lamps shine from the front of their faces, where the corners go round "
+         "counter-clockwise; a "
          "room that is closed all round is seen from inside with --eye and --look-at only");
 }
 

@@ -7,6 +7,7 @@
 #include "host_shim/cli/option_values.h"
 #include "host_shim/cli/piece_options.h"
 #include "host_shim/ingest/text_lines.h"
+#include "host_shim/pictures/picture_io.h"
 
 #include <fmt/format.h>
 #include <CLI/CLI.hpp>
@@ -128,7 +129,7 @@ void readFiles(const Typed& typed, std::optional<std::int64_t> frame, Options& o
     options.statistics = withFrame("--stats", options.statistics, frame);
     options.log = withFrame("--log", options.log.string(), frame);
     options.report = withFrame("--report", options.report.string(), frame);
-    const auto pageType = options.report.extension();
+    const std::string pageType = lowerCaseExtension(options.report);
     if (!options.report.empty() && pageType != ".html" && pageType != ".htm") {
         throw HostError(ExitCode::kUsage,
                         fmt::format("--report '{}': its name must end in .html or .htm",
@@ -179,13 +180,9 @@ std::string oneLine(std::string text) {
     return text;
 }
 
-}  // namespace
-
-Options parseCommandLine(const std::vector<std::string>& arguments) {
-    refuseWhatIsNotAvailableYet(arguments);
-    const bool isMerge = !arguments.empty() && arguments.front() == "merge";
-    Options options;
-    Typed typed;
+// Which words belong to which option; what they mean is read from typed.
+void readWords(const std::vector<std::string>& arguments, bool isMerge, Typed& typed,
+               Options& options) {
     CLI::App app("", "pm_host");
     if (isMerge)
         addAllOfMerge(app, typed, options);
@@ -198,6 +195,16 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
     } catch (const CLI::ParseError& error) {
         throw HostError(ExitCode::kUsage, oneLine(error.what()) + " (see pm_host -h)");
     }
+}
+
+}  // namespace
+
+Options parseCommandLine(const std::vector<std::string>& arguments) {
+    refuseWhatIsNotAvailableYet(arguments);
+    const bool isMerge = !arguments.empty() && arguments.front() == "merge";
+    Options options;
+    Typed typed;
+    readWords(arguments, isMerge, typed, options);
     options.helpOfMerge = options.help && isMerge;
     if (options.help || options.version) return options;
     std::optional<std::int64_t> frame;

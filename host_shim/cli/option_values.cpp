@@ -105,7 +105,8 @@ std::array<double, 3> pointValue(const std::string& option, std::string_view tex
     for (std::size_t i = 0; good && i < 3; ++i) {
         good = parseNumber(parts[i], point[i]) && std::abs(point[i]) <= 1e18;
     }
-    if (!good) refuse(option, text, "x,y,z in scene units is wanted, such as 0,1,-2.5");
+    if (!good)
+        refuse(option, text, "x,y,z in scene units, within +-1e18, is wanted, such as 0,1,-2.5");
     return point;
 }
 

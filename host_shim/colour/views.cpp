@@ -28,8 +28,10 @@ std::string checkedName(const std::string& option, const std::string& kind, cons
     for (const std::string& candidate : allowed) {
         if (sameName(candidate, name)) return candidate;
     }
-    throw HostError(ExitCode::kBadInput, fmt::format("{}: unknown {} '{}'; allowed are {}", option,
-                                                     kind, name, quotedList(allowed)));
+    const std::string names =
+        allowed.empty() ? "there are none" : "allowed are " + quotedList(allowed);
+    throw HostError(ExitCode::kBadInput,
+                    fmt::format("{}: unknown {} '{}'; {}", option, kind, name, names));
 }
 
 std::string defaultView(const ColourPipeline::State& state, const std::string& display) {

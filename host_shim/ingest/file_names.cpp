@@ -66,7 +66,7 @@ std::optional<fs::path> findFile(const fs::path& folder, std::string_view name) 
     for (const std::string& candidate : names)
         if (fs::is_regular_file(folder / candidate, error)) return folder / candidate;
     for (const std::string& candidate : names) {
-        const auto found = inAnyCase(folder, candidate);
+        auto found = inAnyCase(folder, candidate);
         if (found && fs::is_regular_file(*found, error)) return found;
     }
     return std::nullopt;

@@ -41,16 +41,63 @@ std::vector<fs::path> libraryFiles(std::string_view argument, const fs::path& fo
     return files;
 }
 
-void warnOfMissing(const std::vector<std::string>& names, const std::string& fileName,
-                   const WarningSink& warn) {
+// missing: places in the list of names, in the order of the file.
+void warnOfMissing(const ObjText& text, const std::vector<std::size_t>& missing,
+                   const std::string& fileName, const WarningSink& warn) {
     constexpr std::size_t kShown = 8;
     std::string list;
-    for (std::size_t i = 0; i < std::min(names.size(), kShown); ++i) {
-        list += fmt::format("{}'{}'", i == 0 ? "" : ", ", names[i]);
+    std::size_t count = 0;
+    std::uint64_t firstLine = 0;
+    for (const std::size_t i : missing) {
+        const std::string& name = text.materialNames[i];
+        if (name.empty()) {
+            warn(Warning::kMaterialName,
+                 fmt::format("{}:{}: usemtl without a name, so a grey of 0.8 is taken", fileName,
+                             text.materialLines[i]));
+            continue;
+        }
+        if (count == 0) firstLine = text.materialLines[i];
+        if (count++ < kShown) list += fmt::format("{}'{}'", list.empty() ? "" : ", ", name);
     }
-    if (names.size() > kShown) list += fmt::format(" and {} more", names.size() - kShown);
+    if (count == 0) return;
+    if (count > kShown) list += fmt::format(" and {} more", count - kShown);
     warn(Warning::kMaterialName,
-         fmt::format("{}: in no library, so a grey of 0.8 is taken: material {}", fileName, list));
+         fmt::format("{}:{}: in no library, so a grey of 0.8 is taken: material {}", fileName,
+                     firstLine, list));
+}
+
+// The names of usemtl lines. A comment may follow there or in the library, or what looks like one
+// is part of the name: so a name counts as it stands, else without its comment, else for one of the
+// library that has a comment.
+class NamesInUse {
+  public:
+    explicit NamesInUse(const std::vector<std::string>& names) {
+        for (const std::string& name : names) {
+            m_names.insert(name);
+            m_bareNames.emplace(withoutComment(name));
+        }
+    }
+
+    bool has(const std::string& inLibrary) const {
+        return m_names.contains(inLibrary) || m_bareNames.contains(inLibrary) ||
+               m_names.contains(std::string(withoutComment(inLibrary)));
+    }
+
+  private:
+    std::set<std::string> m_names, m_bareNames;
+};
+
+using Materials = std::map<std::string, MaterialData>;
+
+const MaterialData* materialIn(const Materials& materials, const std::string& name) {
+    const auto found = materials.find(name);
+    return found != materials.end() ? &found->second : nullptr;
+}
+
+Materials withBareNames(const Materials& materials) {
+    Materials bare;
+    for (const auto& [name, material] : materials) bare.emplace(withoutComment(name), material);
+    return bare;
 }
 
 }  // namespace
@@ -58,17 +105,14 @@ void warnOfMissing(const std::vector<std::string>& names, const std::string& fil
 MaterialLibrary loadMaterials(const ObjText& text, const std::string& fileName,
                               const fs::path& folder, const WarningSink& warn) {
     MaterialLibrary library;
-    std::map<std::string, MaterialData> found;
-    std::set<std::string> used;
-    for (const std::string& name : text.materialNames) {
-        used.insert(name);
-        used.emplace(withoutComment(name));
-    }
+    Materials found;
+    const NamesInUse names(text.materialNames);
+    const auto isUsed = [&names](const std::string& name) { return names.has(name); };
     for (const std::string& argument : text.materialFiles) {
         for (const fs::path& file : libraryFiles(argument, folder)) {
             try {
                 found.merge(readMaterials(readWholeFile(file), file.string(), file.parent_path(),
-                                          warn, &used));
+                                          warn, isUsed));
                 library.files.push_back(file.string());
             } catch (const HostError& error) {
                 warn(Warning::kMaterialFile,
@@ -76,15 +120,16 @@ MaterialLibrary loadMaterials(const ObjText& text, const std::string& fileName,
             }
         }
     }
-    std::vector<std::string> missing;
+    const Materials bare = withBareNames(found);
+    std::vector<std::size_t> missing;
     for (const std::string& name : text.materialNames) {
-        auto material = found.find(name);
-        if (material == found.end()) material = found.find(std::string(withoutComment(name)));
-        if (material == found.end()) missing.push_back(name);
-        library.materials.push_back(material != found.end() ? material->second
-                                                            : defaultMaterial(name));
+        const MaterialData* material = materialIn(found, name);
+        if (material == nullptr) material = materialIn(found, std::string(withoutComment(name)));
+        if (material == nullptr) material = materialIn(bare, name);
+        if (material == nullptr) missing.push_back(library.materials.size());
+        library.materials.push_back(material != nullptr ? *material : defaultMaterial(name));
     }
-    if (!missing.empty()) warnOfMissing(missing, fileName, warn);
+    warnOfMissing(text, missing, fileName, warn);
     library.materials.push_back(defaultMaterial("default"));
     return library;
 }

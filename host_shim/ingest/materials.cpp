@@ -18,6 +18,7 @@ namespace {
 // Exponents above are as sharp as float directions can tell.
 constexpr double kLargestExponent = 1e7;
 constexpr double kLargestIor = 100.0;
+constexpr char kUsualChannel = 'm';  // of -imfchan, in the parser's letters
 
 tinyobj::material_t parseSection(const std::string& text) {
     std::map<std::string, int> names;
@@ -68,28 +69,53 @@ class MaterialReader {
         return m_section.has(statement) && !m_section.notUnderstood.contains(statement);
     }
 
-    void note(Warning code, const std::string& statement, const std::string& text) const {
+    // FILE:LINE of a statement, or where the material begins.
+    std::string place(const std::string& statement) const {
         const auto found = m_section.lines.find(statement);
-        const auto line =
-            found != m_section.lines.end() ? found->second : m_section.lines.at("newmtl");
-        m_warn(code, fmt::format("{}:{}: material {}: {}", m_file, line, m_material.name, text));
+        return fmt::format(
+            "{}:{}", m_file,
+            found != m_section.lines.end() ? found->second : m_section.lines.at("newmtl"));
+    }
+
+    void note(Warning code, const std::string& statement, const std::string& text) const {
+        m_warn(code, fmt::format("{}: material {}: {}", place(statement), m_material.name, text));
+    }
+
+    std::optional<TextureUse> map(const char* statement, const std::string& name,
+                                  const tinyobj::texture_option_t& options, bool isData) const {
+        auto use = MapReader(m_folder).read(name, options, isData);
+        if (!use) {
+            if (m_section.has(statement))
+                note(Warning::kTexture, statement, fmt::format("{} names no file", statement));
+            return use;
+        }
+        use->place = place(statement);
+        const auto leaveOut = [&](const char* option) {
+            note(Warning::kTexture, statement,
+                 fmt::format("the option {} of {} is not rendered yet and left out", option,
+                             statement));
+        };
+        if (std::ranges::any_of(options.turbulence, [](auto size) { return size != 0; }))
+            leaveOut("-t");
+        if (options.imfchan != kUsualChannel) leaveOut("-imfchan");
+        return use;
     }
 
     void readMaps() {
-        const MapReader maps(m_folder);
         m_material.diffuseTexture =
-            maps.read(m_parsed.diffuse_texname, m_parsed.diffuse_texopt, false);
+            map("map_Kd", m_parsed.diffuse_texname, m_parsed.diffuse_texopt, false);
         m_material.glossyTexture =
-            maps.read(m_parsed.specular_texname, m_parsed.specular_texopt, false);
-        m_material.glossyExponentTexture = maps.read(m_parsed.specular_highlight_texname,
-                                                     m_parsed.specular_highlight_texopt, true);
-        m_material.opacityTexture = maps.read(m_parsed.alpha_texname, m_parsed.alpha_texopt, true);
+            map("map_Ks", m_parsed.specular_texname, m_parsed.specular_texopt, false);
+        m_material.glossyExponentTexture = map("map_Ns", m_parsed.specular_highlight_texname,
+                                               m_parsed.specular_highlight_texopt, true);
+        m_material.opacityTexture =
+            map("map_d", m_parsed.alpha_texname, m_parsed.alpha_texopt, true);
         m_material.emissionTexture =
-            maps.read(m_parsed.emissive_texname, m_parsed.emissive_texopt, false);
+            map("map_Ke", m_parsed.emissive_texname, m_parsed.emissive_texopt, false);
         if (!m_section.transmissionMap.empty()) {
             const tinyobj::material_t tint = parseSection(m_section.transmissionMap);
             m_material.transmissionTexture =
-                maps.read(tint.diffuse_texname, tint.diffuse_texopt, false);
+                map("map_Tf", tint.diffuse_texname, tint.diffuse_texopt, false);
         }
         for (const char* statement : {"map_bump", "map_Bump", "bump", "norm", "disp", "map_disp",
                                       "map_Disp", "refl", "map_Pr", "map_Pm", "map_Ps"}) {
@@ -325,10 +351,10 @@ std::map<std::string, MaterialData> readMaterials(std::string_view mtlText,
                                                   const std::string& fileName,
                                                   const std::filesystem::path& folder,
                                                   const WarningSink& warn,
-                                                  const std::set<std::string>* used) {
+                                                  const NameFilter& isUsed) {
     std::map<std::string, MaterialData> materials;
     for (const MtlSection& section : readMtlText(mtlText)) {
-        if (used && !used->contains(section.name)) continue;
+        if (isUsed && !isUsed(section.name)) continue;
         if (materials.contains(section.name)) {
             warn(Warning::kMaterialValue,
                  fmt::format("{}:{}: material {} is defined twice; the first counts", fileName,

@@ -7,12 +7,14 @@
 #include "host_shim/ingest/warnings.h"
 
 #include <filesystem>
+#include <functional>
 #include <map>
-#include <set>
 #include <string>
 #include <string_view>
 
 namespace pm::host {
+
+using NameFilter = std::function<bool(const std::string& name)>;
 
 // The material of faces that name none, or one that no library has: grey, Kd 0.8.
 MaterialData defaultMaterial(const std::string& name);
@@ -22,12 +24,12 @@ MaterialData defaultMaterial(const std::string& name);
 // Meaning: illum 3 with Ks is a mirror (Ns, when given, its roughness), illum 5 a mirror with
 // Fresnel, illum 4, 6, 7 or d below 1 with an Ni a dielectric tinted by Tf, d below 1 without Ni
 // lets light straight through, all else is diffuse plus a glossy lobe of exponent Ns.
-// folder is where picture names begin. used: names of all that count, the others are passed over,
-// whatever is wrong with them; null: all count.
+// folder is where picture names begin. isUsed: those of whose names it says no are passed over,
+// whatever is wrong with them; empty: all count.
 std::map<std::string, MaterialData> readMaterials(std::string_view mtlText,
                                                   const std::string& fileName,
                                                   const std::filesystem::path& folder,
                                                   const WarningSink& warn,
-                                                  const std::set<std::string>* used = nullptr);
+                                                  const NameFilter& isUsed = {});
 
 }  // namespace pm::host

@@ -89,20 +89,20 @@ MeshData MeshAssembly::assemble(const tinyobj::shape_t& shape, const std::uint32
 }
 
 void MeshAssembly::copyAttributes(MeshData& mesh) const {
-    for (const std::uint32_t vertex : m_vertices.met) {
+    for (const std::size_t vertex : m_vertices.met) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
             mesh.positions.push_back(
-                static_cast<float>(m_attributes.vertices[vertex * 3u + axis] - m_centre[axis]));
+                static_cast<float>(m_attributes.vertices[vertex * 3 + axis] - m_centre[axis]));
         }
     }
-    for (const std::uint32_t normal : m_normals.met) {
+    for (const std::size_t normal : m_normals.met) {
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            mesh.normals.push_back(static_cast<float>(m_attributes.normals[normal * 3u + axis]));
+            mesh.normals.push_back(static_cast<float>(m_attributes.normals[normal * 3 + axis]));
         }
     }
-    for (const std::uint32_t uv : m_uvs.met) {
-        mesh.uvs.push_back(static_cast<float>(m_attributes.texcoords[uv * 2u]));
-        mesh.uvs.push_back(static_cast<float>(m_attributes.texcoords[uv * 2u + 1]));
+    for (const std::size_t uv : m_uvs.met) {
+        mesh.uvs.push_back(static_cast<float>(m_attributes.texcoords[uv * 2]));
+        mesh.uvs.push_back(static_cast<float>(m_attributes.texcoords[uv * 2 + 1]));
     }
     if (mesh.normals.empty()) mesh.normalIndices.clear();
     if (mesh.uvs.empty()) mesh.uvIndices.clear();

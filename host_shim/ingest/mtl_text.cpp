@@ -15,12 +15,22 @@ constexpr std::array<std::string_view, 6> kColours{"Ka", "Kd", "Ks", "Ke", "Kt",
 constexpr std::array<std::string_view, 9> kNumbers{"Ns", "Ni", "d",  "Tr", "illum",
                                                    "Pr", "Pm", "Ps", "Pc"};
 
+// Under one name each; what is not rendered is told by that name (materials.cpp).
+constexpr std::array<std::string_view, 17> kMaps{
+    "map_Ka", "map_Kd", "map_Ks", "map_Ns", "map_d",    "map_Ke",   "map_Pr",   "map_Pm",  "map_Ps",
+    "bump",   "disp",   "norm",   "refl",   "map_bump", "map_Bump", "map_disp", "map_Disp"};
+
+std::string_view usualName(std::string_view map) {
+    if (map == "map_opacity" || map == "map_D") return "map_d";
+    return map == "map_Kt" ? "map_Tf" : map;
+}
+
 // Of no weight here, or told by its number (materials.cpp): known, but not for the parser.
-constexpr std::array<std::string_view, 5> kNotRead{"sharpness", "aniso", "anisor", "Pcr", "decal"};
+constexpr std::array<std::string_view, 6> kNotRead{"sharpness", "aniso", "anisor",
+                                                   "Pcr",       "decal", "map_aat"};
 
 bool isMap(std::string_view word) {
-    return word.starts_with("map_") || word == "bump" || word == "disp" || word == "norm" ||
-           word == "refl";
+    return std::ranges::find(kMaps, word) != kMaps.end();
 }
 
 // How many numbers the parser takes after an option of a map line; 0 for options with a word.
@@ -82,7 +92,7 @@ void addNumbers(std::string_view word, std::string_view rest, std::size_t wanted
 
 void addStatement(std::string_view line, std::uint64_t number, MtlSection& section) {
     std::string_view rest = line;
-    std::string_view word = takeWord(rest);
+    const std::string_view word = usualName(takeWord(rest));
     section.lines.insert_or_assign(std::string(word), number);
     // -halo is an option of d that few write: the share still follows.
     if (word == "d" && rest.starts_with("-halo")) takeWord(rest);
@@ -90,11 +100,10 @@ void addStatement(std::string_view line, std::uint64_t number, MtlSection& secti
         addNumbers(word, rest, 3, section);
     } else if (std::ranges::find(kNumbers, word) != kNumbers.end()) {
         addNumbers(word, rest, 1, section);
-    } else if (word == "map_Tf" || word == "map_Kt") {
+    } else if (word == "map_Tf") {
         // Under a name that the parser knows, in a section of its own.
         section.transmissionMap = "newmtl t\nmap_Kd " + cleanedMapLine(rest) + "\n";
     } else if (isMap(word)) {
-        if (word == "map_opacity" || word == "map_D") word = "map_d";
         section.cleaned.append(word).append(" ").append(cleanedMapLine(rest)).append("\n");
     } else if (std::ranges::find(kNotRead, word) == kNotRead.end()) {
         section.notUnderstood.insert_or_assign(std::string(word), std::string(rest));

@@ -20,6 +20,16 @@ namespace {
 constexpr double kLargestCoordinate = 1e18;
 constexpr std::array<const char*, 3> kKinds{"vertex", "texture coordinate", "normal"};
 
+// Statements that change no triangle: groups of smoothing and merging, weights of skins, hints to
+// other programs, and what belongs to curves.
+constexpr std::array<std::string_view, 30> kOfNoWeight{
+    "s",          "mg",        "vp",    "vw",    "lod",   "bevel", "c_interp", "d_interp",
+    "maplib",     "usemap",    "deg",   "bmat",  "step",  "parm",  "trim",     "hole",
+    "scrv",       "sp",        "end",   "con",   "bsp",   "bzp",   "cdc",      "cdp",
+    "shadow_obj", "trace_obj", "ctech", "stech", "curv2", "res"};
+const std::string kNotUnderstood = "statements that are not understood,";
+constexpr std::size_t kShownOfWord = 40;  // characters
+
 class ObjScan {
   public:
     ObjScan(std::string_view text, const std::string& fileName, const WarningSink& warn)
@@ -35,12 +45,7 @@ class ObjScan {
             if (goOn && lines % kLinesBetweenQuestions == 0) goOn();
             statement();
         }
-        if (m_out.counts[0] == 0 || m_out.faceSizes.empty()) {
-            throw HostError(ExitCode::kBadInput,
-                            fmt::format("{}: no geometry: {} vertices and {} faces (an OBJ file in "
-                                        "plain text, with v and f lines, is wanted)",
-                                        m_file, m_out.counts[0], m_out.faceSizes.size()));
-        }
+        if (m_out.counts[0] == 0 || m_out.faceSizes.empty()) failWithoutGeometry();
         checkForwardReferences();
         settleTagGroups();
         reportLeftOut();
@@ -56,6 +61,19 @@ class ObjScan {
 
     [[noreturn]] void fail(std::uint64_t line, const std::string& text) const {
         throw HostError(ExitCode::kBadInput, fmt::format("{}:{}: {}", m_file, line, text));
+    }
+
+    [[noreturn]] void failWithoutGeometry() const {
+        const auto unknown = m_leftOut.find(kNotUnderstood);
+        const std::string others =
+            unknown != m_leftOut.end()
+                ? fmt::format(", and {} statements that are not understood, '{}' the first",
+                              unknown->second.first, m_unknown)
+                : "";
+        throw HostError(ExitCode::kBadInput,
+                        fmt::format("{}: no geometry: {} vertices and {} faces{} (an OBJ file in "
+                                    "plain text, with v and f lines, is wanted)",
+                                    m_file, m_out.counts[0], m_out.faceSizes.size(), others));
     }
 
     void statement() {
@@ -76,14 +94,14 @@ class ObjScan {
         } else if (word == "usemtl") {
             useMaterial(rest);
         } else if (word == "mtllib") {
-            if (std::ranges::find(m_out.materialFiles, rest) == m_out.materialFiles.end()) {
-                m_out.materialFiles.emplace_back(rest);
-            }
+            addLibrary(rest);
         } else if (word == "t") {
             tag(rest);
         } else if (word == "l" || word == "p" || word == "curv" || word == "surf" ||
                    word == "cstype") {
             leaveOut("lines, points or curves");
+        } else if (std::ranges::find(kOfNoWeight, word) == kOfNoWeight.end()) {
+            leaveOutUnknown(word);
         }
     }
 
@@ -94,6 +112,16 @@ class ObjScan {
     void leaveOut(const std::string& what) {
         auto& entry = m_leftOut[what];
         if (entry.first++ == 0) entry.second = m_lines.number();
+    }
+
+    void leaveOutUnknown(std::string_view word) {
+        if (m_unknown.empty()) {
+            // The file may be of any kind.
+            m_unknown = word.substr(0, kShownOfWord);
+            std::ranges::replace_if(
+                m_unknown, [](char c) { return c < ' ' || c > '~'; }, '?');
+        }
+        leaveOut(kNotUnderstood);
     }
 
     void vertex(std::string_view rest) {
@@ -135,8 +163,9 @@ class ObjScan {
             numbers.append(isNumber ? word : std::string_view("0")).append(" ");
         }
         if (!isGood) {
-            leaveOut(kind == 1 ? "texture coordinates that are not finite numbers (taken as 0)"
-                               : "normals that are not finite numbers");
+            leaveOut(kind == 1
+                         ? "texture coordinates that are not numbers within +-1e18 (taken as 0)"
+                         : "normals that are not numbers within +-1e18");
             numbers = kind == 1 ? "0 0" : "0 0 0";
         } else if (kind == 2 && isZero) {
             leaveOut("normals of length 0");
@@ -219,10 +248,21 @@ class ObjScan {
         }
     }
 
+    void addLibrary(std::string_view name) {
+        if (name.empty()) {
+            leaveOut("mtllib lines without a file name");
+        } else if (std::ranges::find(m_out.materialFiles, name) == m_out.materialFiles.end()) {
+            m_out.materialFiles.emplace_back(name);
+        }
+    }
+
     void useMaterial(std::string_view name) {
         const auto [found, isNew] =
             m_materialNumbers.try_emplace(std::string(name), m_out.materialNames.size());
-        if (isNew) m_out.materialNames.emplace_back(name);
+        if (isNew) {
+            m_out.materialNames.emplace_back(name);
+            m_out.materialLines.push_back(m_lines.number());
+        }
         emit("usemtl", std::to_string(found->second));
     }
 
@@ -282,8 +322,10 @@ class ObjScan {
 
     void reportLeftOut() const {
         for (const auto& [what, entry] : m_leftOut) {
-            m_warn(Warning::kGeometry,
-                   fmt::format("{}:{}: {} {} left out", m_file, entry.second, entry.first, what));
+            const std::string example =
+                what == kNotUnderstood ? fmt::format(" '{}' the first,", m_unknown) : "";
+            m_warn(Warning::kGeometry, fmt::format("{}:{}: {} {}{} left out", m_file, entry.second,
+                                                   entry.first, what, example));
         }
     }
 
@@ -299,6 +341,7 @@ class ObjScan {
     std::vector<ForwardReference> m_forward;
     std::unordered_map<std::string, std::size_t> m_materialNumbers;
     std::map<std::string, std::pair<std::uint64_t, std::uint64_t>> m_leftOut;  // count, first line
+    std::string m_unknown;  // the first statement that is not understood
 };
 
 }  // namespace

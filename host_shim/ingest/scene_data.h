@@ -15,6 +15,7 @@ namespace pm::host {
 // A picture on a material as the file asks for it; value = base + gain * texel.
 struct TextureUse {
     std::string file;         // as it can be opened
+    std::string place;        // FILE:LINE of the statement that asks for it
     std::string colourSpace;  // of -colorspace; empty = decided by the rules for files
     bool isData{};            // never colour-converted
     bool clamp{};             // else repeated

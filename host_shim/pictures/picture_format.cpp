@@ -12,14 +12,6 @@
 namespace pm::host {
 namespace {
 
-std::string lowerCaseExtension(const std::filesystem::path& path) {
-    std::string text = path.extension().string();
-    for (char& c : text) {
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    }
-    return text;
-}
-
 void checkName(const std::filesystem::path& path) {
     std::error_code ignored;
     const auto status = std::filesystem::status(path, ignored);
@@ -56,16 +48,27 @@ void checkFolder(const std::filesystem::path& path) {
 
 }  // namespace
 
+std::string lowerCaseExtension(const std::filesystem::path& path) {
+    std::string text = path.extension().string();
+    for (char& c : text) {
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    }
+    return text;
+}
+
 PictureFormat pictureFormat(const std::filesystem::path& path) {
     const std::string extension = lowerCaseExtension(path);
     if (extension == ".exr") return PictureFormat::kExr;
     if (extension == ".png") return PictureFormat::kPng;
     if (extension == ".jpg" || extension == ".jpeg") return PictureFormat::kJpeg;
     if (extension == ".tif" || extension == ".tiff") return PictureFormat::kTiff;
+    const std::string ending = path.has_extension()
+                                   ? fmt::format("'{}' is no picture format that can be written",
+                                                 path.extension().string())
+                                   : "its name has no ending, which tells the format";
     throw HostError(ExitCode::kUsage,
-                    fmt::format("{}: '{}' is no picture format that can be written; allowed are "
-                                ".exr, .png, .jpg, .jpeg, .tif and .tiff",
-                                path.string(), path.extension().string()));
+                    fmt::format("{}: {}; allowed are .exr, .png, .jpg, .jpeg, .tif and .tiff",
+                                path.string(), ending));
 }
 
 void checkWritable(const std::filesystem::path& path) {

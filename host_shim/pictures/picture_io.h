@@ -12,6 +12,9 @@
 
 namespace pm::host {
 
+// The ending of a name with its dot, letters A to Z as a to z: ".exr" of "A.EXR".
+std::string lowerCaseExtension(const std::filesystem::path& path);
+
 enum class PictureFormat { kExr, kPng, kJpeg, kTiff };
 
 // By the extension, in any case: .exr .png .jpg .jpeg .tif .tiff.

@@ -78,7 +78,8 @@ Checkpoint::Checkpoint(const std::string& file, bool resume, PieceHead head, con
     m_isNew = m_file->size() == 0;
     if (!m_isNew && !reader.isPiece())
         throw unusable(m_file->name(), "is there and no checkpoint; it would be overwritten");
-    if (!resume && !m_isNew) refuseOtherPieces();
+    m_replacesOther = !resume && !m_isNew;
+    if (m_replacesOther) refuseOtherPieces();
     if (resume && !m_isNew)
         readHead();
     else

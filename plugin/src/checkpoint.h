@@ -48,6 +48,8 @@ class Checkpoint {
                        const std::atomic<bool>& cancelled);
     // Of the pass that goes on; nothing from the next pass on.
     const DonePixels& done() const { return m_done; }
+    // Whether one was there and was begun anew.
+    bool replacesOther() const { return m_replacesOther; }
     // Of a torn end that load() dropped.
     std::uint64_t droppedBytes() const { return m_droppedBytes; }
 
@@ -85,6 +87,7 @@ class Checkpoint {
     std::uint64_t m_sumPixels = 0;  // loaded
     std::uint64_t m_droppedBytes = 0;
     bool m_isNew = false;  // made by this
+    bool m_replacesOther = false;
 
     std::atomic<bool> m_off{false};     // nothing is written any more
     std::mutex m_mutex;                 // of what follows

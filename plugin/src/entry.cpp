@@ -50,6 +50,11 @@ PmrStatus translateException(std::string& text) noexcept {
         return end(PMR_ERROR_MEMORY, "out of memory");
     } catch (const std::length_error&) {
         return end(PMR_ERROR_MEMORY, "out of memory: an array would be longer than any can be");
+    } catch (const std::system_error& error) {
+        // Threads need memory, too, and their number may be limited.
+        if (error.code() == std::errc::resource_unavailable_try_again)
+            return end(PMR_ERROR_MEMORY, "no thread can be started: out of memory or of processes");
+        return end(PMR_ERROR_INTERNAL, error.what());
     } catch (const std::exception& error) {
         return end(PMR_ERROR_INTERNAL, error.what());
     } catch (...) {

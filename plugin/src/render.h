@@ -60,6 +60,13 @@ class Render {
     std::int32_t stopReason() const;  // PMR_STOP_*
 
   private:
+    // How it ended, or stands now.
+    struct End {
+        PmrStatus status = PMR_OK;
+        std::string errorText;
+        double totalSeconds = 0;
+    };
+    End endSoFar() const;
     std::string explain(const Plan& plan, const MemoryPlan& memory) const;
     void runJob();
     PmrStatus runWork();

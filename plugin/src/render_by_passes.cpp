@@ -17,10 +17,15 @@ namespace pm::plugin {
 std::uint32_t RenderWork::resume(const Cancel& cancel, EventQueue& events) {
     const RenderPieces::Resumed resumed =
         m_pieces->resume(*m_frame, static_cast<std::size_t>(m_layout.count), cancel.flag);
+    if (resumed.replacesOther)
+        warnOfCheckpoint(fmt::format("{}: a checkpoint was there; it is begun anew, as it was not "
+                                     "asked to resume",
+                                     resumed.file),
+                         events);
     if (resumed.droppedBytes > 0)
-        warnOfCheckpoint(fmt::format("the checkpoint's last {} bytes were torn or damaged; what "
-                                     "they held is rendered again",
-                                     resumed.droppedBytes),
+        warnOfCheckpoint(fmt::format("{}: the checkpoint's last {} bytes were torn or damaged; "
+                                     "what they held is rendered again",
+                                     resumed.file, resumed.droppedBytes),
                          events);
     const bool hasPart = resumed.shareOfNext > 0;
     if (resumed.passes == 0 && !hasPart) return 0;
@@ -31,9 +36,10 @@ std::uint32_t RenderWork::resume(const Cancel& cancel, EventQueue& events) {
         limit && resumed.passes + (hasPart ? 1 : 0) > *limit)
         throw CallError(
             PMR_ERROR_MISMATCH,
-            fmt::format("the checkpoint has {} passes{}; {} were asked for, and none "
+            fmt::format("{}: the checkpoint has {} passes{}; {} were asked for, and none "
                         "can be taken back",
-                        resumed.passes, hasPart ? " and a part of the next" : "", *limit));
+                        resumed.file, resumed.passes, hasPart ? " and a part of the next" : "",
+                        *limit));
     m_clock.startAt(resumed.passes, resumed.shareOfNext);
     for (const std::uint32_t cell : m_order)
         events.bucketFinished(

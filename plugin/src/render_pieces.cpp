@@ -81,6 +81,7 @@ RenderPieces::RenderPieces(const SettingValues& values, const Identity& scene,
         head.identity.push_back(
             {"run of buckets", fmt::format("{} of {}", rangeText(range), gridText)});
     }
+    m_checkpointFile = file;
     m_checkpoint = std::make_unique<Checkpoint>(file, values.integer(Setting::kResume) != 0,
                                                 std::move(head), grid.window());
 }
@@ -89,9 +90,11 @@ RenderPieces::Resumed RenderPieces::resume(FrameStore& frame, std::size_t channe
                                            const std::atomic<bool>& cancelled) {
     Resumed resumed;
     if (!m_checkpoint) return resumed;
+    resumed.file = m_checkpointFile;
     resumed.passes = m_checkpoint->load(frame, channels, m_pixels, cancelled);
     resumed.shareOfNext =
         static_cast<double>(m_checkpoint->done().count()) / static_cast<double>(m_pixels);
+    resumed.replacesOther = m_checkpoint->replacesOther();
     resumed.droppedBytes = m_checkpoint->droppedBytes();
     return resumed;
 }

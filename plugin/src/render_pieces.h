@@ -35,9 +35,11 @@ class RenderPieces {
                  bool isCorrelated, std::vector<std::uint32_t>& order);
 
     struct Resumed {
+        std::string file;                // the checkpoint; empty: none
         std::uint32_t passes = 0;        // whole ones
         double shareOfNext = 0;          // of its pixels
         std::uint64_t droppedBytes = 0;  // of a torn end
+        bool replacesOther = false;      // a checkpoint that was there and was not to go on
     };
     // Puts what the checkpoint has into the empty frame; channels: floats that a pass has for each
     // pixel. Errors: those of Checkpoint::load.
@@ -69,7 +71,8 @@ class RenderPieces {
     std::vector<Rect> m_buckets;  // of the run, in order
     std::uint64_t m_pixels = 0;   // of all of them
     PieceHead m_partHead;
-    std::string m_part;                        // empty: none
+    std::string m_part;  // empty: none
+    std::string m_checkpointFile;
     std::unique_ptr<Checkpoint> m_checkpoint;  // null: none
 };
 

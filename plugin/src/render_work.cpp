@@ -64,6 +64,12 @@ RenderWork::RenderWork(std::shared_ptr<const Scene> scene, const Identity& scene
         makeRenderer();
         return;
     }
+    orderBuckets(sceneIdentity, values);
+    makeRenderer();
+    makePlaces();
+}
+
+void RenderWork::orderBuckets(const Identity& sceneIdentity, const SettingValues& values) {
     const BucketOrder& order = orderNamed(values.word(Setting::kBucketOrder));
     m_order = order.cells(m_grid.columns(), m_grid.rows(), m_settings.seed);
     m_isCorrelated = order.isCorrelated;
@@ -72,7 +78,10 @@ RenderWork::RenderWork(std::shared_ptr<const Scene> scene, const Identity& scene
             std::make_unique<RenderPieces>(values, sceneIdentity, m_grid, m_isCorrelated, m_order);
     m_orderIndex.resize(m_grid.cellCount());
     for (std::uint32_t i = 0; i < m_order.size(); ++i) m_orderIndex[m_order[i]] = i;
-    makeRenderer();
+}
+
+// Where pixels go: a frame, or places for buckets.
+void RenderWork::makePlaces() {
     if (m_memory.byBuckets) {
         m_buckets = std::make_unique<BucketPasses>(
             BucketPasses::Frame{m_settings, m_grid, m_order, m_orderIndex, m_arena.threads(),

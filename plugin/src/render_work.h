@@ -106,7 +106,9 @@ class RenderWork {
         std::vector<SampleRun> runs;
     };
 
+    void orderBuckets(const Identity& sceneIdentity, const SettingValues& values);
     void makeRenderer();
+    void makePlaces();
     void runPhotonsOnly(const Cancel& cancel, EventQueue& events);
     void tracePass(std::uint32_t pass, const Cancel& cancel, EventQueue& events);
     void runByBuckets(const Cancel& cancel, EventQueue& events);

@@ -136,23 +136,23 @@ void addPasses(const RenderWork& work, const RenderWork::Progress& progress, Jso
 
 }  // namespace
 
+Render::End Render::endSoFar() const {
+    End end;
+    std::int32_t state = 0;
+    stateAndStatus(state, end.status);
+    const std::lock_guard lock(m_mutex);
+    end.errorText = m_errorText;
+    end.totalSeconds =
+        state == PMR_RENDER_FINISHED
+            ? m_totalSeconds
+            : std::chrono::duration<double>(std::chrono::steady_clock::now() - m_startTime).count();
+    return end;
+}
+
 std::string Render::statisticsJson() const {
     const std::shared_ptr<RenderWork> running = work();
     if (!running) throw CallError(PMR_ERROR_STATE, "there are no statistics before startRender");
-    std::int32_t state = 0;
-    PmrStatus status = PMR_OK;
-    stateAndStatus(state, status);
-    std::string errorText;
-    double totalSeconds = 0;
-    {
-        const std::lock_guard lock(m_mutex);
-        errorText = m_errorText;
-        totalSeconds =
-            state == PMR_RENDER_FINISHED
-                ? m_totalSeconds
-                : std::chrono::duration<double>(std::chrono::steady_clock::now() - m_startTime)
-                      .count();
-    }
+    const End end = endSoFar();
     const RenderWork::Progress progress = running->progress();
     const RenderCounters counters = running->counters();
     Json json;
@@ -163,13 +163,13 @@ std::string Render::statisticsJson() const {
     addPhotons(running->photons(), progress, json);
     json["isa"] = running->scene().isa();
     json["stopReason"] = stopText(stopReason());
-    json["status"] = status;
-    json["error"] = errorText;
+    json["status"] = end.status;
+    json["error"] = end.errorText;
     addPasses(*running, progress, json);
     json["phases"] = {
         {"buildSeconds", m_scene->buildSeconds()}, {"photonSeconds", counters.photonSeconds},
         {"mapSeconds", counters.mapSeconds},       {"beginPassSeconds", progress.photonSeconds},
-        {"renderSeconds", progress.bucketSeconds}, {"totalSeconds", totalSeconds}};
+        {"renderSeconds", progress.bucketSeconds}, {"totalSeconds", end.totalSeconds}};
     json["counters"] = countersJson(counters);
     json["counters"]["textureFailures"] = m_scene->textureFailures();
     json["counters"]["triangles"] = running->scene().triangleCount();

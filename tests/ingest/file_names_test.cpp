@@ -80,5 +80,21 @@ TEST_F(FileNames, LibrariesAndMaterialsBeforeAComment) {
     EXPECT_FALSE(heard.has(Warning::kMaterialFile, "gone"));
 }
 
+// What looks like a comment belongs to a name that is there, and does not make others used.
+TEST_F(FileNames, CommentsBehindTheNamesOfMaterials) {
+    write("c.mtl",
+          "newmtl lamp # the lamp\nKd 0.25 0 0\nnewmtl Material #1\nKd 2 0 0\n"
+          "newmtl Material #2\nKd 0.5 0 0\n");
+    Heard heard;
+    const SceneData scene =
+        read("mtllib c.mtl\nusemtl lamp\nusemtl Material #2\nusemtl Material #3\n", heard);
+    EXPECT_EQ(scene.materials.at(0).diffuse[0], 0.25f);
+    EXPECT_EQ(scene.materials.at(1).diffuse[0], 0.5f);
+    EXPECT_EQ(scene.materials.at(2).diffuse[0], 0.8f);
+    ASSERT_EQ(heard.list.size(), 1u);
+    EXPECT_TRUE(heard.has(Warning::kMaterialName, "s.obj:4: in no library"))
+        << heard.list[0].second;
+}
+
 }  // namespace
 }  // namespace pm::host::test

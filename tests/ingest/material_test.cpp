@@ -143,6 +143,30 @@ TEST(Material, maps) {
               "folder/a.png");
 }
 
+TEST(Material, mapsKnowWhereTheyStand) {
+    const Result r =
+        read("Kd 1 1 1\nmap_Kd a.png\nmap_opacity b.png\nillum 4\nNi 1.5\nmap_Kt c.png\n");
+    EXPECT_EQ(r.material.opacityTexture->place, "a.mtl:4");
+    EXPECT_EQ(r.material.transmissionTexture->place, "a.mtl:7");
+    EXPECT_EQ(read("map_Kd a.png\n").material.diffuseTexture->place, "a.mtl:2");
+}
+
+TEST(Material, mapsWithoutAFileAndOptionsLeftOutAreWarnedOf) {
+    const Result r =
+        read("map_Kd\nmap_Ks -s 2 2\nmap_d -imfchan r -t 1 a.png\nmap_Ke -t 0 a.png\n");
+    EXPECT_EQ(r.heard.list.size(), 4u);
+    for (const char* text :
+         {"a.mtl:2: material m: map_Kd names no file", "a.mtl:3: material m: map_Ks names no file",
+          "a.mtl:4: material m: the option -imfchan of map_d", "the option -t of map_d"})
+        EXPECT_TRUE(r.heard.has(Warning::kTexture, text)) << text;
+}
+
+TEST(Material, mapsOfNoKnownNameAreWarnedOf) {
+    const Result r = read("map_Ks b.png\nmap_kd a.png\nmap_aat on\n");
+    EXPECT_TRUE(r.heard.has(Warning::kMaterialValue, "a.mtl:3: material m: 'map_kd a.png' is not"));
+    EXPECT_EQ(r.heard.list.size(), 1u);
+}
+
 TEST(Material, aLoneNumberIsGrey) {
     EXPECT_EQ(read("Kd 0.5\n").material.diffuse, (Colour{0.5f, 0.5f, 0.5f}));
 }
@@ -165,7 +189,8 @@ TEST(Material, onlyThoseInUseAreReadAndWarnedOf) {
     const std::string text = "newmtl a\nKd 2 2 2\nnewmtl b\nKd 3 3 3\nnewmtl b\nKd 1 1 1\n";
     const std::set<std::string> used = {"a", "not there"};
     Heard heard;
-    const auto some = readMaterials(text, "a.mtl", ".", heard.sink, &used);
+    const auto isUsed = [&used](const std::string& name) { return used.contains(name); };
+    const auto some = readMaterials(text, "a.mtl", ".", heard.sink, isUsed);
     EXPECT_EQ(some.size(), 1u);
     EXPECT_TRUE(heard.has(Warning::kMaterialValue, "material a: Kd 2 2 2"));
     EXPECT_FALSE(heard.has(Warning::kMaterialValue, "material b"));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // OBJ ingest on small texts: what is kept, what is refused and at which line.
+#include "host_shim/ingest/lamps.h"
 #include "tests/ingest/heard.h"
 
 #include <gtest/gtest.h>
@@ -120,7 +121,7 @@ TEST(Obj, badNormalsAreNoneAndCountOnce) {
     const SceneData scene = readObj(kQuad + "vn nan nan 1\nvn 0 0 1\nvn 0 -0 0\nf 1//1 2//2 3//3\n",
                                     "scene.obj", ".", heard.sink);
     EXPECT_EQ(scene.meshes[0].normalIndices, (std::vector<std::uint32_t>{kNoIndex, 0, kNoIndex}));
-    EXPECT_TRUE(heard.has(Warning::kGeometry, "scene.obj:5: 1 normals that are not finite"));
+    EXPECT_TRUE(heard.has(Warning::kGeometry, "scene.obj:5: 1 normals that are not numbers"));
     EXPECT_TRUE(heard.has(Warning::kGeometry, "scene.obj:7: 1 normals of length 0 left out"));
 }
 
@@ -134,7 +135,49 @@ TEST(Obj, groupsBecomeMeshesWithMaterialSlots) {
     EXPECT_EQ(scene.meshes[0].faceSlots, (std::vector<std::uint32_t>{0, 1}));
     EXPECT_EQ(scene.meshes[1].slotMaterials, std::vector<std::uint32_t>{1});
     EXPECT_EQ(scene.materials[0].name, "red one");
-    EXPECT_TRUE(heard.has(Warning::kMaterialName, "'red one'"));
+    EXPECT_TRUE(heard.has(Warning::kMaterialName, "scene.obj:6: in no library"));
+    EXPECT_TRUE(heard.has(Warning::kMaterialName, "'red one', 'b'"));
+}
+
+TEST(Obj, statementsWithoutANameAreWarnedOf) {
+    Heard heard;
+    const SceneData scene =
+        readObj("mtllib\n" + kQuad + "usemtl\nf 1 2 3\nusemtl \t\nf 1 3 4\nmtllib \n", "scene.obj",
+                ".", heard.sink);
+    EXPECT_EQ(scene.meshes[0].slotMaterials, std::vector<std::uint32_t>{0});
+    EXPECT_EQ(scene.materials[0].diffuse[0], 0.8f);
+    ASSERT_EQ(heard.list.size(), 2u);
+    EXPECT_TRUE(
+        heard.has(Warning::kGeometry, "scene.obj:1: 2 mtllib lines without a file name left out"));
+    EXPECT_TRUE(heard.has(Warning::kMaterialName,
+                          "scene.obj:6: usemtl without a name, so a grey of 0.8 is taken"));
+}
+
+// What changes no triangle is passed over; all else is told, also where nothing else is there.
+TEST(Obj, statementsThatAreNotUnderstoodAreWarnedOf) {
+    Heard heard;
+    readObj("s off\nvp 1\nlod 1\ncall a.obj\nF 1 2 3\n" + kQuad + "f 1 2 3\n", "scene.obj", ".",
+            heard.sink);
+    ASSERT_EQ(heard.list.size(), 1u);
+    EXPECT_EQ(heard.list[0].second,
+              "scene.obj:4: 2 statements that are not understood, 'call' the first, left out");
+    EXPECT_NE(refusal(kQuad + "F\xE9 1 2 3\n")
+                  .find("0 faces, and 1 statements that are not "
+                        "understood, 'F?' the first"),
+              std::string::npos);
+}
+
+// Of lamps, not of other materials, and only where all faces of a group are without area.
+TEST(Obj, lampsWithoutAreaAreWarnedOf) {
+    SceneData scene =
+        read(kQuad + "g a\nusemtl lamp\nf 1 1 2\nf 1 2 3\ng b\nf 1 2 2 1\nusemtl wall\nf 1 1 2\n");
+    scene.materials.at(0).emission = {0, 0, 1};
+    Heard heard;
+    warnOfLampsWithoutArea(scene, "scene.obj", heard.sink);
+    ASSERT_EQ(heard.list.size(), 1u);
+    EXPECT_EQ(heard.list[0].second,
+              "scene.obj: group b: the faces of material lamp have no area, so this lamp gives no "
+              "light");
 }
 
 TEST(Obj, tagsBelongToTheirGroup) {

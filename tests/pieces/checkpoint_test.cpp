@@ -143,8 +143,13 @@ TEST_F(Checkpoints, AnotherSceneIsRefusedByName) {
 }
 
 TEST_F(Checkpoints, WithoutResumeBeginAnew) {
-    render(on({{"seed", "7"}}));
+    const auto tells = [this](const Outcome& outcome) {
+        return outcome.warnings.find(path("c") + ": a checkpoint was there; it is begun anew") !=
+               std::string::npos;
+    };
+    EXPECT_FALSE(tells(render(on({{"seed", "7"}}))));
     const Outcome fresh = render({{"checkpoint", path("c")}});
+    EXPECT_TRUE(tells(fresh)) << fresh.warnings;
     expectSameBits(render({}), fresh);
     EXPECT_EQ(0, fresh.json["passesResumed"]);
 }

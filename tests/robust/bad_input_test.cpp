@@ -2,9 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 // Bad input to the real pm_host: the right exit code and one line that says what, where and what is
 // allowed; nothing half-written.
+#include "host_shim/app/guarded.h"
 #include "tests/robust/host_process.h"
 
 #include <nlohmann/json.hpp>
+
+#include <system_error>
 
 namespace pm::host::test {
 namespace {
@@ -30,6 +33,11 @@ TEST_F(BadInput, scenes) {
     expectRefusal(run({"/"}), 3, {"no geometry"});
     write("scene.txt", "x");
     expectRefusal(run({"scene.txt"}), 3, {"scene.txt", ".obj"});
+    expectRefusal(run({"box.obj", "--log", "BOX.MTL"}), 2, {"BOX.MTL", "may not end in .mtl"});
+    expectRefusal(run({"box.obj", "-o", "box"}), 2, {"box: its name has no ending", ".exr"});
+    expectRefusal(run({"box.obj", "-o", "a.png", "--look", "None"}), 3, {"'None'; there are none"});
+    fs::copy_file(path("box.obj"), path("box.Obj"));
+    EXPECT_EQ(run({"box.Obj", "--explain"}).exitCode, 0);
 }
 
 TEST_F(BadInput, aMissingLibraryIsAWarningAndADefaultMaterial) {
@@ -42,6 +50,20 @@ TEST_F(BadInput, aMissingLibraryIsAWarningAndADefaultMaterial) {
     EXPECT_NE(outcome.err.find("'wall', 'light'"), std::string::npos) << outcome.err;
     EXPECT_NE(outcome.err.find("a point light at the camera"), std::string::npos) << outcome.err;
     EXPECT_TRUE(fs::exists(path("box.exr")));
+}
+
+// What is wrong with a part of a scene is told with its file and line or its group.
+TEST_F(BadInput, partsOfAScene) {
+    write("box.mtl", "newmtl light\nKe 5 5 5\nnewmtl wall\nKd 1 1 1\nmap_Kd none.png\n");
+    write("flat.obj",
+          "mtllib box.mtl\n" + kTriangle + "usemtl wall\nf 1 2 3\ng bulb\nusemtl light\nf 1 2 2\n");
+    const Outcome outcome = run({"flat.obj", "--size", "16x16", "--passes", "1"});
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    for (const char* text :
+         {"warning: box.mtl:5: material wall: texture none.png does not exist",
+          "warning: flat.obj: group bulb: 1 triangles without area were left out",
+          "warning: flat.obj: group bulb: the faces of material light have no area"})
+        EXPECT_NE(outcome.err.find(text), std::string::npos) << text << " in " << outcome.err;
 }
 
 // A room that is closed all round, seen from outside; the same from inside says nothing.
@@ -150,7 +172,8 @@ TEST_F(BadInput, faultsThatShowLateAreTold) {
     fewer.insert(fewer.end(), {"--passes", "1"});
     const Outcome late = render(fewer);
     EXPECT_EQ(late.exitCode, 3);
-    EXPECT_NE(late.err.find("has 2 passes; 1 were asked for"), std::string::npos) << late.err;
+    EXPECT_NE(late.err.find("c: the checkpoint has 2 passes; 1 were asked for"), std::string::npos)
+        << late.err;
     std::vector<std::string> photons{"box.obj", "--size",         "16x16", "--passes",
                                      "2",       "--photons",      "1000",  "--photon-map",
                                      "ph",      "--photons-only", "-q"};
@@ -162,6 +185,19 @@ TEST_F(BadInput, faultsThatShowLateAreTold) {
     const Outcome damaged = run(photons);
     EXPECT_EQ(damaged.exitCode, 3);
     EXPECT_NE(damaged.err.find("ph: the photon map is damaged"), std::string::npos) << damaged.err;
+}
+
+TEST_F(BadInput, aThreadThatCannotBeStartedIsAWantOfMemory) {
+    Log log({Level::kError, false});
+    std::string text;
+    const auto codeOf = [&](std::errc error) {
+        return guarded(
+            log, [&]() -> int { throw std::system_error(std::make_error_code(error)); }, &text);
+    };
+    EXPECT_EQ(codeOf(std::errc::resource_unavailable_try_again), 5);
+    EXPECT_NE(text.find("no thread can be started"), std::string::npos) << text;
+    EXPECT_EQ(codeOf(std::errc::io_error), 1);
+    EXPECT_NE(text.find("internal error"), std::string::npos) << text;
 }
 
 TEST_F(BadInput, explainRefusesWhatTheRenderWould) {

@@ -1,0 +1,17 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/ingest/scene_data.h"
+#include "host_shim/ingest/warnings.h"
+
+#include <string>
+
+namespace pm::host {
+
+// Warns of each group and material that emits of which no face has an area: it gives no light.
+// sceneName is for messages.
+void warnOfLampsWithoutArea(const SceneData& scene, const std::string& sceneName,
+                            const WarningSink& warn);
+
+}  // namespace pm::host
