@@ -59,6 +59,7 @@ class CausticMap {
     // above it count.
     TwoRadii irradiance(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const;
 
+    const PhotonMap& photons() const { return m_map; }
     std::uint64_t memoryBytes() const { return m_map.memoryBytes(); }
 
   private:

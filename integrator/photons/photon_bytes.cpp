@@ -3,7 +3,6 @@
 #include "integrator/photons/photon_bytes.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -18,7 +17,7 @@ bool isPossible(const Photon& photon, float farthest) {
     const Vec3f& p = photon.position;
     // False for NaN as well.
     return std::abs(p.x) <= farthest && std::abs(p.y) <= farthest && std::abs(p.z) <= farthest &&
-           isFinite(photon.flux) && std::bit_cast<std::uint32_t>(photon.normal) != 0;
+           isFinite(photon.flux) && !photon.normal.isNull();
 }
 
 bool isPossible(const PhotonBalance& balance) {

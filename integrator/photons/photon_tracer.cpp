@@ -26,10 +26,6 @@ constexpr int kMaxEvents = 1000;
 // ratio is cut off where a photon arrives almost edge-on.
 constexpr float kLargestNormalRatio = 20.0f;
 
-double sum(const Rgb& c) {
-    return static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b);
-}
-
 struct Batch {
     std::vector<Photon> photons;
     PhotonBalance balance;
@@ -55,11 +51,11 @@ class PhotonWalk {
         ++batch.balance.emitted;
         if (!emit(sampler, photon)) return;
         photon.flux *= m_scale;
-        batch.balance.fluxEmitted += sum(photon.flux);
+        batch.balance.fluxEmitted += channelSum(photon.flux);
         const double landed = walk(photon, sampler, batch);
         if (m_aim && m_request.keepRecords)
             batch.records.push_back({photon.light, photon.caster,
-                                     static_cast<float>(sum(photon.flux)),
+                                     static_cast<float>(channelSum(photon.flux)),
                                      static_cast<float>(landed), photon.part});
     }
 
@@ -76,11 +72,17 @@ class PhotonWalk {
     }
 
     // How far a photon has come.
-    enum class Stage {
+    enum class Stage : std::uint8_t {
         kStraight,   // no diffuse surface yet, and no other lobe either
         kSpecular,   // no diffuse surface yet, but other lobes
         kDiffuse,    // scattered diffusely, at first where it came straight from the light
         kDescended,  // ... where it came by way of other lobes
+        kRefocused,  // the same, and on by other lobes before it met another diffuse surface
+        kLater,      // descended, and has met another since
+    };
+    struct Way {
+        Stage stage = Stage::kStraight;
+        bool isFollowed = true;  // of the share that carries on what descends from caustics
     };
 
     // Returns the flux that landed as asked for, W, summed over the channels.
@@ -88,76 +90,90 @@ class PhotonWalk {
         PhotonBalance& balance = batch.balance;
         Ray ray = photon.ray;
         Rgb flux = photon.flux;
-        Stage stage = Stage::kStraight;
+        Way way;
         double landed = 0;
         for (int event = 0; event < kMaxEvents; ++event) {
             Surface surface;
             ++balance.rays;
             if (!m_scene.intersect(ray, surface)) {
-                balance.fluxEscaped += sum(flux);
+                balance.fluxEscaped += channelSum(flux);
                 return landed;
             }
             const Vec3f out = -ray.direction;
             const Bsdf bsdf(m_scene, surface, out, Transport::kPhotons, flux);
-            if (bsdf.has(Lobe::kDiffuse)) landed += land(stage, surface, bsdf, out, flux, batch);
+            if (bsdf.has(Lobe::kDiffuse)) landed += land(way, surface, bsdf, out, flux, batch);
             BsdfSample sample;
             const float uLobe = sampler.next1D();
             const Vec2f u = sampler.next2D();
-            if ((bsdf.isDiffuseOnly() && endsAtDiffuse(stage)) || !bsdf.sample(uLobe, u, sample) ||
-                (sample.lobe == Lobe::kDiffuse && endsAtDiffuse(stage))) {
-                balance.fluxAbsorbed += sum(flux);
+            if ((bsdf.isDiffuseOnly() && endsAtDiffuse(way)) || !bsdf.sample(uLobe, u, sample) ||
+                (sample.lobe == Lobe::kDiffuse && endsAtDiffuse(way))) {
+                balance.fluxAbsorbed += channelSum(flux);
                 return landed;
             }
             Rgb scattered = flux * sample.weight;
-            if (!advance(stage, sample.lobe, sampler, scattered)) {
-                balance.fluxAbsorbed += sum(flux);
+            if (!advance(way, sample.lobe, sampler, scattered)) {
+                balance.fluxAbsorbed += channelSum(flux);
                 return landed;
             }
             if (!isFinite(scattered)) break;
-            balance.fluxAbsorbed += sum(flux) - sum(scattered);
+            balance.fluxAbsorbed += channelSum(flux) - channelSum(scattered);
             flux = scattered;
             ray = rayFrom(surface, sample.direction);
         }
         ++balance.lost;
-        balance.fluxLost += sum(flux);
+        balance.fluxLost += channelSum(flux);
         return landed;
     }
 
     // By a lobe, with the flux that it carries on. False: the photon is not of the share that is
-    // followed on from caustics.
-    bool advance(Stage& stage, Lobe lobe, Sampler& sampler, Rgb& flux) const {
+    // followed.
+    bool advance(Way& way, Lobe lobe, Sampler& sampler, Rgb& flux) const {
         if (lobe != Lobe::kDiffuse) {
-            if (stage == Stage::kStraight) stage = Stage::kSpecular;
-        } else if (stage == Stage::kStraight) {
-            stage = Stage::kDiffuse;
-        } else if (stage == Stage::kSpecular) {
-            stage = Stage::kDescended;
-            if (!isCaustic(m_request.kind)) return true;
-            if (sampler.next1D() >= m_request.descent) return false;
-            flux *= 1.0f / m_request.descent;
+            if (way.stage == Stage::kStraight) way.stage = Stage::kSpecular;
+            if (way.stage == Stage::kDescended) way.stage = Stage::kRefocused;
+        } else if (way.stage == Stage::kStraight) {
+            way.stage = Stage::kDiffuse;
+        } else if (way.stage == Stage::kSpecular) {
+            way.stage = Stage::kDescended;
+            if (isCaustic(m_request.kind)) way.isFollowed = sampler.next1D() < m_request.descent;
+        } else if (way.stage == Stage::kDescended || way.stage == Stage::kRefocused) {
+            way.stage = Stage::kLater;
+            if (isCaustic(m_request.kind)) flux *= 1.0f / m_request.descent;
+            return way.isFollowed;
         }
         return true;
     }
 
-    // Nothing that comes after a diffuse scattering at this stage is asked for.
-    bool endsAtDiffuse(Stage stage) const {
+    // Nothing that comes after a diffuse scattering on this way is asked for.
+    bool endsAtDiffuse(const Way& way) const {
         if (isCaustic(m_request.kind))
-            return stage == Stage::kStraight || m_request.descent == 0.0f;
-        return stage == Stage::kSpecular && m_request.withoutCaustics;
+            return way.stage == Stage::kStraight || m_request.descent == 0.0f || !way.isFollowed;
+        return way.stage == Stage::kSpecular && m_request.withoutCaustics;
     }
 
-    // Stores a photon where its stage is asked for. Returns its flux if so.
-    double land(Stage stage, const Surface& surface, const Bsdf& bsdf, const Vec3f& out,
+    // Stores a photon where its way is asked for. Returns its flux if so; of light that descends
+    // from caustics 0.
+    double land(const Way& way, const Surface& surface, const Bsdf& bsdf, const Vec3f& out,
                 const Rgb& flux, Batch& batch) const {
         if (isCaustic(m_request.kind)) {
-            if (stage == Stage::kStraight) return 0;
-            store(surface, bsdf, out, flux, batch,
-                  stage == Stage::kSpecular ? batch.photons : batch.descended);
-            return stage == Stage::kSpecular ? sum(flux) : 0;
+            if (way.stage == Stage::kSpecular)
+                store(surface, bsdf, out, flux, batch, batch.photons);
+            else if (way.stage != Stage::kStraight)
+                landDescended(way, surface, bsdf, out, flux, batch);
+            return way.stage == Stage::kSpecular ? channelSum(flux) : 0;
         }
-        if (stage == Stage::kSpecular && m_request.withoutCaustics) return 0;
+        if (way.stage == Stage::kSpecular && m_request.withoutCaustics) return 0;
         store(surface, bsdf, out, flux, batch, batch.photons);
-        return sum(flux);
+        return channelSum(flux);
+    }
+
+    // What caustics send straight to a surface is even: the share that is followed carries it.
+    void landDescended(const Way& way, const Surface& surface, const Bsdf& bsdf, const Vec3f& out,
+                       const Rgb& flux, Batch& batch) const {
+        if (way.stage == Stage::kDescended && !way.isFollowed) return;
+        const float scale = way.stage == Stage::kDescended ? 1.0f / m_request.descent : 1.0f;
+        store(surface, bsdf, out, flux * scale, batch, batch.descended);
+        if (way.stage == Stage::kRefocused) batch.descended.back().normal.mark();
     }
 
     static void store(const Surface& surface, const Bsdf& bsdf, const Vec3f& out, const Rgb& flux,

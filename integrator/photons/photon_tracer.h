@@ -43,7 +43,7 @@ struct PhotonTraceRequest {
     std::uint32_t pass = 0;
     const AimedEmission* aim = nullptr;  // of the same scene; null or empty: unaimed
     // Caustic photons: the share of those that landed which is followed on, as light descended from
-    // caustics; in [0, 1].
+    // caustics, in [0, 1]; 0: none is. All are as far as to where they are refocused.
     float descent = 0.0f;
     // Global photons: light whose first diffuse surface comes by way of another lobe is somebody
     // else's business and ends there.
@@ -54,7 +54,9 @@ struct PhotonTraceRequest {
 struct PhotonTraceResult {
     std::vector<Photon> photons;  // flux of each already divided by the number emitted
     PhotonBalance balance;
-    std::vector<Photon> descended;        // of caustic photons: the arrivals after the first
+    // Of caustic photons the arrivals after the first. Marked where light that a caustic sends out
+    // comes by way of other lobes before it meets another diffuse surface: refocused.
+    std::vector<Photon> descended;
     std::vector<EmissionRecord> records;  // of each photon that carried something, if asked for
 };
 

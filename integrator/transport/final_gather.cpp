@@ -7,7 +7,7 @@
 
 namespace pm {
 
-Gathered followGather(const Scene& scene, const IrradianceSites& sites, const Ray& ray,
+Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray, float cosine,
                       Sampler& sampler) {
     Gathered result;
     PathWalk path(ray);
@@ -26,11 +26,16 @@ Gathered followGather(const Scene& scene, const IrradianceSites& sites, const Ra
             result.position = surface.position;
             result.normal = bsdf.facingGeometricNormal();
             result.reflected = path.throughput * bsdf.diffuse() * kInvPi;
-            if (bsdf.isDiffuseOnly()) {
-                sites.prefetch(result.position, result.normal);
-                return result;
+            result.density = 0.0f;
+            if (ends.caustics && result.rays == 1) {
+                const float facing = -dot(ray.direction, result.normal);
+                result.density =
+                    cosine * kInvPi * facing / lengthSquared(surface.position - ray.origin);
+                ends.caustics->prefetch(result.position, result.normal);
             }
-            endGather(sites, result);
+            ends.sites.prefetch(result.position, result.normal);
+            if (bsdf.isDiffuseOnly()) return result;
+            endGather(ends, result);
         }
         BsdfSample sample;
         const float uLobe = sampler.next1D();
@@ -41,18 +46,21 @@ Gathered followGather(const Scene& scene, const IrradianceSites& sites, const Ra
     }
 }
 
-void endGather(const IrradianceSites& sites, Gathered& gathered) {
+void endGather(const GatherEnds& ends, Gathered& gathered) {
     if (!gathered.isWaiting) return;
     gathered.isWaiting = false;
-    const TwoRadii irradiance = sites.at(gathered.position, gathered.normal);
+    TwoRadii irradiance = ends.sites.at(gathered.position, gathered.normal);
+    if (gathered.density > 0.0f)
+        irradiance += ends.caustics->gathered(gathered.position, gathered.normal, gathered.density,
+                                              ends.rays);
     gathered.radiance +=
         {gathered.reflected * irradiance.wide, gathered.reflected * irradiance.narrow};
 }
 
-Gathered finalGather(const Scene& scene, const IrradianceSites& sites, const Ray& ray,
+Gathered finalGather(const Scene& scene, const GatherEnds& ends, const Ray& ray, float cosine,
                      Sampler& sampler) {
-    Gathered result = followGather(scene, sites, ray, sampler);
-    endGather(sites, result);
+    Gathered result = followGather(scene, ends, ray, cosine, sampler);
+    endGather(ends, result);
     return result;
 }
 

@@ -7,8 +7,18 @@
 #include "integrator/photons/irradiance_sites.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/virtual_lamps.h"
 
 namespace pm {
+
+// What gather rays read where they end.
+struct GatherEnds {
+    const IrradianceSites& sites;
+    // Light that caustics send straight to where the rays come from, where it is gathered; may be
+    // null. rays: of the place, by which VirtualLamps weighs.
+    const VirtualLamps* caustics = nullptr;
+    std::uint32_t rays = 1;
+};
 
 // What one final-gather ray brings.
 struct Gathered {
@@ -21,6 +31,9 @@ struct Gathered {
     bool isWaiting = false;
     Vec3f position, normal;
     Rgb reflected;
+    // Of rays by the cosine, for each unit of area where the way ends at once; 0 where other lobes
+    // come in between, by way of which caustics are not looked at. Scene units^-2.
+    float density = 0.0f;
 
     void scale(float factor) {
         radiance.wide *= factor;
@@ -31,16 +44,19 @@ struct Gathered {
 
 // Follows a gather ray to the diffuse surfaces where the irradiance sites end it. Light that it
 // finds at a lamp is not in `radiance`: met at once it is direct light, by way of other lobes a
-// caustic. Source: Jensen 2001, section 9.2.
+// caustic. Nor is that of caustics met by way of other lobes: it is refocused, with an estimate of
+// its own. Source: Jensen 2001, section 9.2.
 //
 // In two steps: the first asks for the site at the end to be at hand soon, the second reads it.
 // With another ray's first step between them memory has the time that it takes.
-Gathered followGather(const Scene& scene, const IrradianceSites& sites, const Ray& ray,
+//
+// cosine: of the ray to the shading normal where it comes from.
+Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray, float cosine,
                       Sampler& sampler);
-void endGather(const IrradianceSites& sites, Gathered& gathered);
+void endGather(const GatherEnds& ends, Gathered& gathered);
 
 // Both.
-Gathered finalGather(const Scene& scene, const IrradianceSites& sites, const Ray& ray,
+Gathered finalGather(const Scene& scene, const GatherEnds& ends, const Ray& ray, float cosine,
                      Sampler& sampler);
 
 }  // namespace pm

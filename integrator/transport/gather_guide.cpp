@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstdint>
 
+#include "integrator/photons/flux_steps.h"
+
 namespace pm {
 
 namespace {
@@ -30,26 +32,11 @@ float within(const std::array<float, kCount>& table, std::size_t cell, float u) 
 
 }  // namespace
 
-// Systematically: one number, the same for all, at equal steps of the flux.
 GatherGuide::GatherGuide(const PhotonMap& photons, float radius)
     : m_nearestSquared(radius * radius) {
-    const auto flux = [&](std::uint32_t index) {
-        const Rgb& rgb = photons.photon(index).flux;
-        return static_cast<double>(rgb.r) + static_cast<double>(rgb.g) + static_cast<double>(rgb.b);
-    };
-    const auto count = static_cast<std::uint32_t>(photons.size());
-    double whole = 0;
-    for (std::uint32_t i = 0; i < count; ++i) whole += flux(i);
-    if (!(whole > 0)) return;
-    const double step = whole / static_cast<double>(kEmitters);
-    double sum = 0, next = step / 2;
-    for (std::uint32_t i = 0; i < count; ++i) {
-        sum += flux(i);
-        for (; next < sum && m_emitters.size() < kEmitters; next += step) {
-            const Photon photon = photons.photon(i);
-            m_emitters.push_back({photon.position, photon.normal.unpack()});
-        }
-    }
+    visitBySteps(photons, kEmitters, 0.5f, [&](const Photon& photon, double) {
+        m_emitters.push_back({photon.position, photon.normal.unpack()});
+    });
 }
 
 GatherGuide::Directions GatherGuide::at(const Vec3f& position, const Frame& frame) const {

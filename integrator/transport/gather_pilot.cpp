@@ -13,7 +13,6 @@
 #include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
 #include "integrator/transport/direct_light.h"
-#include "integrator/transport/final_gather.h"
 #include "integrator/transport/pilot_paths.h"
 
 namespace pm {
@@ -49,9 +48,9 @@ struct Moments {
 class GatherPilot {
   public:
     // Of a point that the path leaves by the diffuse lobe. guide: null: the rays go by the cosine.
-    GatherPilot(const Scene& scene, const IrradianceSites& sites, const PathStop& stop,
+    GatherPilot(const Scene& scene, const GatherEnds& ends, const PathStop& stop,
                 const GatherGuide* guide)
-        : m_scene(scene), m_sites(sites), m_stop(stop), m_frame(stop.bsdf.facingShadingNormal()) {
+        : m_scene(scene), m_ends(ends), m_stop(stop), m_frame(stop.bsdf.facingShadingNormal()) {
         if (guide) m_directions = guide->at(stop.surface.position, m_frame);
     }
 
@@ -70,9 +69,9 @@ class GatherPilot {
             guided ? m_directions->warp(u) : GatherGuide::Directions::Warped{u, 1.0f};
         const Vec3f direction = normalize(m_frame.toWorld(sampleCosineHemisphere(warped.u)));
         if (!(dot(direction, m_stop.bsdf.facingGeometricNormal()) > 0.0f)) return {};
-        const Rgb radiance =
-            finalGather(m_scene, m_sites, rayFrom(m_stop.surface, direction), sampler)
-                .radiance.wide;
+        const Rgb radiance = finalGather(m_scene, m_ends, rayFrom(m_stop.surface, direction),
+                                         dot(direction, m_frame.normal), sampler)
+                                 .radiance.wide;
         return m_stop.throughput * m_stop.bsdf.diffuse() * (radiance / warped.density);
     }
 
@@ -91,7 +90,7 @@ class GatherPilot {
 
   private:
     const Scene& m_scene;
-    const IrradianceSites& m_sites;
+    const GatherEnds& m_ends;
     const PathStop& m_stop;
     Frame m_frame;
     std::optional<GatherGuide::Directions> m_directions;
@@ -144,13 +143,13 @@ void visitPlaces(const Scene& scene, const Camera& camera, const FrameLattice& l
 }  // namespace
 
 double gatherSpread(const Scene& scene, const Camera& camera, const LightSampler& lights,
-                    const IrradianceSites& sites, const RenderSettings& settings,
+                    const GatherEnds& ends, const RenderSettings& settings,
                     const CancelCheck& cancel) {
     const FrameLattice lattice = FrameLattice::fixed(settings, kColumns, kRows);
     std::vector<double> spreads(lattice.size());
     visitPlaces(scene, camera, lattice, settings, cancel,
                 [&](std::size_t path, const PathStop& stop) {
-                    spreads[path] = spreadAt({scene, sites, stop, nullptr}, lights, stop.sampler);
+                    spreads[path] = spreadAt({scene, ends, stop, nullptr}, lights, stop.sampler);
                 });
     double sum = 0;
     for (const double spread : spreads) sum += spread;
@@ -158,13 +157,13 @@ double gatherSpread(const Scene& scene, const Camera& camera, const LightSampler
 }
 
 GatherRivals gatherRivals(const Scene& scene, const Camera& camera, const LightSampler& lights,
-                          const IrradianceSites& sites, const GatherGuide& guide,
+                          const GatherEnds& ends, const GatherGuide& guide,
                           const RenderSettings& settings, const CancelCheck& cancel) {
     const FrameLattice lattice = FrameLattice::fixed(settings, kColumns, kRows);
     std::vector<GatherRivals> all(lattice.size());
     visitPlaces(scene, camera, lattice, settings, cancel,
                 [&](std::size_t path, const PathStop& stop) {
-                    all[path] = rivalsAt({scene, sites, stop, &guide}, lights);
+                    all[path] = rivalsAt({scene, ends, stop, &guide}, lights);
                 });
     GatherRivals mean;
     for (const GatherRivals& rivals : all) {

@@ -4,10 +4,10 @@
 
 #include <cstdint>
 
-#include "integrator/photons/irradiance_sites.h"
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/final_gather.h"
 #include "integrator/transport/gather_guide.h"
 #include "integrator/transport/render_settings.h"
 #include "integrator/values/cancel_check.h"
@@ -20,7 +20,7 @@ namespace pm {
 // gathered. A function of its arguments and the frame; works in parallel in the calling TBB arena.
 // Throws Error(kCancelled) soon after cancel is set.
 double gatherSpread(const Scene& scene, const Camera& camera, const LightSampler& lights,
-                    const IrradianceSites& sites, const RenderSettings& settings,
+                    const GatherEnds& ends, const RenderSettings& settings,
                     const CancelCheck& cancel = {});
 
 // The same of rays by the cosine and by a guide, each as well spread over the directions as those
@@ -29,7 +29,7 @@ struct GatherRivals {
     double byCosine = 0, byGuide = 0;
 };
 GatherRivals gatherRivals(const Scene& scene, const Camera& camera, const LightSampler& lights,
-                          const IrradianceSites& sites, const GatherGuide& guide,
+                          const GatherEnds& ends, const GatherGuide& guide,
                           const RenderSettings& settings, const CancelCheck& cancel = {});
 
 // Rays of a gather point that pay at that spread, where `rays` are planned: half of those, or

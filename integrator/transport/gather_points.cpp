@@ -18,10 +18,10 @@ namespace {
 constexpr float kScreenRadius = 1.6f;
 // ... and in the scene, over the clearance.
 constexpr float kReach = 1.0f;
-// Radius of the estimate of descended light over the clearance, and its least over that in the
+// Radius of the estimate of refocused light over the clearance, and its least over that in the
 // open.
-constexpr float kDescendedReach = 0.25f;
-constexpr float kNarrowestDescended = 0.3f;
+constexpr float kRefocusedReach = 0.25f;
+constexpr float kNarrowestRefocused = 0.3f;
 // Short rays that look for it where no point tells, on a golden spiral (Vogel 1979).
 constexpr std::uint32_t kLooksAround = 8;
 constexpr float kGoldenTurn = 0.381966011f;
@@ -38,6 +38,7 @@ constexpr std::size_t kShared = 4;
 // Random numbers: the stream of the pass's photons, at sequences which these don't use.
 constexpr std::uint64_t kPointSequences = std::uint64_t{1} << 40;
 constexpr std::uint64_t kRaySequences = std::uint64_t{1} << 41;
+constexpr std::uint64_t kLampSequences = std::uint64_t{1} << 42;
 
 std::uint64_t streamOf(std::uint32_t pass) {
     return 2 * std::uint64_t{pass} + 1;
@@ -147,8 +148,9 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
     float clearance = std::numeric_limits<float>::max();
     float lamps = 0;
     Gathered last;
+    const GatherEnds ends{m_sites, m_request.caustics, m_request.rays};
     const auto addLast = [&] {
-        endGather(m_sites, last);
+        endGather(ends, last);
         addTo(sum, last.radiance);
     };
     for (std::uint32_t i = 0; i < m_request.rays; ++i) {
@@ -157,7 +159,8 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
         const float weight = 1 / density;
         const Vec3f direction = normalize(frame.toWorld(sampleCosineHemisphere(u)));
         if (dot(direction, geometricNormal) <= 0.0f) continue;
-        Gathered found = followGather(m_scene, m_sites, {start, direction}, sampler);
+        Gathered found =
+            followGather(m_scene, ends, {start, direction}, dot(direction, point.normal), sampler);
         found.scale(weight);
         rays += found.rays;
         if (!found.hitAny) {
@@ -180,20 +183,39 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
     return {{irradiance(0), irradiance(3)}, lamps / static_cast<float>(count), clearance};
 }
 
+// The points that share a sequence have different lamps each, neighbours the most different ones.
+Rgb GatherPoints::sampleCaustics(const Point& point, const Origin& origin, const Cell& cell) const {
+    const auto columns = static_cast<std::size_t>(m_tiles.columns());
+    const std::size_t sequence = (cell.row / kShared) * columns + cell.column / kShared;
+    static_assert(kShared == 4);
+    const auto part = static_cast<std::uint32_t>((cell.column & 1) | (cell.row & 1) << 1 |
+                                                 (cell.column & 2) << 1 | (cell.row & 2) << 2);
+    Sampler sampler(m_request.seed, streamOf(m_request.pass), kLampSequences + sequence, part);
+    const VirtualLamps::Place place{point.position,
+                                    point.position + origin.geometricNormal * origin.offset,
+                                    point.normal, origin.geometricNormal};
+    return m_request.caustics->sampled(place, m_request.rays, sampler.next1D());
+}
+
 GatherPoints::Value GatherPoints::compute(const Tile& tile, const Cell& cell,
                                           std::uint64_t& rays) const {
     const auto columns = static_cast<std::size_t>(m_tiles.columns());
     const std::size_t sequence = (cell.row / kShared) * columns + cell.column / kShared;
     const std::size_t part = (cell.row % kShared) * kShared + cell.column % kShared;
     const Sampler shared(m_request.seed, streamOf(m_request.pass), kRaySequences + sequence, 0);
-    const Vec3f& position = tile.points[cell.inTile()].position;
     const Origin& origin = tile.origins[cell.inTile()];
     const Vec3f& normal = origin.geometricNormal;
-    Value value = gather(tile.points[cell.inTile()], origin, shared, part, rays);
-    if (m_request.descended)
-        value.irradiance +=
-            descended(position, normal, value.clearance, descendedRadius(position, normal),
-                      static_cast<std::uint32_t>(cell.row * columns + cell.column));
+    const Point& point = tile.points[cell.inTile()];
+    Value value = gather(point, origin, shared, part, rays);
+    if (m_request.caustics) {
+        const Rgb sampled = sampleCaustics(point, origin, cell);
+        value.irradiance += {sampled, sampled};
+        rays += VirtualLamps::raysBeside(m_request.rays);
+    }
+    if (m_request.refocused)
+        value.irradiance += refocused(point.position, normal, value.clearance,
+                                      refocusedRadius(point.position, normal),
+                                      static_cast<std::uint32_t>(cell.row * columns + cell.column));
     return value;
 }
 
@@ -202,25 +224,25 @@ float GatherPoints::reachOfClearance() const {
     return kReach * m_request.radiusFactor;
 }
 
-float GatherPoints::descendedRadius(const Vec3f& position, const Vec3f& normal) const {
+float GatherPoints::refocusedRadius(const Vec3f& position, const Vec3f& normal) const {
     NearestPhotons scratch;
-    return m_request.descendedRadius->at(position, normal, scratch) * m_request.radiusFactor;
+    return m_request.refocusedRadius->at(position, normal, scratch) * m_request.radiusFactor;
 }
 
 // Narrower in corners and gaps, where this light, too, changes within their width.
-TwoRadii GatherPoints::descended(const Vec3f& position, const Vec3f& normal, float clearance,
+TwoRadii GatherPoints::refocused(const Vec3f& position, const Vec3f& normal, float clearance,
                                  float radius, std::uint32_t pattern) const {
-    return m_request.descended
-        ->withRadius(std::clamp(kDescendedReach * clearance, kNarrowestDescended * radius, radius))
+    return m_request.refocused
+        ->withRadius(std::clamp(kRefocusedReach * clearance, kNarrowestRefocused * radius, radius))
         .at(position, normal, pattern);
 }
 
-TwoRadii GatherPoints::descendedAt(const Place& place, float clearance,
+TwoRadii GatherPoints::refocusedAt(const Place& place, float clearance,
                                    std::uint32_t pattern) const {
-    if (!m_request.descended) return {};
-    const float radius = descendedRadius(place.position, place.geometricNormal);
-    if (!std::isfinite(clearance)) clearance = lookAround(place, radius / kDescendedReach, pattern);
-    return descended(place.position, place.geometricNormal, clearance, radius, pattern);
+    if (!m_request.refocused) return {};
+    const float radius = refocusedRadius(place.position, place.geometricNormal);
+    if (!std::isfinite(clearance)) clearance = lookAround(place, radius / kRefocusedReach, pattern);
+    return refocused(place.position, place.geometricNormal, clearance, radius, pattern);
 }
 
 void GatherPoints::fill(Tile& tile, const Cell& cell) const {

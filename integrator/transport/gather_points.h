@@ -18,6 +18,7 @@
 #include "integrator/scene/scene.h"
 #include "integrator/transport/gather_guide.h"
 #include "integrator/transport/point_tiles.h"
+#include "integrator/transport/virtual_lamps.h"
 
 namespace pm {
 
@@ -45,10 +46,12 @@ class GatherPoints {
         float radiusFactor = 1.0f;           // this pass's radii over the first pass's
         std::uint64_t seed = 1;
         std::uint32_t pass = 0;
-        // Light that the gather rays leave out and that is estimated at each point; may be null.
-        const SurfaceEstimate* descended = nullptr;
-        // Its radii in the first pass, from place to place; null where `descended` is.
-        const PilotRadius* descendedRadius = nullptr;
+        // Caustics, whose light goes to the points straight; may be null.
+        const VirtualLamps* caustics = nullptr;
+        // Light that they send by way of other lobes, estimated at each point; may be null.
+        const SurfaceEstimate* refocused = nullptr;
+        // Its radii in the first pass, from place to place; null where `refocused` is.
+        const PilotRadius* refocusedRadius = nullptr;
         // Where the rays go by; null: by the cosine alone.
         const GatherGuide* guide = nullptr;
     };
@@ -78,10 +81,10 @@ class GatherPoints {
     // Indirect irradiance at a place. False where no point is near enough.
     bool estimate(const Place& place, Estimate& result) const;
 
-    // Irradiance of descended light at a place itself, for samples without a point in reach; 0
+    // Irradiance of refocused light at a place itself, for samples without a point in reach; 0
     // where there is none. clearance: as `estimate` found it. pattern: any number that depends on
     // the place alone.
-    TwoRadii descendedAt(const Place& place, float clearance, std::uint32_t pattern) const;
+    TwoRadii refocusedAt(const Place& place, float clearance, std::uint32_t pattern) const;
 
     // No samples of the pixels of `region` will come any more; regions divide `all`, which is all
     // that is rendered. A sample that comes all the same, or beyond `all`, may find memory given
@@ -172,11 +175,12 @@ class GatherPoints {
     std::optional<float> distanceAlong(const Vec3f& direction, const Place& place,
                                        float farthest) const;
     float lookAround(const Place& place, float farthest, std::uint32_t pattern) const;
-    float descendedRadius(const Vec3f& position, const Vec3f& normal) const;
-    TwoRadii descended(const Vec3f& position, const Vec3f& normal, float clearance, float radius,
+    float refocusedRadius(const Vec3f& position, const Vec3f& normal) const;
+    TwoRadii refocused(const Vec3f& position, const Vec3f& normal, float clearance, float radius,
                        std::uint32_t pattern) const;
     Value gather(const Point& point, const Origin& origin, const Sampler& shared, std::size_t part,
                  std::uint64_t& rays) const;
+    Rgb sampleCaustics(const Point& point, const Origin& origin, const Cell& cell) const;
     Value compute(const Tile& tile, const Cell& cell, std::uint64_t& rays) const;
 
     const Scene& m_scene;

@@ -120,6 +120,7 @@ PhotonIntegrator::StillToFind PhotonIntegrator::addReflected(Vec2f screen, const
     StillToFind still;
     if (bsdf.has(Lobe::kDiffuse))
         still = readMaps(screen, surface, bsdf, throughput, scratch, result);
+    if (still.indirect && m_maps.lamps) sampleCaustics(surface, bsdf, throughput, sampler, result);
     if (reflectsLamps(bsdf)) {
         const DirectRadiance direct = estimateDirect(m_scene, m_lights, surface, bsdf, still.lamps,
                                                      branch.lampSamples, sampler, result.rays);
@@ -151,12 +152,12 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(Vec2f screen, const Sur
     if (m_maps.caustic)
         add(m_maps.caustic->irradiance(surface.position, normal, scratch), result.caustic);
     still.indirect = !kept && m_maps.global;
-    if (still.indirect && m_maps.descended) {
+    if (still.indirect && m_maps.refocused) {
         // Any pattern that depends on the place alone.
         const auto pattern = std::bit_cast<std::uint32_t>(surface.position.x) ^
                              std::bit_cast<std::uint32_t>(surface.position.y);
-        add(m_maps.points ? m_maps.points->descendedAt(place, indirect.clearance, pattern)
-                          : m_maps.descended->at(surface.position, normal, pattern),
+        add(m_maps.points ? m_maps.points->refocusedAt(place, indirect.clearance, pattern)
+                          : m_maps.refocused->at(surface.position, normal, pattern),
             result.indirect);
     }
     return still;
@@ -181,18 +182,33 @@ void PhotonIntegrator::followDiffuse(const Surface& surface, const Bsdf& bsdf, c
         if (!bsdf.sample(uLobe, u, sample)) continue;
         const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle,
                                branch.lampSamples};
-        gatherAlong(last, still, share * sample.weight / density, part, result);
+        gatherAlong(last, still, share * sample.weight / density, rays,
+                    dot(sample.direction, bsdf.facingShadingNormal()), part, result);
     }
+}
+
+// What a sample's own gather rays leave out of the light that caustics send straight to a surface.
+void PhotonIntegrator::sampleCaustics(const Surface& surface, const Bsdf& bsdf,
+                                      const Rgb& throughput, Sampler sampler,
+                                      SampleRadiance& result) const {
+    const std::uint32_t rays = ownGatherRays(m_maps.points);
+    const Vec3f& up = bsdf.facingGeometricNormal();
+    const VirtualLamps::Place place{surface.position, surface.position + up * surface.offset,
+                                    bsdf.facingShadingNormal(), up};
+    result.rays += VirtualLamps::raysBeside(rays);
+    result.indirect +=
+        throughput * bsdf.diffuse() * kInvPi * m_maps.lamps->sampled(place, rays, sampler.next1D());
 }
 
 // Light that the ray finds at a lamp is direct, the other strategy of its next-event estimation;
 // light found by way of other lobes is a caustic and its map's business.
 void PhotonIntegrator::gatherAlong(const LastScatter& last, StillToFind still, const Rgb& weight,
-                                   Sampler& sampler, SampleRadiance& result) const {
+                                   std::uint32_t rays, float cosine, Sampler& sampler,
+                                   SampleRadiance& result) const {
     const Ray ray = rayFrom(last.from, last.direction);
     Gathered found;
     if (still.indirect) {
-        found = finalGather(m_scene, *m_maps.global, ray, sampler);
+        found = finalGather(m_scene, {*m_maps.global, m_maps.lamps, rays}, ray, cosine, sampler);
         result.rays += found.rays;
         result.indirect += weight * found.radiance.wide;
         result.biasProbe += weight * (found.radiance.narrow - found.radiance.wide);

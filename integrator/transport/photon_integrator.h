@@ -19,9 +19,10 @@ namespace pm {
 // The maps of one pass; null where the plan has none.
 struct PhotonMaps {
     const IrradianceSites* global = nullptr;
-    const GatherPoints* points = nullptr;  // refers to global and descended
-    const SurfaceEstimate* descended = nullptr;
+    const GatherPoints* points = nullptr;  // refers to global, refocused and lamps
+    const SurfaceEstimate* refocused = nullptr;
     const CausticMap* caustic = nullptr;
+    const VirtualLamps* lamps = nullptr;
 };
 
 // Radiance from photon maps. Every light path belongs to one class, every class to one estimator
@@ -77,7 +78,10 @@ class PhotonIntegrator {
                        StillToFind still, float uLobe, const Sampler& directions,
                        SampleRadiance& result) const;
     void gatherAlong(const LastScatter& last, StillToFind still, const Rgb& weight,
-                     Sampler& sampler, SampleRadiance& result) const;
+                     std::uint32_t rays, float cosine, Sampler& sampler,
+                     SampleRadiance& result) const;
+    void sampleCaustics(const Surface& surface, const Bsdf& bsdf, const Rgb& throughput,
+                        Sampler sampler, SampleRadiance& result) const;
 
     const Scene& m_scene;
     const LightSampler& m_lights;

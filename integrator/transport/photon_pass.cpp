@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -17,10 +19,23 @@ namespace pm {
 
 namespace {
 
-// Descended light is smoother than caustics: so many times as many photons an estimate.
-constexpr std::uint32_t kDescendedPhotons = 2;
 // Gather rays go by a guide where that leaves less than this of their variance.
 constexpr double kGuidePays = 0.5;
+// Radius at which gather rays read caustics, over the typical one of those that are seen: rays blur
+// them anyway.
+constexpr float kRadiusOfGathered = 2.0f;
+
+std::vector<Photon> refocusedOf(const std::vector<Photon>& descended) {
+    std::vector<Photon> found;
+    std::ranges::copy_if(descended, std::back_inserter(found),
+                         [](const Photon& photon) { return photon.normal.isMarked(); });
+    return found;
+}
+
+std::vector<Photon> join(std::vector<Photon> photons, const std::vector<Photon>& others) {
+    photons.insert(photons.end(), others.begin(), others.end());
+    return photons;
+}
 
 }  // namespace
 
@@ -70,8 +85,8 @@ PhotonMaps PhotonPass::maps(std::uint32_t pass) const {
 
 std::uint64_t PhotonPass::PassMaps::memoryBytes() const {
     const auto bytesOf = [](const auto& part) { return part ? part->memoryBytes() : 0; };
-    return bytesOf(global) + bytesOf(sites) + bytesOf(points) + bytesOf(descendedPhotons) +
-           bytesOf(caustic);
+    return bytesOf(global) + bytesOf(sites) + bytesOf(points) + bytesOf(refocusedPhotons) +
+           bytesOf(caustic) + bytesOf(lamps);
 }
 
 // A map of so many photons was just built, as the last one of these.
@@ -85,7 +100,7 @@ void PhotonPass::noteBuilding(const PassMaps& maps, std::size_t photons) {
 // Patches and gather points grow as a pass is rendered.
 std::uint64_t PhotonPass::heldMapBytes() const {
     std::uint64_t held = m_patches->memoryBytes();
-    for (const auto* const radius : {m_causticRadius.get(), m_descendedRadius.get()})
+    for (const auto* const radius : {m_causticRadius.get(), m_refocusedRadius.get()})
         if (radius) held += radius->memoryBytes();
     for (const PassMaps& maps : m_held) held += maps.memoryBytes();
     return held;
@@ -151,37 +166,48 @@ void PhotonPass::chooseGatherRays(const PhotonMap& pilot, const CancelCheck& che
     m_raysOfPoint = m_plan.gatherRays;
     if (!m_plan.gatherRaysByPilot) return;
     const IrradianceSites sites(m_scene, pilot, m_globalRadius);
+    std::optional<VirtualLamps> lamps;
+    if (m_plan.descent > 0.0f)
+        lamps.emplace(m_scene, m_causticRadius->photons(),
+                      kRadiusOfGathered * m_causticRadius->typical(), nullptr, 1.0f,
+                      m_settings.seed, check);
+    const GatherEnds ends{sites, lamps ? &*lamps : nullptr, m_plan.gatherRays};
     m_raysOfPoint = gatherRaysFor(
-        gatherSpread(m_scene, m_camera, m_lights, sites, m_settings, check), m_plan.gatherRays);
+        gatherSpread(m_scene, m_camera, m_lights, ends, m_settings, check), m_plan.gatherRays);
     const bool always = m_settings.plan == PlanKind::kEverything;
     if (m_raysOfPoint <= m_plan.gatherRays && !always) return;
     auto guide = std::make_unique<GatherGuide>(pilot, m_globalRadius);
     const auto [byCosine, byGuide] =
-        gatherRivals(m_scene, m_camera, m_lights, sites, *guide, m_settings, check);
+        gatherRivals(m_scene, m_camera, m_lights, ends, *guide, m_settings, check);
     if (byGuide < kGuidePays * byCosine || always) m_guide = std::move(guide);
+}
+
+// Of caustics and of refocused light. Returns the pilot's descended photons.
+std::vector<Photon> PhotonPass::findCausticRadii(float fallback, Control& control) {
+    if (!m_source) aim(control);
+    const CancelCheck check(control.cancelled);
+    PhotonTraceResult pilot =
+        trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), 0, control);
+    m_causticRadius = std::make_unique<PilotRadius>(std::move(pilot.photons),
+                                                    m_settings.estimatePhotons, fallback, check);
+    if (m_plan.descent > 0.0f)
+        m_refocusedRadius = std::make_unique<PilotRadius>(
+            refocusedOf(pilot.descended), m_settings.estimatePhotons, fallback, check);
+    return std::move(pilot.descended);
 }
 
 void PhotonPass::findRadii(Control& control) {
     // Where a pilot finds next to nothing, estimates reach a hundredth of the scene.
     const auto fallback = static_cast<float>(0.01 * m_scene.radius());
-    const std::uint32_t estimatePhotons = m_settings.estimatePhotons;
     const CancelCheck check(control.cancelled);
+    std::vector<Photon> global;
+    if (m_plan.globalMap)
+        global = trace(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0, control).photons;
+    if (m_plan.causticMap) global = join(std::move(global), findCausticRadii(fallback, control));
     if (m_plan.globalMap) {
-        const PilotRadius pilot(
-            trace(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0, control).photons,
-            estimatePhotons, fallback, check);
+        const PilotRadius pilot(std::move(global), m_settings.estimatePhotons, fallback, check);
         m_globalRadius = pilot.typical();
         chooseGatherRays(pilot.photons(), check);
-    }
-    if (m_plan.causticMap) {
-        if (!m_source) aim(control);
-        PhotonTraceResult pilot =
-            trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), 0, control);
-        m_causticRadius = std::make_unique<PilotRadius>(std::move(pilot.photons), estimatePhotons,
-                                                        fallback, check);
-        if (m_plan.descent > 0.0f)
-            m_descendedRadius = std::make_unique<PilotRadius>(
-                std::move(pilot.descended), kDescendedPhotons * estimatePhotons, fallback, check);
     }
     // By the sites' radius, so that they know nothing of caustics.
     const bool byCaustics = m_causticRadius && !m_plan.globalMap;
@@ -190,7 +216,8 @@ void PhotonPass::findRadii(Control& control) {
     m_haveRadii = true;
 }
 
-void PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
+// Returns the descended photons, which gather rays read beside the global ones.
+std::vector<Photon> PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
     PhotonTraceResult traced =
         trace(PhotonKind::kCaustic, m_plan.causticPhotons, maps.pass, control);
     const Stopwatch watch;
@@ -201,42 +228,49 @@ void PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
                                                 m_patches.get(), check);
     noteBuilding(maps, landed);
     if (m_plan.descent > 0.0f) {
-        maps.descendedPhotons = std::make_unique<PhotonMap>(std::move(traced.descended), check);
-        maps.descended = std::make_unique<SurfaceEstimate>(m_scene, *maps.descendedPhotons,
-                                                           m_descendedRadius->typical() * factor);
-        noteBuilding(maps, maps.descendedPhotons->size());
+        const float radius = kRadiusOfGathered * m_causticRadius->typical();
+        maps.lamps = std::make_unique<VirtualLamps>(m_scene, maps.caustic->photons(),
+                                                    radius * factor, patchesOfSites(radius), factor,
+                                                    combineBits(m_settings.seed, maps.pass), check);
+        maps.refocusedPhotons = std::make_unique<PhotonMap>(refocusedOf(traced.descended), check);
+        maps.refocused = std::make_unique<SurfaceEstimate>(m_scene, *maps.refocusedPhotons,
+                                                           m_refocusedRadius->typical() * factor);
+        noteBuilding(maps, maps.refocusedPhotons->size());
     }
     const std::lock_guard lock(m_mutex);
     m_mapSeconds += watch.seconds();
+    return std::move(traced.descended);
 }
 
 // Patches pay where one serves many sites and most surfaces are flat across an estimate's disc;
 // among small triangles rays of each site's own cost less.
-bool PhotonPass::sitesHavePatches() const {
-    const auto radius = static_cast<double>(m_globalRadius);
-    return m_scene.meanTriangleArea() > std::numbers::pi * radius * radius;
+const SurfacePatches* PhotonPass::patchesOfSites(float radius) const {
+    const double disc =
+        std::numbers::pi * static_cast<double>(radius) * static_cast<double>(radius);
+    return m_scene.meanTriangleArea() > disc ? m_patches.get() : nullptr;
 }
 
-void PhotonPass::buildIndirect(PassMaps& maps, Control& control) {
+void PhotonPass::buildIndirect(PassMaps& maps, std::vector<Photon> descended, Control& control) {
     PhotonTraceResult traced = trace(PhotonKind::kGlobal, m_plan.globalPhotons, maps.pass, control);
     const Stopwatch watch;
     const float factor = radiusFactor(maps.pass);
-    maps.global =
-        std::make_unique<PhotonMap>(std::move(traced.photons), CancelCheck(control.cancelled));
+    std::vector<Photon> photons = join(std::move(traced.photons), descended);
+    descended = {};
+    maps.global = std::make_unique<PhotonMap>(std::move(photons), CancelCheck(control.cancelled));
     noteBuilding(maps, maps.global->size());
-    maps.sites =
-        std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor,
-                                          sitesHavePatches() ? m_patches.get() : nullptr, factor);
-    const GatherPoints::Request request{m_settings.width,
-                                        m_settings.height,
-                                        m_plan.gatherSpacing,
-                                        m_raysOfPoint,
-                                        factor,
-                                        m_settings.seed,
-                                        maps.pass,
-                                        maps.descended.get(),
-                                        m_descendedRadius.get(),
-                                        m_guide.get()};
+    maps.sites = std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor,
+                                                   patchesOfSites(m_globalRadius), factor);
+    const GatherPoints::Request request{.width = m_settings.width,
+                                        .height = m_settings.height,
+                                        .spacing = m_plan.gatherSpacing,
+                                        .rays = m_raysOfPoint,
+                                        .radiusFactor = factor,
+                                        .seed = m_settings.seed,
+                                        .pass = maps.pass,
+                                        .caustics = maps.lamps.get(),
+                                        .refocused = maps.refocused.get(),
+                                        .refocusedRadius = m_refocusedRadius.get(),
+                                        .guide = m_guide.get()};
     maps.points = std::make_unique<GatherPoints>(m_scene, m_camera, *maps.sites, request);
     const std::lock_guard lock(m_mutex);
     m_mapSeconds += watch.seconds();
@@ -250,8 +284,9 @@ void PhotonPass::buildMaps(std::uint32_t pass, Control& control) {
         m_peakMapBytes = peakMapBytes();
         m_patches->makeRoom();
     }
-    if (m_plan.causticMap) buildCaustics(maps, control);
-    if (m_plan.globalMap) buildIndirect(maps, control);
+    std::vector<Photon> descended;
+    if (m_plan.causticMap) descended = buildCaustics(maps, control);
+    if (m_plan.globalMap) buildIndirect(maps, std::move(descended), control);
     const std::lock_guard lock(m_mutex);
     m_held.push_back(std::move(maps));
 }

@@ -71,23 +71,25 @@ class PhotonPass {
         std::uint32_t pass = 0;
         std::unique_ptr<PhotonMap> global;
         std::unique_ptr<IrradianceSites> sites;  // refers to global
-        std::unique_ptr<PhotonMap> descendedPhotons;
-        std::unique_ptr<SurfaceEstimate> descended;  // refers to descendedPhotons
-        std::unique_ptr<GatherPoints> points;        // refers to sites and descended
+        std::unique_ptr<PhotonMap> refocusedPhotons;
+        std::unique_ptr<SurfaceEstimate> refocused;  // refers to refocusedPhotons
         std::unique_ptr<CausticMap> caustic;         // refers to m_causticRadius and m_patches
+        std::unique_ptr<VirtualLamps> lamps;         // refers to caustic
+        std::unique_ptr<GatherPoints> points;        // refers to sites, refocused and lamps
 
         PhotonMaps view() const {
-            return {sites.get(), points.get(), descended.get(), caustic.get()};
+            return {sites.get(), points.get(), refocused.get(), caustic.get(), lamps.get()};
         }
         std::uint64_t memoryBytes() const;
     };
     // Photons of one kind, traced, or read where there is a source of them.
     PhotonTraceResult trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
                             Control& control);
-    void buildCaustics(PassMaps& maps, Control& control);
-    bool sitesHavePatches() const;
-    void buildIndirect(PassMaps& maps, Control& control);
+    std::vector<Photon> buildCaustics(PassMaps& maps, Control& control);
+    const SurfacePatches* patchesOfSites(float radius) const;
+    void buildIndirect(PassMaps& maps, std::vector<Photon> descended, Control& control);
     void aim(Control& control);
+    std::vector<Photon> findCausticRadii(float fallback, Control& control);
     void chooseGatherRays(const PhotonMap& pilot, const CancelCheck& check);
     void findRadii(Control& control);
     void buildMaps(std::uint32_t pass, Control& control);
@@ -111,7 +113,7 @@ class PhotonPass {
     std::uint32_t m_raysOfPoint = 0;       // gather rays; 0 until the radii are known
     std::unique_ptr<GatherGuide> m_guide;  // of gather rays; null: by the cosine alone
     std::unique_ptr<AimedEmission> m_aim;  // of caustic photons
-    std::unique_ptr<PilotRadius> m_causticRadius, m_descendedRadius;
+    std::unique_ptr<PilotRadius> m_causticRadius, m_refocusedRadius;
     std::unique_ptr<SurfacePatches> m_patches;  // filled as the passes go on
 
     mutable std::mutex m_mutex;    // of what follows

@@ -17,6 +17,7 @@
 #include "integrator/transport/gather_points.h"
 #include "integrator/transport/lamp_samples.h"
 #include "integrator/transport/pass_radius.h"
+#include "integrator/transport/virtual_lamps.h"
 
 namespace pm {
 
@@ -31,9 +32,12 @@ constexpr std::uint32_t kAutoGatherRays = 32;
 // Gather points: one for 2.5 x 2.5 pixels, but no more than these in a frame.
 constexpr float kGatherSpacing = 2.5f;
 constexpr double kMostGatherPoints = 1 << 20;
-constexpr float kAutoDescent = 1.0f;
+// Of the caustic photons: they are then as many as the global ones, unless told otherwise.
+constexpr float kAutoDescent = 0.2f;
 // Landings of a photon: 1/(1 - albedo) for an albedo of 0.75.
 constexpr double kExpectedLandings = 4;
+// Of caustic photons, those that the caustics send on by way of other lobes; at most as a rule.
+constexpr double kExpectedRefocused = 0.5;
 
 // Frames of so many pixels go bucket by bucket nearly everywhere, with the maps of up to 8 passes:
 // those may take this. By the frame alone: not by the memory there is, nor the number of passes,
@@ -191,8 +195,10 @@ void planCausticMap(const SceneTraits& traits, Plan& plan) {
                                     : "though every surface is diffuse"));
     if (!plan.globalMap) return;
     plan.reasons.push_back(fmt::format(
-        "light descended from caustics: {:.0f} % of their photons are followed on, for a "
-        "wide density estimate; gather rays would have to find the caustics",
+        "light descended from caustics: they are lamps to the gather points, which find them by "
+        "rays to some of their photons, weighted against gather rays; what they send by way of "
+        "other lobes has a density estimate; {:.0f} % of their photons are followed on for the "
+        "rest",
         plan.descent * 100.0f));
 }
 
@@ -260,15 +266,25 @@ std::uint64_t Plan::globalLandings() const {
 
 std::uint64_t Plan::descendedLandings() const {
     return static_cast<std::uint64_t>(static_cast<double>(causticPhotons) *
-                                      static_cast<double>(descent) * landingsOfPhoton);
+                                      static_cast<double>(descent) * landingsOfPhoton) +
+           refocusedLandings();
+}
+
+std::uint64_t Plan::refocusedLandings() const {
+    return descent > 0.0f ? static_cast<std::uint64_t>(static_cast<double>(causticPhotons) *
+                                                       kExpectedRefocused)
+                          : 0;
 }
 
 std::uint64_t Plan::heldMapBytes(std::uint32_t passes) const {
-    const std::uint64_t caustics = causticLandings() + descendedLandings();
+    const std::uint64_t gathered = globalLandings() + descendedLandings();
+    const std::uint64_t caustics = causticLandings() + refocusedLandings();
     std::uint64_t bytes = caustics / PilotRadius::kPilotShare * PhotonMap::kHeldBytesPerPhoton;
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
-        bytes += (globalLandings() + caustics) * PhotonMap::kHeldBytesPerPhoton;
-        if (globalMap) bytes += IrradianceSites::memoryBytes(globalLandings(), radiusFactor(pass));
+        const float factor = radiusFactor(pass);
+        bytes += (gathered + caustics) * PhotonMap::kHeldBytesPerPhoton;
+        if (globalMap) bytes += IrradianceSites::memoryBytes(gathered, factor);
+        if (descent > 0.0f) bytes += VirtualLamps::memoryBytes(causticLandings(), factor);
     }
     return bytes;
 }
@@ -281,13 +297,16 @@ std::uint64_t Plan::buildingMapBytes() const {
     const auto beyond = [](std::uint64_t building, std::uint64_t after) {
         return building > after ? building - after : 0;
     };
-    const std::uint64_t sites = globalMap ? IrradianceSites::memoryBytes(globalLandings()) : 0;
-    const std::uint64_t global = globalLandings() * kHeld + sites;
-    const std::uint64_t descended = descendedLandings();
-    return std::max(
-        {beyond(globalLandings() * kEach, sites),
-         beyond(causticLandings() * kEach + descended * sizeof(Photon), global + descended * kHeld),
-         beyond(descended * kEach, global)});
+    const std::uint64_t descended = descendedLandings(), refocused = refocusedLandings();
+    const std::uint64_t gathered = globalLandings() + descended;
+    const std::uint64_t sites = globalMap ? IrradianceSites::memoryBytes(gathered) : 0;
+    const std::uint64_t lamps = descent > 0.0f ? VirtualLamps::memoryBytes(causticLandings()) : 0;
+    const std::uint64_t global = gathered * kHeld + sites;
+    return std::max({beyond(causticLandings() * kEach + descended * sizeof(Photon),
+                            lamps + refocused * kHeld + global),
+                     beyond(refocused * kEach + descended * sizeof(Photon), global),
+                     beyond(2 * gathered * sizeof(Photon), global),
+                     beyond(gathered * kEach, sites)});
 }
 
 std::uint64_t Plan::globalPilotPhotons() const {

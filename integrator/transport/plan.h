@@ -21,8 +21,8 @@ struct Plan {
     bool causticMap = false;           // light can reach a diffuse surface by way of a specular one
     std::uint64_t globalPhotons = 0;   // emitted a pass for the global map
     std::uint64_t causticPhotons = 0;  // emitted a pass for the caustic map alone
-    // Share of the caustic photons that is followed on, for a density estimate of the light
-    // descended from caustics; 0: that light is left to the gather rays.
+    // Share of the caustic photons that is followed on, as light descended from caustics, which
+    // are lamps to gather points (VirtualLamps); 0: global photons bring that light, too.
     float descent = 0.0f;
     float gatherSpacing = 0.0f;  // of gather points on the screen, pixels
     // Of each gather point, or where a pilot finds how many pay: half, once, twice or four times
@@ -46,7 +46,8 @@ struct Plan {
     }
     std::uint64_t globalLandings() const;
     std::uint64_t causticLandings() const { return causticPhotons; }  // one of each
-    std::uint64_t descendedLandings() const;
+    std::uint64_t descendedLandings() const;                          // refocused ones included
+    std::uint64_t refocusedLandings() const;
 
     // Estimated memory where the maps of several passes are held: of the first so many passes,
     // pilots included, gather points not; and what comes on top while a pass's maps are made.

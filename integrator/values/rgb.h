@@ -41,6 +41,10 @@ struct Rgb {
 constexpr bool isBlack(const Rgb& c) {
     return c.r == 0.0f && c.g == 0.0f && c.b == 0.0f;
 }
+// Over the channels; in double, as many are summed.
+constexpr double channelSum(const Rgb& c) {
+    return static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b);
+}
 constexpr float maxChannel(const Rgb& c) {
     return std::max(c.r, std::max(c.g, c.b));
 }

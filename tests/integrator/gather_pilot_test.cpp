@@ -60,7 +60,8 @@ struct WallFoot {
         RenderSettings settings = smallFrame(48, 48, IntegratorKind::kPhoton, 1, 2);
         settings.seed = seed;
         const IrradianceSites sites(*scene, map, 0.1f);
-        return gatherSpread(*scene, Camera(*scene, 48, 48), LightSampler(*scene), sites, settings);
+        return gatherSpread(*scene, Camera(*scene, 48, 48), LightSampler(*scene), {sites},
+                            settings);
     }
 };
 
@@ -121,7 +122,7 @@ TEST(GatherPilot, NothingIsGatheredNothingDiffers) {
     const auto scene = maker.build();
     const PhotonMap map(WallFoot::photons());
     const IrradianceSites sites(*scene, map, 0.1f);
-    EXPECT_EQ(0.0, gatherSpread(*scene, Camera(*scene, 48, 48), LightSampler(*scene), sites,
+    EXPECT_EQ(0.0, gatherSpread(*scene, Camera(*scene, 48, 48), LightSampler(*scene), {sites},
                                 smallFrame(48, 48, IntegratorKind::kPhoton, 1, 2)));
 }
 

@@ -64,11 +64,18 @@ std::vector<Room> tightRooms() {
     SceneMaker caustics = lit();
     caustics.sphere({0.3, -0.5, 0.2}, 0.4, caustics.material(glass()));
     caustics.box({-0.7, -1, -0.3}, {-0.2, -0.5, 0.2}, white(caustics), false);
-    return {{"corners", corners},
-            {"curved", curved},
-            {"small things", small},
-            {"gaps", gaps},
-            {"caustics", caustics}};
+    // All light is descended, and every surface has a second lobe.
+    SceneMaker bulb;
+    MaterialDescription both;
+    both.diffuse = Rgb(0.3f);
+    both.glossy = Rgb(0.4f);
+    both.glossyExponent = 20;
+    bulb.box({-1, -1, -1}, {1, 1, 1}, bulb.material(both), true);
+    bulb.sphere({0, 0.3, 0}, 0.1, bulb.diffuse({}, Rgb(50.0f)));
+    bulb.sphere({0, 0.3, 0}, 0.3, bulb.material(glass()));
+    bulb.camera({0, 0, 0.95}, {0, 0, 0}, {0, 1, 0}, 80);
+    return {{"corners", corners}, {"curved", curved},     {"small things", small},
+            {"gaps", gaps},       {"caustics", caustics}, {"glossy bulb", bulb}};
 }
 
 // The indirect layer, its estimated bias taken off: all that is compared here, in kIndirect.
@@ -166,10 +173,10 @@ void addHalf(std::vector<Photon>& photons, float x0, std::size_t count, std::uin
     }
 }
 
-// Descended light on a plane, 16 times as bright on its left half: by radii from place to place an
+// Refocused light on a plane, 16 times as bright on its left half: by radii from place to place an
 // estimate holds as many photons, so is as noisy, on either half; by one for all, the twin, the dim
 // half is 4 times as noisy. Photons are independent, so theory has the means (analytic F1).
-TEST(GatherPoints, DescendedLightIsAsEvenWhereItIsThin) {
+TEST(GatherPoints, RefocusedLightIsAsEvenWhereItIsThin) {
     constexpr std::size_t kDim = 8'000;
     constexpr std::uint32_t kPhotons = 100;
     SceneMaker maker;
@@ -197,8 +204,8 @@ TEST(GatherPoints, DescendedLightIsAsEvenWhereItIsThin) {
         const PhotonMap map(std::move(photons));
         const SurfaceEstimate estimate(*scene, map, radius.typical());
         GatherPoints::Request request{16, 16, 2.5f, 1};
-        request.descended = &estimate;
-        request.descendedRadius = &radius;
+        request.refocused = &estimate;
+        request.refocusedRadius = &radius;
         const GatherPoints points(*scene, camera, sites, request);
         for (int i = 0; i < 49; ++i) {
             const float x = 0.26f + 0.08f * static_cast<float>(i % 7);
@@ -211,7 +218,7 @@ TEST(GatherPoints, DescendedLightIsAsEvenWhereItIsThin) {
                     m.sum += value, m.squares += value * value, ++m.count;
                 };
                 const GatherPoints::Place place{{}, at, normal, normal, 1e-6f};
-                add(moments[0], points.descendedAt(place, kNothingNear, 1));
+                add(moments[0], points.refocusedAt(place, kNothingNear, 1));
                 add(moments[1], estimate.at(at, normal, 1));
             }
         }

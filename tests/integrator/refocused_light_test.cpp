@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-// Light descended from caustics, estimated where a camera sample has no gather point in reach.
+// Refocused light, estimated where a camera sample has no gather point in reach.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -15,10 +15,10 @@
 namespace pm::test {
 namespace {
 
-// Descended light on a strip beside a wall, none beyond: straight above the strip there is nothing,
+// Refocused light on a strip beside a wall, none beyond: straight above the strip there is nothing,
 // and its estimate has to be as narrow as the wall is near. One as wide as in the open, the twin,
 // finds less than half.
-TEST(GatherPoints, DescendedLightBesideAWall) {
+TEST(GatherPoints, RefocusedLightBesideAWall) {
     constexpr std::size_t kPhotons = 40'000;
     constexpr double kStrip = 0.2;
     SceneMaker maker;
@@ -48,8 +48,8 @@ TEST(GatherPoints, DescendedLightBesideAWall) {
     const PhotonMap map(strip(kPhotons, 2));
     const SurfaceEstimate estimate(*scene, map, radius.typical());
     GatherPoints::Request request{16, 16, 2.5f, 1};
-    request.descended = &estimate;
-    request.descendedRadius = &radius;
+    request.refocused = &estimate;
+    request.refocusedRadius = &radius;
     const GatherPoints points(*scene, camera, sites, request);
     const double irradiance = kPhotons * 1e-4 / (2 * kStrip);
     double known = 0, lookedFor = 0, open = 0;
@@ -61,9 +61,9 @@ TEST(GatherPoints, DescendedLightBesideAWall) {
         const auto share = [&](const TwoRadii& e) {
             return static_cast<double>(e.wide.r) / irradiance / kPlaces;
         };
-        known += share(points.descendedAt(there, 0.05f, pattern));
+        known += share(points.refocusedAt(there, 0.05f, pattern));
         lookedFor +=
-            share(points.descendedAt(there, std::numeric_limits<float>::infinity(), pattern));
+            share(points.refocusedAt(there, std::numeric_limits<float>::infinity(), pattern));
         open += share(estimate.withRadius(radius.typical()).at(at, normal, pattern));
     }
     fmt::print("    beside a wall: {:.3f} and {:.3f} of what is there, as in the open {:.3f}\n",
