@@ -218,8 +218,8 @@ TEST(Passes, MemoryDoesNotGrow) {
         residentBefore = residentBytes();
     }
     EXPECT_GT(mapsBefore, 1'000'000u);
-    // But for patches of surfaces, finer as radii shrink, at most 32 MiB of them: a tenth of what
-    // 24 passes' maps would add.
+    // But for patches of surfaces, finer as radii shrink, at most 32 MiB of them; far less than
+    // what the maps of 24 passes take.
     EXPECT_LT(renderer.counters().peakMapBytes, mapsBefore + 4'000'000);
     if (residentBefore > 0) {
         EXPECT_LT(residentBytes(), residentBefore + 8'000'000);
