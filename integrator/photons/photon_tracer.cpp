@@ -170,9 +170,10 @@ class PhotonWalk {
     // What caustics send straight to a surface is even: the share that is followed carries it.
     void landDescended(const Way& way, const Surface& surface, const Bsdf& bsdf, const Vec3f& out,
                        const Rgb& flux, Batch& batch) const {
-        if (way.stage == Stage::kDescended && !way.isFollowed) return;
-        const float scale = way.stage == Stage::kDescended ? 1.0f / m_request.descent : 1.0f;
-        store(surface, bsdf, out, flux * scale, batch, batch.descended);
+        const bool isStraight = way.stage == Stage::kDescended;
+        if (isStraight && !way.isFollowed) return;
+        store(surface, bsdf, out, isStraight ? flux * (1.0f / m_request.descent) : flux, batch,
+              batch.descended);
         if (way.stage == Stage::kRefocused) batch.descended.back().normal.mark();
     }
 

@@ -183,14 +183,19 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
     return {{irradiance(0), irradiance(3)}, lamps / static_cast<float>(count), clearance};
 }
 
+// The same of all cells that share directions and lamps.
+std::size_t GatherPoints::sequenceOf(const Cell& cell) const {
+    return (cell.row / kShared) * static_cast<std::size_t>(m_tiles.columns()) +
+           cell.column / kShared;
+}
+
 // The points that share a sequence have different lamps each, neighbours the most different ones.
 Rgb GatherPoints::sampleCaustics(const Point& point, const Origin& origin, const Cell& cell) const {
-    const auto columns = static_cast<std::size_t>(m_tiles.columns());
-    const std::size_t sequence = (cell.row / kShared) * columns + cell.column / kShared;
     static_assert(kShared == 4);
     const auto part = static_cast<std::uint32_t>((cell.column & 1) | (cell.row & 1) << 1 |
                                                  (cell.column & 2) << 1 | (cell.row & 2) << 2);
-    Sampler sampler(m_request.seed, streamOf(m_request.pass), kLampSequences + sequence, part);
+    Sampler sampler(m_request.seed, streamOf(m_request.pass), kLampSequences + sequenceOf(cell),
+                    part);
     const VirtualLamps::Place place{point.position,
                                     point.position + origin.geometricNormal * origin.offset,
                                     point.normal, origin.geometricNormal};
@@ -200,7 +205,7 @@ Rgb GatherPoints::sampleCaustics(const Point& point, const Origin& origin, const
 GatherPoints::Value GatherPoints::compute(const Tile& tile, const Cell& cell,
                                           std::uint64_t& rays) const {
     const auto columns = static_cast<std::size_t>(m_tiles.columns());
-    const std::size_t sequence = (cell.row / kShared) * columns + cell.column / kShared;
+    const std::size_t sequence = sequenceOf(cell);
     const std::size_t part = (cell.row % kShared) * kShared + cell.column % kShared;
     const Sampler shared(m_request.seed, streamOf(m_request.pass), kRaySequences + sequence, 0);
     const Origin& origin = tile.origins[cell.inTile()];

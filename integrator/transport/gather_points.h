@@ -180,6 +180,7 @@ class GatherPoints {
                        std::uint32_t pattern) const;
     Value gather(const Point& point, const Origin& origin, const Sampler& shared, std::size_t part,
                  std::uint64_t& rays) const;
+    std::size_t sequenceOf(const Cell& cell) const;
     Rgb sampleCaustics(const Point& point, const Origin& origin, const Cell& cell) const;
     Value compute(const Tile& tile, const Cell& cell, std::uint64_t& rays) const;
 
