@@ -222,8 +222,8 @@ bool Bsdf::sample(float uLobe, Vec2f u, BsdfSample& sample) const {
     return take(static_cast<Lobe>(i), m_probability[i], u, sample);
 }
 
-bool Bsdf::follow(Lobe lobe, BsdfSample& sample) const {
-    return has(lobe) && take(lobe, 1.0f, {}, sample);
+bool Bsdf::follow(Lobe lobe, BsdfSample& sample, Vec2f u) const {
+    return has(lobe) && take(lobe, 1.0f, u, sample);
 }
 
 bool Bsdf::take(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const {

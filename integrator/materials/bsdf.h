@@ -52,6 +52,8 @@ class Bsdf {
          const Rgb& carried);
 
     bool has(Lobe lobe) const { return m_probability[index(lobe)] > 0.0f; }
+    // What the lobe reflects or transmits; at a refraction without its factor 1 / etaSquared().
+    const Rgb& reflectance(Lobe lobe) const { return m_reflectance[index(lobe)]; }
     // Nothing but Lambertian reflection, or less.
     bool isDiffuseOnly() const { return m_diffuseOnly; }
     // Mean over channels of what could be reflected or transmitted is 0.
@@ -59,9 +61,10 @@ class Bsdf {
 
     // False: absorbed (photons), or the sampled direction has no value.
     bool sample(float uLobe, Vec2f u, BsdfSample& sample) const;
-    // The same for a delta lobe that is taken for sure, so that no choice is in the weight. False
-    // also where the surface has no such lobe.
-    bool follow(Lobe lobe, BsdfSample& sample) const;
+    // The same for a lobe that is taken for sure, so that no choice is in the weight; it is in the
+    // density of one that is not delta. False also where the surface has no such lobe. u: a delta
+    // lobe needs none.
+    bool follow(Lobe lobe, BsdfSample& sample, Vec2f u = {}) const;
 
     // f |cos| of a lobe that is not delta, for light from `in` (unit, away from the surface).
     Rgb evaluate(Lobe lobe, const Vec3f& in) const;
@@ -69,7 +72,7 @@ class Bsdf {
     float pdfSolidAngle(Lobe lobe, const Vec3f& in) const;
 
     // Lambertian reflectance; reflected radiance = diffuse() * irradiance / pi.
-    const Rgb& diffuse() const { return m_reflectance[index(Lobe::kDiffuse)]; }
+    const Rgb& diffuse() const { return reflectance(Lobe::kDiffuse); }
     // All that is reflected or transmitted, for the albedo layer.
     Rgb albedo() const;
 

@@ -13,11 +13,12 @@ constexpr int kEventsBeforeRoulette = 5;
 }  // namespace
 
 bool PathWalk::scatter(const Surface& surface, const Bsdf& bsdf, const BsdfSample& sample,
-                       Sampler& sampler) {
+                       Sampler& sampler, bool isPart) {
     followLobe(bsdf, sample);
-    if (++m_events == kMostPathEvents) return false;
+    if (isPart) m_whole = std::min(m_whole, amount());
+    if (++m_events == kMostPathEvents || amount() == 0.0f) return false;
     if (m_events >= kEventsBeforeRoulette) {
-        const float survival = std::min(1.0f, amount());
+        const float survival = std::min(1.0f, amount() / m_whole);
         if (survival < 1.0f) {
             if (sampler.next1D() >= survival) return false;
             throughput *= 1.0f / survival;

@@ -36,12 +36,14 @@ struct PathWalk : Carried {
     explicit PathWalk(const Ray& first) : ray(first) {}
 
     // Goes on along a sampled direction, by Russian roulette after the first events. False: the
-    // path ends here. No random number is drawn where the path is sure to go on.
+    // path ends here. No random number is drawn where the path is sure to go on. isPart: it divides
+    // here, and roulette takes what this part carries for all there is.
     bool scatter(const Surface& surface, const Bsdf& bsdf, const BsdfSample& sample,
-                 Sampler& sampler);
+                 Sampler& sampler, bool isPart = false);
 
   private:
     int m_events = 0;
+    float m_whole = 1.0f;
 };
 
 // A surface, not black, that a camera path has met.

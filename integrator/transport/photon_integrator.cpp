@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
+#include <optional>
 
 #include "integrator/sampling/warps.h"
 #include "integrator/transport/final_gather.h"
@@ -20,12 +22,20 @@ constexpr float kLargeLampShare = 0.02f;
 // more where the points have many.
 constexpr std::uint32_t kFewestOwnRays = 4, kRaysOfPointToAnOwnRay = 8;
 
-// Camera paths divide at the first glass they meet, where both parts carry more than this.
-constexpr float kLeastDivided = 0.001f;
+// Of the lobes of a surface, camera paths follow all those that carry this or more, 1 where they
+// begin.
+constexpr float kLeastDivided = 0.03f;
 
 std::uint32_t ownGatherRays(const GatherPoints* points) {
     return points ? std::max(kFewestOwnRays, points->raysOfPoint() / kRaysOfPointToAnOwnRay)
                   : kFewestOwnRays;
+}
+
+// Russian roulette is that of PathWalk where a path meets one lobe, and of its parts elsewhere.
+bool isDivided(const Bsdf& bsdf) {
+    int lobes = 0;
+    for (std::size_t i = 0; i < kLobeCount; ++i) lobes += bsdf.has(static_cast<Lobe>(i));
+    return lobes > 1;
 }
 
 bool reflectsLamps(const Bsdf& bsdf) {
@@ -39,100 +49,115 @@ SampleRadiance PhotonIntegrator::sample(Vec2f screen, const Ray& ray, Sampler& s
     SampleRadiance result;
     Branch branch{PathWalk(ray), {}, {}, m_lampSamples};
     branch.last.direction = ray.direction;
-    std::optional<Branch> reflected;
-    follow(screen, branch, &reflected, sampler, scratch, withSeenLamps, result);
-    if (reflected) follow(screen, *reflected, nullptr, sampler, scratch, withSeenLamps, result);
+    follow(branch, true, {screen, sampler, scratch, withSeenLamps, result});
     return result;
 }
 
-// What glass reflects is a few per cent: chosen that rarely, the image of a bright caustic would be
-// a speck.
-bool PhotonIntegrator::divide(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
-                              std::optional<Branch>& reflected, BsdfSample& refraction,
-                              Sampler& sampler) {
-    BsdfSample reflection;
-    for (const Lobe other : {Lobe::kDiffuse, Lobe::kGlossy, Lobe::kStraight})
-        if (bsdf.has(other)) return false;
-    if (!bsdf.follow(Lobe::kReflection, reflection) || !bsdf.follow(Lobe::kRefraction, refraction))
-        return false;
-    for (const BsdfSample& sample : {reflection, refraction})
-        if (maxChannel(branch.path.throughput * sample.weight) < kLeastDivided) return false;
-    reflected = branch;
-    if (!reflected->goOn(surface, bsdf, reflection, sampler)) reflected.reset();
-    return true;
+// Chosen by chance, what glass reflects, a few per cent, would be grain in all that is seen through
+// it. So all lobes that carry enough are followed, and of those that carry less, few with more.
+// Systematic sampling: their probabilities laid end to end from a random start, those are followed
+// that reach a whole number.
+PhotonIntegrator::Survival PhotonIntegrator::divide(const Bsdf& bsdf, const Carried& path,
+                                                    bool diffuse, Sampler& sampler) {
+    const bool divided = isDivided(bsdf);
+    Survival survival{};
+    for (std::size_t i = 0; i < kLobeCount; ++i) {
+        const auto lobe = static_cast<Lobe>(i);
+        if (!bsdf.has(lobe) || (lobe == Lobe::kDiffuse && !diffuse)) continue;
+        const float amount = maxChannel(path.throughput * bsdf.reflectance(lobe)) * path.etaScale;
+        survival[i] = divided ? std::min(1.0f, amount / kLeastDivided) : 1.0f;
+    }
+    if (!divided) return survival;
+    double end = sampler.next1D();
+    for (float& probability : survival) {
+        const double begin = end;
+        end += probability;
+        if (std::floor(begin) == std::floor(end)) probability = 0.0f;
+    }
+    return survival;
 }
 
 bool PhotonIntegrator::Branch::goOn(const Surface& surface, const Bsdf& bsdf,
-                                    const BsdfSample& sample, Sampler& sampler) {
-    if (!path.scatter(surface, bsdf, sample, sampler)) return false;
+                                    const BsdfSample& sample, bool isPart, Sampler& sampler) {
+    if (!path.scatter(surface, bsdf, sample, sampler, isPart)) return false;
     state.scatter(sample.lobe);
     last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle, lampSamples};
     return true;
 }
 
-void PhotonIntegrator::follow(Vec2f screen, Branch& branch, std::optional<Branch>* reflected,
-                              Sampler& sampler, NearestPhotons& scratch, bool withSeenLamps,
-                              SampleRadiance& result) const {
-    auto& [path, state, last, lampSamples] = branch;
-    for (bool first = reflected != nullptr;; first = false) {
+void PhotonIntegrator::follow(Branch& branch, bool first, const Tree& tree) const {
+    const PathWalk& path = branch.path;
+    SampleRadiance& result = tree.result;
+    for (;; first = false) {
         Surface surface;
         ++result.rays;
+        const PathClass found = branch.state.classify();
         if (!m_scene.intersect(path.ray, surface)) {
-            result.of(state.classify()) +=
-                path.throughput * weightedFarLight(m_scene, m_lights, last);
+            result.of(found) += path.throughput * weightedFarLight(m_scene, m_lights, branch.last);
             return;
         }
-        const PathClass found = state.classify();
-        if (withSeenLamps || found != PathClass::kEmission)
-            result.of(found) += path.throughput * weightedEmission(m_lights, surface, last);
+        if (tree.withSeenLamps || found != PathClass::kEmission)
+            result.of(found) += path.throughput * weightedEmission(m_lights, surface, branch.last);
         const Bsdf bsdf(m_scene, surface, -path.ray.direction, Transport::kRadiance,
                         path.throughput);
         if (first) recordFirstHit(surface, bsdf, result);
         if (bsdf.isBlackBody()) return;
-        const StillToFind still =
-            addReflected(screen, surface, bsdf, branch, sampler, scratch, result);
-        if (bsdf.isDiffuseOnly() && still.lamps == LampStrategy::kNextEventOnly && !still.indirect)
-            return;
-        BsdfSample sample;
-        if (reflected && divide(surface, bsdf, branch, *reflected, sample, sampler)) {
-            reflected = nullptr;
-            if (!branch.goOn(surface, bsdf, sample, sampler)) return;
+        const StillToFind still = addReflected(surface, bsdf, branch, tree);
+        if (!followLobes(surface, bsdf, still, branch, tree)) return;
+    }
+}
+
+bool PhotonIntegrator::followLobes(const Surface& surface, const Bsdf& bsdf, StillToFind still,
+                                   Branch& branch, const Tree& tree) const {
+    if (bsdf.isDiffuseOnly()) {
+        if (still.any()) followDiffuse(surface, bsdf, branch, still, 1.0f, tree);
+        return false;
+    }
+    const Survival survival = divide(bsdf, branch.path, still.any(), tree.sampler);
+    std::optional<Branch> next;
+    for (std::size_t i = 0; i < kLobeCount; ++i) {
+        if (survival[i] == 0.0f) continue;
+        const auto lobe = static_cast<Lobe>(i);
+        if (lobe == Lobe::kDiffuse) {
+            followDiffuse(surface, bsdf, branch, still, survival[i], tree);
             continue;
         }
-        const float uLobe = sampler.next1D();
-        const Sampler directions = sampler;
-        const bool valid = bsdf.sample(uLobe, sampler.next2D(), sample);
-        if (sample.lobe == Lobe::kDiffuse)
-            return followDiffuse(surface, bsdf, branch, still, uLobe, directions, result);
-        if (!valid || !branch.goOn(surface, bsdf, sample, sampler)) return;
-        if (reflectsLamps(bsdf)) lampSamples = 1;
+        BsdfSample sample;
+        if (!bsdf.follow(lobe, sample, isDelta(lobe) ? Vec2f{} : tree.sampler.next2D())) continue;
+        sample.weight *= 1.0f / survival[i];
+        Branch part = branch;
+        if (!part.goOn(surface, bsdf, sample, isDivided(bsdf), tree.sampler)) continue;
+        if (reflectsLamps(bsdf)) part.lampSamples = 1;
+        if (next) follow(*next, false, tree);
+        next = part;
     }
+    if (next) branch = *next;
+    return next.has_value();
 }
 
 // All light that a surface reflects by lobes that are not delta, but for what a ray along the
 // diffuse one has to find.
-PhotonIntegrator::StillToFind PhotonIntegrator::addReflected(Vec2f screen, const Surface& surface,
+PhotonIntegrator::StillToFind PhotonIntegrator::addReflected(const Surface& surface,
                                                              const Bsdf& bsdf, const Branch& branch,
-                                                             Sampler& sampler,
-                                                             NearestPhotons& scratch,
-                                                             SampleRadiance& result) const {
+                                                             const Tree& tree) const {
     const Rgb& throughput = branch.path.throughput;
     StillToFind still;
-    if (bsdf.has(Lobe::kDiffuse))
-        still = readMaps(screen, surface, bsdf, throughput, scratch, result);
-    if (still.indirect && m_maps.lamps) sampleCaustics(surface, bsdf, throughput, sampler, result);
+    if (bsdf.has(Lobe::kDiffuse)) still = readMaps(surface, bsdf, throughput, tree);
+    if (still.indirect && m_maps.lamps)
+        sampleCaustics(surface, bsdf, throughput, tree.sampler, tree.result);
     if (reflectsLamps(bsdf)) {
-        const DirectRadiance direct = estimateDirect(m_scene, m_lights, surface, bsdf, still.lamps,
-                                                     branch.lampSamples, sampler, result.rays);
-        result.direct += throughput * (direct.diffuse + direct.glossy);
+        const DirectRadiance direct =
+            estimateDirect(m_scene, m_lights, surface, bsdf, still.lamps, branch.lampSamples,
+                           tree.sampler, tree.result.rays);
+        tree.result.direct += throughput * (direct.diffuse + direct.glossy);
     }
     return still;
 }
 
-PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(Vec2f screen, const Surface& surface,
-                                                         const Bsdf& bsdf, const Rgb& throughput,
-                                                         NearestPhotons& scratch,
-                                                         SampleRadiance& result) const {
+PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(const Surface& surface, const Bsdf& bsdf,
+                                                         const Rgb& throughput,
+                                                         const Tree& tree) const {
+    SampleRadiance& result = tree.result;
     const Rgb reflected = throughput * bsdf.diffuse() * kInvPi;
     const auto add = [&](const TwoRadii& irradiance, Rgb& part) {
         part += reflected * irradiance.wide;
@@ -140,7 +165,7 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(Vec2f screen, const Sur
     };
     StillToFind still;
     GatherPoints::Estimate indirect;
-    const GatherPoints::Place place{screen, surface.position, bsdf.facingShadingNormal(),
+    const GatherPoints::Place place{tree.screen, surface.position, bsdf.facingShadingNormal(),
                                     bsdf.facingGeometricNormal(), surface.offset};
     const bool kept = m_maps.points && m_maps.points->estimate(place, indirect);
     result.rays += indirect.rays;
@@ -150,7 +175,7 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(Vec2f screen, const Sur
     }
     const Vec3f& normal = bsdf.facingGeometricNormal();
     if (m_maps.caustic)
-        add(m_maps.caustic->irradiance(surface.position, normal, scratch), result.caustic);
+        add(m_maps.caustic->irradiance(surface.position, normal, tree.scratch), result.caustic);
     still.indirect = !kept && m_maps.global;
     if (still.indirect && m_maps.refocused) {
         // Any pattern that depends on the place alone.
@@ -163,12 +188,12 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(Vec2f screen, const Sur
     return still;
 }
 
-// uLobe: has chosen the lobe.
 void PhotonIntegrator::followDiffuse(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
-                                     StillToFind still, float uLobe, const Sampler& directions,
-                                     SampleRadiance& result) const {
+                                     StillToFind still, float survival, const Tree& tree) const {
+    const Sampler directions = tree.sampler;
+    tree.sampler.skip();
     const std::uint32_t rays = still.indirect ? ownGatherRays(m_maps.points) : 1;
-    const Rgb share = branch.path.throughput / static_cast<float>(rays);
+    const Rgb share = branch.path.throughput / (survival * static_cast<float>(rays));
     std::optional<GatherGuide::Directions> guide;
     // For lamps that such rays meet, too: the weights of the two strategies sum to 1 in every
     // direction, by whichever density the rays come.
@@ -179,11 +204,11 @@ void PhotonIntegrator::followDiffuse(const Surface& surface, const Bsdf& bsdf, c
         Sampler part = directions.part(rays, i);
         BsdfSample sample;
         const auto [u, density] = GatherGuide::warp(guide, part.next2D());
-        if (!bsdf.sample(uLobe, u, sample)) continue;
+        if (!bsdf.follow(Lobe::kDiffuse, sample, u)) continue;
         const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle,
                                branch.lampSamples};
         gatherAlong(last, still, share * sample.weight / density, rays,
-                    dot(sample.direction, bsdf.facingShadingNormal()), part, result);
+                    dot(sample.direction, bsdf.facingShadingNormal()), part, tree.result);
     }
 }
 

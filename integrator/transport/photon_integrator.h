@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <array>
 #include <cstdint>
-#include <optional>
 
 #include "integrator/photons/caustic_map.h"
 #include "integrator/photons/irradiance_sites.h"
@@ -50,6 +50,8 @@ class PhotonIntegrator {
     struct StillToFind {
         LampStrategy lamps = LampStrategy::kBoth;
         bool indirect = false;
+
+        bool any() const { return indirect || lamps == LampStrategy::kBoth; }
     };
     // A camera path on its way.
     struct Branch {
@@ -58,25 +60,32 @@ class PhotonIntegrator {
         LastScatter last;
         std::uint32_t lampSamples = 1;
 
-        bool goOn(const Surface& surface, const Bsdf& bsdf, const BsdfSample& sample,
+        bool goOn(const Surface& surface, const Bsdf& bsdf, const BsdfSample& sample, bool isPart,
                   Sampler& sampler);
     };
-    // Where glass is met: the reflected part goes on by itself, the path by `refraction`. False
-    // where there are other lobes, or too little in one of the two.
-    static bool divide(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
-                       std::optional<Branch>& reflected, BsdfSample& refraction, Sampler& sampler);
-    // To its end; `reflected` gets what the first glass reflects, null: it is not divided.
-    void follow(Vec2f screen, Branch& branch, std::optional<Branch>* reflected, Sampler& sampler,
-                NearestPhotons& scratch, bool withSeenLamps, SampleRadiance& result) const;
-    StillToFind addReflected(Vec2f screen, const Surface& surface, const Bsdf& bsdf,
-                             const Branch& branch, Sampler& sampler, NearestPhotons& scratch,
-                             SampleRadiance& result) const;
-    StillToFind readMaps(Vec2f screen, const Surface& surface, const Bsdf& bsdf,
-                         const Rgb& throughput, NearestPhotons& scratch,
-                         SampleRadiance& result) const;
+    // What all branches of one sample share.
+    struct Tree {
+        Vec2f screen;
+        Sampler& sampler;
+        NearestPhotons& scratch;
+        bool withSeenLamps;
+        SampleRadiance& result;
+    };
+    // Of each lobe, with which probability the path was to be followed along it; 0: it is not.
+    using Survival = std::array<float, kLobeCount>;
+    // diffuse: whether that lobe is one to follow.
+    static Survival divide(const Bsdf& bsdf, const Carried& path, bool diffuse, Sampler& sampler);
+    // To its end. first: the branch leaves the camera.
+    void follow(Branch& branch, bool first, const Tree& tree) const;
+    // Along all lobes but one, which `branch` then is on. False: there is none.
+    bool followLobes(const Surface& surface, const Bsdf& bsdf, StillToFind still, Branch& branch,
+                     const Tree& tree) const;
+    StillToFind addReflected(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
+                             const Tree& tree) const;
+    StillToFind readMaps(const Surface& surface, const Bsdf& bsdf, const Rgb& throughput,
+                         const Tree& tree) const;
     void followDiffuse(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
-                       StillToFind still, float uLobe, const Sampler& directions,
-                       SampleRadiance& result) const;
+                       StillToFind still, float survival, const Tree& tree) const;
     void gatherAlong(const LastScatter& last, StillToFind still, const Rgb& weight,
                      std::uint32_t rays, float cosine, Sampler& sampler,
                      SampleRadiance& result) const;

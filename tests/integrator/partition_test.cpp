@@ -8,12 +8,9 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numbers>
 #include <string>
 #include <vector>
 
-#include "integrator/scene/camera.h"
-#include "integrator/transport/photon_integrator.h"
 #include "tests/integrator/replicates.h"
 #include "tests/integrator/rooms.h"
 
@@ -308,68 +305,6 @@ TEST(PartitionMoves, MapsWithoutPhotonsChangeNoBit) {
     double indirect = 0;
     for (const LayerMeans& pixel : automatic) indirect += pixel[kIndirect][0];
     EXPECT_GT(indirect, 0);
-}
-
-// Direct light in the centres of 16 x 16 pixels, green: one path each.
-std::vector<double> directSeen(const SceneMaker& maker) {
-    const auto scene = maker.build();
-    const LightSampler lights(*scene);
-    const PhotonIntegrator integrator(*scene, lights, PhotonMaps{});
-    const Camera camera(*scene, 16, 16);
-    NearestPhotons scratch;
-    std::vector<double> seen;
-    for (std::uint32_t i = 0; i < 256; ++i) {
-        Sampler sampler(1, 0, 0, i);
-        const Vec2f screen{static_cast<float>(i % 16) + 0.5f, static_cast<float>(i / 16) + 0.5f};
-        const Ray ray = camera.ray(static_cast<double>(screen.x), static_cast<double>(screen.y));
-        seen.push_back(
-            static_cast<double>(integrator.sample(screen, ray, sampler, scratch).direct.g));
-    }
-    return seen;
-}
-
-// Of a wall of reflectance 0.5, 3 before a point light of intensity 10.
-constexpr double kLitWall = 0.5 / std::numbers::pi * 10 / 9;
-
-// A ball of glass before nothing mirrors 4 % of a lit wall: all camera samples see it, not one in
-// 25 at 25 times its radiance, which a bright wall would make a speck.
-TEST(CameraPaths, DivideAtTheFirstGlass) {
-    SceneMaker maker;
-    maker.sphere({0, 0, 0}, 0.5, maker.material(glass()));
-    maker.quad({-20, -20, 6}, {0, 40, 0}, {40, 0, 0}, maker.diffuse(Rgb(0.5f)));
-    maker.pointLight({0, 0, 3}, Rgb(10.0f));
-    maker.camera({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 2);
-    int dark = 0;
-    double most = 0, sum = 0;
-    for (const double seen : directSeen(maker)) {
-        dark += seen == 0;
-        most = std::max(most, seen);
-        sum += seen;
-    }
-    EXPECT_EQ(dark, 0);
-    // 0.04 from the front, as much but for what is lost on the way from the back, that by chance.
-    EXPECT_GT(sum / 256 / kLitWall, 0.03);
-    EXPECT_LT(sum / 256 / kLitWall, 0.12);
-    EXPECT_LT(most / kLitWall, 1.1);
-}
-
-// Each part at its weight, without noise: where glass begins, a lit wall before it is mirrored at
-// R = 0.04, and one in the glass shines out at (1 - R) / eta^2.
-TEST(CameraPaths, DivideByTheWeightsOfBothParts) {
-    for (const double side : {1.0, -1.0}) {
-        SceneMaker maker;
-        maker.quad({-5, -5, 0}, {10, 0, 0}, {0, 10, 0}, maker.material(glass(1.5f)));
-        const auto grey = maker.diffuse(Rgb(0.5f));
-        maker.quad({-5, -5, 6}, {0, 10, 0}, {10, 0, 0}, grey);
-        maker.quad({-5, -5, -6}, {10, 0, 0}, {0, 10, 0}, grey);
-        maker.pointLight({0, 0, 3 * side}, Rgb(10.0f));
-        maker.camera({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 0.1);
-        const double weight = side > 0 ? 0.04 : 0.96 / (1.5 * 1.5);
-        // Half an angle of 0.05 degrees leaves 2e-5 of the wall's evenness.
-        const std::vector<double> seen = directSeen(maker);
-        EXPECT_NEAR(std::ranges::min(seen) / kLitWall, weight, 1e-4 * weight);
-        EXPECT_NEAR(std::ranges::max(seen) / kLitWall, weight, 1e-4 * weight);
-    }
 }
 
 }  // namespace

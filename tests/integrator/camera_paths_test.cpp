@@ -1,0 +1,154 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Camera paths follow all lobes that carry enough: no grain where one would be chosen by chance,
+// and the same mean.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "integrator/transport/photon_integrator.h"
+#include "tests/integrator/rooms.h"
+#include "tests/integrator/scene_maker.h"
+
+namespace pm::test {
+namespace {
+
+constexpr double kThickness = 0.05;
+// What lobes may carry that are followed by chance, see photon_integrator.cpp.
+constexpr double kLeastDivided = 0.03;
+
+struct Moments {
+    double mean = 0, variance = 0, standardError = 0;  // variance of one sample
+};
+
+// Lamps seen along a ray that comes down at 60 degrees to where the origin is.
+Moments momentsOf(const Scene& scene) {
+    constexpr std::uint32_t kCount = 20'000;
+    const double sine = std::sqrt(0.75);
+    const Vec3d eye{0, 0.5, sine};
+    const LightSampler lights(scene);
+    const PhotonIntegrator integrator(scene, lights, {});
+    const Ray ray{Vec3f(eye - scene.centre()), Vec3f(-eye)};
+    NearestPhotons scratch;
+    double sum = 0, squares = 0;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        Sampler sampler(5, 0, i, 0);
+        const auto value =
+            static_cast<double>(integrator.sample({}, ray, sampler, scratch).emission.g);
+        sum += value;
+        squares += value * value;
+    }
+    const double mean = sum / kCount, variance = squares / kCount - mean * mean;
+    return {mean, variance, std::sqrt(variance / kCount)};
+}
+
+// Fresnel's reflectance of glass at 60 degrees.
+double reflectance() {
+    const double cosine = 0.5, inside = std::sqrt(1 - 0.75 / 2.25);
+    const double s = (cosine - 1.5 * inside) / (cosine + 1.5 * inside);
+    const double p = (1.5 * cosine - inside) / (1.5 * cosine + inside);
+    return (s * s + p * p) / 2;
+}
+
+// A pane of glass under the origin; what passes it meets nothing.
+SceneMaker pane() {
+    SceneMaker maker;
+    const std::uint32_t material = maker.material(glass());
+    maker.quad({-1, 0, 0.5}, {2, 0, 0}, {0, 0, -1.7}, material);
+    maker.quad({-1, -kThickness, 0.5}, {0, 0, -1.7}, {2, 0, 0}, material);
+    return maker;
+}
+
+// What a pane reflects, R + T R T + T R R R T ... = 2 R / (1 + R), is a sum of parts of which but
+// two carry less than kLeastDivided. A lobe chosen by chance has the variance m - m^2.
+TEST(CameraPaths, FollowBothPartsOfGlass) {
+    SceneMaker maker = pane();
+    maker.quad({-1, -3, -6}, {2, 0, 0}, {0, 9, 0}, maker.diffuse({}, Rgb(1.0f)));
+    const Moments found = momentsOf(*maker.build());
+    const double r = reflectance(), reflected = 2 * r / (1 + r);
+    const double byChance = reflected - r - (1 - r) * (1 - r) * r;
+    EXPECT_NEAR(found.mean, reflected, 4 * found.standardError);
+    EXPECT_LE(found.variance, 2 * kLeastDivided * byChance);
+}
+
+// The same by way of six mirrors: what is a part from glass on is not ended as if the path had lost
+// the rest.
+TEST(CameraPaths, RouletteSparesParts) {
+    SceneMaker maker = pane();
+    const std::uint32_t silver = maker.material(mirror(0.9f));
+    maker.quad({-1, 0.5, -0.4}, {2, 0, 0}, {0, 0, -5.2}, silver);
+    maker.quad({-1, 0, -1.2}, {2, 0, 0}, {0, 0, -4.4}, silver);
+    maker.quad({-1, 0, -5.6}, {2, 0, 0}, {0, 0.5, 0}, maker.diffuse({}, Rgb(1.0f)));
+    const Moments found = momentsOf(*maker.build());
+    const double r = reflectance(), reflected = 2 * r / (1 + r) * std::pow(0.9, 6);
+    EXPECT_NEAR(found.mean, reflected, 4 * found.standardError);
+    // Each part counts for what it carried where it began, at most.
+    EXPECT_LE(found.variance, r * reflected);
+}
+
+// Direct light in the centres of 16 x 16 pixels, green: one path each.
+std::vector<double> directSeen(const SceneMaker& maker) {
+    const auto scene = maker.build();
+    const LightSampler lights(*scene);
+    const PhotonIntegrator integrator(*scene, lights, PhotonMaps{});
+    const Camera camera(*scene, 16, 16);
+    NearestPhotons scratch;
+    std::vector<double> seen;
+    for (std::uint32_t i = 0; i < 256; ++i) {
+        Sampler sampler(1, 0, 0, i);
+        const Vec2f screen{static_cast<float>(i % 16) + 0.5f, static_cast<float>(i / 16) + 0.5f};
+        const Ray ray = camera.ray(static_cast<double>(screen.x), static_cast<double>(screen.y));
+        seen.push_back(
+            static_cast<double>(integrator.sample(screen, ray, sampler, scratch).direct.g));
+    }
+    return seen;
+}
+
+// Of a wall of reflectance 0.5, 3 before a point light of intensity 10.
+constexpr double kLitWall = 0.5 / std::numbers::pi * 10 / 9;
+
+// A ball of glass before nothing mirrors 4 % of a lit wall, and once more from its back: all camera
+// samples see it, not one in 25 at 25 times its radiance, which a bright wall would make a speck.
+TEST(CameraPaths, SeeWhatGlassReflects) {
+    SceneMaker maker;
+    maker.sphere({0, 0, 0}, 0.5, maker.material(glass()));
+    maker.quad({-20, -20, 6}, {0, 40, 0}, {40, 0, 0}, maker.diffuse(Rgb(0.5f)));
+    maker.pointLight({0, 0, 3}, Rgb(10.0f));
+    maker.camera({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 2);
+    int dark = 0;
+    double most = 0, sum = 0;
+    for (const double seen : directSeen(maker)) {
+        dark += seen == 0;
+        most = std::max(most, seen);
+        sum += seen;
+    }
+    EXPECT_EQ(dark, 0);
+    EXPECT_GT(sum / 256 / kLitWall, 0.06);
+    EXPECT_LT(sum / 256 / kLitWall, 0.1);
+    EXPECT_LT(most / kLitWall, 0.2);
+}
+
+// Each part at its weight, without noise: where glass begins, a lit wall before it is mirrored at
+// R = 0.04, and one in the glass shines out at (1 - R) / eta^2.
+TEST(CameraPaths, DivideByTheWeightsOfBothParts) {
+    for (const double side : {1.0, -1.0}) {
+        SceneMaker maker;
+        maker.quad({-5, -5, 0}, {10, 0, 0}, {0, 10, 0}, maker.material(glass(1.5f)));
+        const auto grey = maker.diffuse(Rgb(0.5f));
+        maker.quad({-5, -5, 6}, {0, 10, 0}, {10, 0, 0}, grey);
+        maker.quad({-5, -5, -6}, {10, 0, 0}, {0, 10, 0}, grey);
+        maker.pointLight({0, 0, 3 * side}, Rgb(10.0f));
+        maker.camera({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 0.1);
+        const double weight = side > 0 ? 0.04 : 0.96 / (1.5 * 1.5);
+        // Half an angle of 0.05 degrees leaves 2e-5 of the wall's evenness.
+        const std::vector<double> seen = directSeen(maker);
+        EXPECT_NEAR(std::ranges::min(seen) / kLitWall, weight, 1e-4 * weight);
+        EXPECT_NEAR(std::ranges::max(seen) / kLitWall, weight, 1e-4 * weight);
+    }
+}
+
+}  // namespace
+}  // namespace pm::test
