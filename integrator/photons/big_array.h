@@ -12,6 +12,8 @@
 #include <memory>
 #include <new>
 #include <type_traits>
+#include <utility>
+#include <vector>
 
 namespace pm {
 
@@ -53,8 +55,7 @@ inline void wishForLargePages([[maybe_unused]] void* memory, [[maybe_unused]] st
 // Not initialised. Throws std::bad_alloc.
 template <typename T>
 BigArray<T> makeBigArray(std::size_t count) {
-    static_assert(std::is_trivially_default_constructible_v<T> &&
-                  std::is_trivially_destructible_v<T>);
+    static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
     const std::size_t wanted = big_array::bytesOf<T>(count);
     const std::size_t alignment = big_array::alignmentOf(wanted);
     // Whole units of the alignment, as std::aligned_alloc wants them.
@@ -64,6 +65,26 @@ BigArray<T> makeBigArray(std::size_t count) {
     big_array::wishForLargePages(memory, bytes);
     return BigArray<T>(static_cast<T*>(memory), FreeMemory{memory});
 }
+
+// For vectors whose elements somebody else writes: resize() leaves them as they are.
+template <typename T>
+struct BigAllocator {
+    using value_type = T;
+
+    BigAllocator() = default;
+    template <typename Other>
+    explicit BigAllocator(const BigAllocator<Other>& /*unused*/) {}
+    T* allocate(std::size_t count) { return makeBigArray<T>(count).release(); }
+    void deallocate(T* memory, std::size_t /*unused*/) { std::free(memory); }
+    template <typename Element, typename... Arguments>
+    void construct(Element* at, Arguments&&... arguments) {
+        if constexpr (sizeof...(Arguments) > 0)
+            std::construct_at(at, std::forward<Arguments>(arguments)...);
+    }
+    friend bool operator==(const BigAllocator&, const BigAllocator&) { return true; }
+};
+template <typename T>
+using BigVector = std::vector<T, BigAllocator<T>>;
 
 // All bytes 0, which is what a T begins with: numbers, atomic or not. What is never touched takes
 // no memory as a rule. Throws std::bad_alloc.

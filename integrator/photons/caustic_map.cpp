@@ -22,9 +22,9 @@ constexpr float kSmallestRadius = 1e-3f;
 
 }  // namespace
 
-PilotRadius::PilotRadius(std::vector<Photon> pilot, std::uint32_t estimatePhotons, float fallback,
-                         const CancelCheck& cancel)
-    : m_pilot(std::move(pilot), cancel),
+PilotRadius::PilotRadius(std::span<const Photon> pilot, std::uint32_t estimatePhotons,
+                         float fallback, const CancelCheck& cancel)
+    : m_pilot(pilot, cancel),
       m_count(std::max(kFewestPilotPhotons, estimatePhotons / kPilotShare)),
       m_typical(m_pilot.size() > m_count ? m_pilot.typicalRadius(m_count) : fallback) {}
 

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 #include <memory>
-#include <vector>
+#include <span>
 
 #include "integrator/photons/photon_map.h"
 #include "integrator/photons/surface_patches.h"
@@ -22,7 +22,7 @@ class PilotRadius {
     // estimatePhotons / kPilotShare of the pilot's holds about estimatePhotons of the map's.
     // fallback: the typical radius where the pilot found too little; scene units, > 0. Throws
     // Error(kCancelled) soon after cancel is set.
-    PilotRadius(std::vector<Photon> pilot, std::uint32_t estimatePhotons, float fallback,
+    PilotRadius(std::span<const Photon> pilot, std::uint32_t estimatePhotons, float fallback,
                 const CancelCheck& cancel = {});
 
     // One for all places: what half of the pilot's photons need; scene units, > 0.
@@ -47,9 +47,9 @@ class CausticMap {
     // radiusFactor: this pass's radii over the first pass's. radius and patches must outlive this.
     // patches: null where all discs are to be taken as whole. Throws Error(kCancelled) soon after
     // cancel is set.
-    CausticMap(std::vector<Photon> photons, const PilotRadius& radius, float radiusFactor,
+    CausticMap(std::span<const Photon> photons, const PilotRadius& radius, float radiusFactor,
                const SurfacePatches* patches = nullptr, const CancelCheck& cancel = {})
-        : m_map(std::move(photons), cancel),
+        : m_map(photons, cancel),
           m_radius(radius),
           m_radiusFactor(radiusFactor),
           m_patches(patches) {}

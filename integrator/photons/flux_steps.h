@@ -3,33 +3,28 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
+#include <vector>
 
 #include "integrator/photons/photon_map.h"
+#include "integrator/values/cancel_check.h"
 
 namespace pm {
 
-// Draws `count` of a map's photons in proportion to their flux, summed over the channels, in the
-// order of the map, in which neighbours are near each other: one at each equal step of the flux
-// (systematic sampling). u: in [0, 1), where in the steps; bright photons may be drawn more than
-// once. Calls use(photon, share), share its flux over that of all. Returns the flux of all, W.
-template <typename Use>
-double visitBySteps(const PhotonMap& photons, std::size_t count, float u, const Use& use) {
-    const auto size = static_cast<std::uint32_t>(photons.size());
-    double whole = 0;
-    for (std::uint32_t i = 0; i < size; ++i) whole += channelSum(photons.photon(i).flux);
-    if (!(whole > 0)) return 0;
-    const double step = whole / static_cast<double>(count);
-    double upTo = 0;
-    std::size_t drawn = 0;
-    for (std::uint32_t i = 0; i < size && drawn < count; ++i) {
-        const Photon photon = photons.photon(i);
-        const double own = channelSum(photon.flux);
-        upTo += own;
-        for (; drawn < count && (static_cast<double>(drawn) + u) * step < upTo; ++drawn)
-            use(photon, own / whole);
-    }
-    return whole;
-}
+// Photons of a map, drawn in proportion to their flux, summed over the channels.
+struct DrawnByFlux {
+    struct Drawn {
+        Photon photon;
+        double share;  // of the flux of all
+    };
+    std::vector<Drawn> photons;  // none where there is no flux
+    double flux = 0;             // of all photons of the map, W
+};
+
+// Draws `count`, in the order of the map, in which neighbours are near each other: one at each
+// equal step of the flux (systematic sampling). u: in [0, 1), where in the steps; bright photons
+// may be drawn more than once. Parallel in the calling TBB arena, the same bits for any number of
+// threads. Throws Error(kCancelled) soon after cancel is set.
+DrawnByFlux drawBySteps(const PhotonMap& photons, std::size_t count, float u,
+                        const CancelCheck& cancel = {});
 
 }  // namespace pm

@@ -58,7 +58,7 @@ const char* faultOf(const TracedHead& head, const PhotonTraceResult& traced, dou
     if (head.descended > 0 && !isCaustic(static_cast<PhotonKind>(head.kind)))
         return "it has photons of another kind";
     const auto farthest = static_cast<float>(kRoom * sceneRadius);
-    const auto arePossible = [&](const std::vector<Photon>& photons) {
+    const auto arePossible = [&](std::span<const Photon> photons) {
         return std::ranges::all_of(
             photons, [&](const Photon& photon) { return isPossible(photon, farthest); });
     };

@@ -196,6 +196,20 @@ class PhotonWalk {
     float m_scale;
 };
 
+// Those of all batches, in order; empties them.
+template <typename T>
+void join(std::vector<Batch>& batches, std::vector<T> Batch::*member, BigVector<T>& joined,
+          const CancelCheck& cancel) {
+    std::vector<std::size_t> begins{0};
+    for (const Batch& batch : batches) begins.push_back(begins.back() + (batch.*member).size());
+    joined.resize(begins.back());
+    tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t b) {
+        cancel.throwIfSet("joining photons");
+        const std::vector<T> from = std::exchange(batches[b].*member, {});
+        std::ranges::copy(from, joined.begin() + static_cast<std::ptrdiff_t>(begins[b]));
+    });
+}
+
 }  // namespace
 
 PhotonBalance& PhotonBalance::operator+=(const PhotonBalance& other) {
@@ -231,19 +245,9 @@ PhotonTraceResult tracePhotons(const Scene& scene, const LightSampler& lights,
     });
     const CancelCheck check(cancelled);
     check.throwIfSet("tracing photons");
-    const auto join = [&](auto member, auto& joined) {
-        std::size_t total = 0;
-        for (const Batch& batch : batches) total += (batch.*member).size();
-        joined.reserve(total);
-        for (Batch& batch : batches) {
-            check.throwIfSet("joining photons");
-            joined.insert(joined.end(), (batch.*member).begin(), (batch.*member).end());
-            std::remove_reference_t<decltype(joined)>().swap(batch.*member);
-        }
-    };
-    join(&Batch::photons, result.photons);
-    join(&Batch::descended, result.descended);
-    join(&Batch::records, result.records);
+    join(batches, &Batch::photons, result.photons, check);
+    join(batches, &Batch::descended, result.descended, check);
+    join(batches, &Batch::records, result.records, check);
     for (const Batch& batch : batches) result.balance += batch.balance;
     return result;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "integrator/photons/aimed_emission.h"
+#include "integrator/photons/big_array.h"
 #include "integrator/photons/photon_map.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
@@ -52,12 +53,12 @@ struct PhotonTraceRequest {
 };
 
 struct PhotonTraceResult {
-    std::vector<Photon> photons;  // flux of each already divided by the number emitted
+    BigVector<Photon> photons;  // flux of each already divided by the number emitted
     PhotonBalance balance;
     // Of caustic photons the arrivals after the first. Marked where light that a caustic sends out
     // comes by way of other lobes before it meets another diffuse surface: refocused.
-    std::vector<Photon> descended;
-    std::vector<EmissionRecord> records;  // of each photon that carried something, if asked for
+    BigVector<Photon> descended;
+    BigVector<EmissionRecord> records;  // of each photon that carried something, if asked for
 };
 
 // Traces photons from the lights, in parallel in the calling TBB arena: batches of fixed size, each

@@ -34,9 +34,8 @@ float within(const std::array<float, kCount>& table, std::size_t cell, float u) 
 
 GatherGuide::GatherGuide(const PhotonMap& photons, float radius)
     : m_nearestSquared(radius * radius) {
-    visitBySteps(photons, kEmitters, 0.5f, [&](const Photon& photon, double) {
+    for (const auto& [photon, share] : drawBySteps(photons, kEmitters, 0.5f).photons)
         m_emitters.push_back({photon.position, photon.normal.unpack()});
-    });
 }
 
 GatherGuide::Directions GatherGuide::at(const Vec3f& position, const Frame& frame) const {

@@ -2,11 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/transport/photon_pass.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <numbers>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -25,16 +29,20 @@ constexpr double kGuidePays = 0.5;
 // them anyway.
 constexpr float kRadiusOfGathered = 2.0f;
 
-std::vector<Photon> refocusedOf(const std::vector<Photon>& descended) {
+std::vector<Photon> refocusedOf(std::span<const Photon> descended) {
     std::vector<Photon> found;
     std::ranges::copy_if(descended, std::back_inserter(found),
                          [](const Photon& photon) { return photon.normal.isMarked(); });
     return found;
 }
 
-std::vector<Photon> join(std::vector<Photon> photons, const std::vector<Photon>& others) {
-    photons.insert(photons.end(), others.begin(), others.end());
-    return photons;
+BigVector<Photon> join(std::span<const Photon> first, std::span<const Photon> second) {
+    BigVector<Photon> all(first.size() + second.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size()), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+            all[i] = i < first.size() ? first[i] : second[i - first.size()];
+    });
+    return all;
 }
 
 }  // namespace
@@ -183,13 +191,13 @@ void PhotonPass::chooseGatherRays(const PhotonMap& pilot, const CancelCheck& che
 }
 
 // Of caustics and of refocused light. Returns the pilot's descended photons.
-std::vector<Photon> PhotonPass::findCausticRadii(float fallback, Control& control) {
+BigVector<Photon> PhotonPass::findCausticRadii(float fallback, Control& control) {
     if (!m_source) aim(control);
     const CancelCheck check(control.cancelled);
     PhotonTraceResult pilot =
         trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), 0, control);
-    m_causticRadius = std::make_unique<PilotRadius>(std::move(pilot.photons),
-                                                    m_settings.estimatePhotons, fallback, check);
+    m_causticRadius =
+        std::make_unique<PilotRadius>(pilot.photons, m_settings.estimatePhotons, fallback, check);
     if (m_plan.descent > 0.0f)
         m_refocusedRadius = std::make_unique<PilotRadius>(
             refocusedOf(pilot.descended), m_settings.estimatePhotons, fallback, check);
@@ -200,12 +208,12 @@ void PhotonPass::findRadii(Control& control) {
     // Where a pilot finds next to nothing, estimates reach a hundredth of the scene.
     const auto fallback = static_cast<float>(0.01 * m_scene.radius());
     const CancelCheck check(control.cancelled);
-    std::vector<Photon> global;
+    BigVector<Photon> global;
     if (m_plan.globalMap)
         global = trace(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0, control).photons;
-    if (m_plan.causticMap) global = join(std::move(global), findCausticRadii(fallback, control));
+    if (m_plan.causticMap) global = join(global, findCausticRadii(fallback, control));
     if (m_plan.globalMap) {
-        const PilotRadius pilot(std::move(global), m_settings.estimatePhotons, fallback, check);
+        const PilotRadius pilot(global, m_settings.estimatePhotons, fallback, check);
         m_globalRadius = pilot.typical();
         chooseGatherRays(pilot.photons(), check);
     }
@@ -217,15 +225,16 @@ void PhotonPass::findRadii(Control& control) {
 }
 
 // Returns the descended photons, which gather rays read beside the global ones.
-std::vector<Photon> PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
+BigVector<Photon> PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
     PhotonTraceResult traced =
         trace(PhotonKind::kCaustic, m_plan.causticPhotons, maps.pass, control);
     const Stopwatch watch;
     const CancelCheck check(control.cancelled);
     const float factor = radiusFactor(maps.pass);
     const std::size_t landed = traced.photons.size();
-    maps.caustic = std::make_unique<CausticMap>(std::move(traced.photons), *m_causticRadius, factor,
+    maps.caustic = std::make_unique<CausticMap>(traced.photons, *m_causticRadius, factor,
                                                 m_patches.get(), check);
+    BigVector<Photon>().swap(traced.photons);
     noteBuilding(maps, landed);
     if (m_plan.descent > 0.0f) {
         const float radius = kRadiusOfGathered * m_causticRadius->typical();
@@ -250,13 +259,13 @@ const SurfacePatches* PhotonPass::patchesOfSites(float radius) const {
     return m_scene.meanTriangleArea() > disc ? m_patches.get() : nullptr;
 }
 
-void PhotonPass::buildIndirect(PassMaps& maps, std::vector<Photon> descended, Control& control) {
+void PhotonPass::buildIndirect(PassMaps& maps, BigVector<Photon> descended, Control& control) {
     PhotonTraceResult traced = trace(PhotonKind::kGlobal, m_plan.globalPhotons, maps.pass, control);
     const Stopwatch watch;
     const float factor = radiusFactor(maps.pass);
-    std::vector<Photon> photons = join(std::move(traced.photons), descended);
-    descended = {};
-    maps.global = std::make_unique<PhotonMap>(std::move(photons), CancelCheck(control.cancelled));
+    if (!descended.empty()) traced.photons = join(traced.photons, descended);
+    BigVector<Photon>().swap(descended);
+    maps.global = std::make_unique<PhotonMap>(traced.photons, CancelCheck(control.cancelled));
     noteBuilding(maps, maps.global->size());
     maps.sites = std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor,
                                                    patchesOfSites(m_globalRadius), factor);
@@ -284,7 +293,7 @@ void PhotonPass::buildMaps(std::uint32_t pass, Control& control) {
         m_peakMapBytes = peakMapBytes();
         m_patches->makeRoom();
     }
-    std::vector<Photon> descended;
+    BigVector<Photon> descended;
     if (m_plan.causticMap) descended = buildCaustics(maps, control);
     if (m_plan.globalMap) buildIndirect(maps, std::move(descended), control);
     const std::lock_guard lock(m_mutex);

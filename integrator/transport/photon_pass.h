@@ -85,11 +85,11 @@ class PhotonPass {
     // Photons of one kind, traced, or read where there is a source of them.
     PhotonTraceResult trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
                             Control& control);
-    std::vector<Photon> buildCaustics(PassMaps& maps, Control& control);
+    BigVector<Photon> buildCaustics(PassMaps& maps, Control& control);
     const SurfacePatches* patchesOfSites(float radius) const;
-    void buildIndirect(PassMaps& maps, std::vector<Photon> descended, Control& control);
+    void buildIndirect(PassMaps& maps, BigVector<Photon> descended, Control& control);
     void aim(Control& control);
-    std::vector<Photon> findCausticRadii(float fallback, Control& control);
+    BigVector<Photon> findCausticRadii(float fallback, Control& control);
     void chooseGatherRays(const PhotonMap& pilot, const CancelCheck& check);
     void findRadii(Control& control);
     void buildMaps(std::uint32_t pass, Control& control);

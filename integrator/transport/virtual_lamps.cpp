@@ -27,12 +27,12 @@ VirtualLamps::VirtualLamps(const Scene& scene, const PhotonMap& caustics, float 
                            const CancelCheck& cancel)
     : m_scene(scene), m_sites(scene, caustics, radius, patches, radiusFactor) {
     const float u = toUnitFloat(static_cast<std::uint32_t>(mixBits(random)));
-    const double flux = visitBySteps(caustics, kLamps, u, [&](const Photon& photon, double share) {
+    const DrawnByFlux drawn = drawBySteps(caustics, kLamps, u, cancel);
+    for (const auto& [photon, share] : drawn.photons)
         m_lamps.push_back(
             {photon.position, photon.normal.unpack(), photon.flux * static_cast<float>(1 / share)});
-    });
     if (m_lamps.empty()) return;
-    m_inverseFlux = static_cast<float>(1 / flux);
+    m_inverseFlux = static_cast<float>(1 / drawn.flux);
     tbb::parallel_for(std::size_t{0}, m_lamps.size(), [&](std::size_t i) {
         if (cancel.isSet()) return;
         Lamp& lamp = m_lamps[i];

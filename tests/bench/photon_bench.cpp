@@ -54,7 +54,7 @@ void benchPhotons(Report& report, int turns) {
 
     report.table("Photon map built, millions of photons a second",
                  {"photons", "1 thread", "2 threads", "2 threads / 1"});
-    std::vector<Photon> photons = trace(*scene, lights, PhotonKind::kGlobal, 7'500'000).photons;
+    BigVector<Photon> photons = trace(*scene, lights, PhotonKind::kGlobal, 7'500'000).photons;
     for (const std::size_t count : {10'000'000u, 1'000'000u, 200'000u}) {
         if (photons.size() < count) continue;
         // Photons come in the order of their stratified emission; the first ones stand for all.

@@ -145,7 +145,7 @@ class QueryBench {
     }
 
   private:
-    std::vector<Photon> photons(PhotonKind kind, std::uint64_t emitted, std::size_t most) const {
+    BigVector<Photon> photons(PhotonKind kind, std::uint64_t emitted, std::size_t most) const {
         const std::atomic<bool> cancelled{false};
         auto found = tracePhotons(*m_scene, m_lights, {kind, emitted, 1, 0}, cancelled, {}).photons;
         if (found.size() > most) found.resize(most);

@@ -97,7 +97,7 @@ std::shared_ptr<const Scene> build(const TestLight& light) {
 // Sums over the photons of a trace: flux by channel, red flux by place and by side.
 constexpr std::size_t kSums = 8;
 using Sums = std::array<double, kSums>;
-Sums sumsOf(const std::vector<Photon>& photons) {
+Sums sumsOf(std::span<const Photon> photons) {
     Sums sums{};
     for (const Photon& p : photons) {
         const auto r = static_cast<double>(p.flux.r);

@@ -61,7 +61,7 @@ struct Tracing {
 constexpr std::size_t kMoments = 8;
 using Moments = std::array<double, kMoments>;
 
-void addTo(Moments& sum, const std::vector<Photon>& photons) {
+void addTo(Moments& sum, std::span<const Photon> photons) {
     for (const Photon& photon : photons) {
         const Vec3d p(photon.position), n(photon.normal.unpack());
         const auto r = static_cast<double>(photon.flux.r), g = static_cast<double>(photon.flux.g),

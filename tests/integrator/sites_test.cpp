@@ -122,7 +122,7 @@ struct Room {
         return found;
     }
     std::shared_ptr<const Scene> scene;
-    std::vector<Photon> photons;
+    BigVector<Photon> photons;
 };
 
 // What is read never depends on who asked before.
