@@ -108,15 +108,17 @@ MaterialLibrary loadMaterials(const ObjText& text, const std::string& fileName,
     Materials found;
     const NamesInUse names(text.materialNames);
     const auto isUsed = [&names](const std::string& name) { return names.has(name); };
-    for (const std::string& argument : text.materialFiles) {
-        for (const fs::path& file : libraryFiles(argument, folder)) {
+    for (std::size_t i = 0; i < text.materialFiles.size(); ++i) {
+        for (const fs::path& file : libraryFiles(text.materialFiles[i], folder)) {
             try {
                 found.merge(readMaterials(readWholeFile(file), file.string(), file.parent_path(),
                                           warn, isUsed));
                 library.files.push_back(file.string());
             } catch (const HostError& error) {
                 warn(Warning::kMaterialFile,
-                     fmt::format("{}: material library missing: {}", fileName, error.what()));
+                     fmt::format("{}:{}: material library missing: {}; a grey of 0.8 is taken for "
+                                 "materials that no other library has",
+                                 fileName, text.materialFileLines[i], error.what()));
             }
         }
     }

@@ -253,6 +253,7 @@ class ObjScan {
             leaveOut("mtllib lines without a file name");
         } else if (std::ranges::find(m_out.materialFiles, name) == m_out.materialFiles.end()) {
             m_out.materialFiles.emplace_back(name);
+            m_out.materialFileLines.push_back(m_lines.number());
         }
     }
 

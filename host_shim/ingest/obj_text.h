@@ -27,12 +27,13 @@ struct SubdivisionTag {
 // tinyobjloader takes bad data without a word, knows no lines afterwards and ends names at a blank;
 // so the text is checked first, and rewritten where the parser would stumble.
 struct ObjText {
-    std::string cleaned;                       // only v, vn, vt, f, g and usemtl NUMBER
-    std::vector<std::string> materialNames;    // what the NUMBERs of usemtl stand for
-    std::vector<std::uint64_t> materialLines;  // where each of them stands first
-    std::vector<std::string> materialFiles;    // arguments of mtllib, as they stand
-    std::vector<std::uint64_t> faceLines;      // for each face that is kept
-    std::vector<std::uint32_t> faceSizes;      // the parser's own counts end at 255
+    std::string cleaned;                           // only v, vn, vt, f, g and usemtl NUMBER
+    std::vector<std::string> materialNames;        // what the NUMBERs of usemtl stand for
+    std::vector<std::uint64_t> materialLines;      // where each of them stands first
+    std::vector<std::string> materialFiles;        // arguments of mtllib, as they stand
+    std::vector<std::uint64_t> materialFileLines;  // where each of them stands first
+    std::vector<std::uint64_t> faceLines;          // for each face that is kept
+    std::vector<std::uint32_t> faceSizes;          // the parser's own counts end at 255
     std::vector<SubdivisionTag> tags;
     std::array<std::uint64_t, 3> counts{};  // of v, vt, vn
 };

@@ -14,13 +14,18 @@
 
 namespace pm::host {
 
+void failWriting(const std::filesystem::path& path, int error, const std::string& text) {
+    const std::string reason = error != 0     ? std::string(std::strerror(error))
+                               : text.empty() ? "its library gives no reason; memory may be lacking"
+                                              : text;
+    throw HostError(ExitCode::kFile,
+                    fmt::format("{}: can't be written: {}", path.string(), reason));
+}
+
 CheckedFile::CheckedFile(const std::filesystem::path& path, const std::filesystem::path& shownPath)
     : IOProxy(path.string(), Write) {
     m_file = ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (m_file < 0) {
-        throw HostError(ExitCode::kFile, fmt::format("{}: can't be written: {}", shownPath.string(),
-                                                     std::strerror(errno)));
-    }
+    if (m_file < 0) failWriting(shownPath, errno, {});
 }
 
 CheckedFile::~CheckedFile() {

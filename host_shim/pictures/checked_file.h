@@ -9,6 +9,11 @@
 
 namespace pm::host {
 
+// Ends the writing of path. error: an errno, or 0 where the system told none; text: what the
+// library said, which is nothing where its memory ran out. Throws HostError kFile.
+[[noreturn]] void failWriting(const std::filesystem::path& path, int error,
+                              const std::string& text);
+
 // The file that a picture writer of OpenImageIO writes into, with every failure remembered: the
 // writers themselves return true for a JPEG, a PNG or the end of an EXR on a full disk.
 class CheckedFile final : public OIIO::Filesystem::IOProxy {

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <string>
 #include <utility>
@@ -58,10 +57,7 @@ TiledExr::~TiledExr() {
 }
 
 void TiledExr::fail() const {
-    const int error = m_file.firstError();
-    throw HostError(ExitCode::kFile, fmt::format("{}: can't be written: {}", m_path.string(),
-                                                 error != 0 ? std::string(std::strerror(error))
-                                                            : m_output->geterror()));
+    failWriting(m_path, m_file.firstError(), m_output->geterror());
 }
 
 std::size_t TiledExr::tileIndex(const PixelRect& tile) const {
@@ -98,12 +94,8 @@ void TiledExr::write(const PixelRect& tile, std::span<const float> values) {
 void TiledExr::close() {
     const bool good = m_output->close();
     const std::string text = m_output->geterror();
-    if (m_file.finish() != 0 || !good || !text.empty()) {
-        const int error = m_file.firstError();
-        throw HostError(ExitCode::kFile,
-                        fmt::format("{}: can't be written: {}", m_path.string(),
-                                    error != 0 ? std::string(std::strerror(error)) : text));
-    }
+    if (m_file.finish() != 0 || !good || !text.empty())
+        failWriting(m_path, m_file.firstError(), text);
     m_output.reset();
 }
 

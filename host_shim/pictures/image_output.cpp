@@ -2,20 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/pictures/image_output.h"
 
-#include <fmt/format.h>
-
-#include <cstring>
-
 namespace pm::host {
-namespace {
-
-[[noreturn]] void fail(const std::filesystem::path& path, int error, const std::string& text) {
-    const std::string reason = error != 0 ? std::string(std::strerror(error)) : text;
-    throw HostError(ExitCode::kFile,
-                    fmt::format("{}: can't be written: {}", path.string(), reason));
-}
-
-}  // namespace
 
 void writeImage(const std::filesystem::path& path, const OIIO::ImageSpec& spec,
                 const std::function<bool(OIIO::ImageOutput&)>& write) {
@@ -23,13 +10,13 @@ void writeImage(const std::filesystem::path& path, const OIIO::ImageSpec& spec,
     CheckedFile file(finished.temporaryPath(), path);
     const std::string name = finished.temporaryPath().string();
     const auto output = OIIO::ImageOutput::create(name);
-    if (!output) fail(path, 0, OIIO::geterror());
+    if (!output) failWriting(path, 0, OIIO::geterror());
     output->set_ioproxy(&file);
     bool good = output->open(name, spec) && write(*output);
     good = output->close() && good;
     const std::string text = output->geterror();
-    if (const int error = file.finish()) fail(path, error, text);
-    if (!good || !text.empty()) fail(path, 0, text);
+    if (const int error = file.finish()) failWriting(path, error, text);
+    if (!good || !text.empty()) failWriting(path, 0, text);
     finished.commit();
 }
 

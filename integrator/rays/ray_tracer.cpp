@@ -228,11 +228,14 @@ struct RayTracer::Impl {
         rtcReleaseGeometry(geometry);
         return id;
     }
-    void check(const char* doing) const {
+    // Without a device too: Embree then tells this thread why there is none.
+    void check(const std::string& doing) const {
         const RTCError error = rtcGetDeviceError(device);
         if (error == RTC_ERROR_NONE) return;
-        throw Error(error == RTC_ERROR_OUT_OF_MEMORY ? Status::kOutOfMemory : Status::kInternal,
-                    std::string("Embree failed ") + doing + ", error " + std::to_string(error));
+        if (error == RTC_ERROR_OUT_OF_MEMORY)
+            throw Error(Status::kOutOfMemory, "out of memory: Embree failed " + doing);
+        throw Error(Status::kInternal,
+                    "Embree failed " + doing + ", error " + std::to_string(error));
     }
 };
 
@@ -241,7 +244,10 @@ RayTracer::RayTracer(const std::string& isa) : m_impl(std::make_unique<Impl>()) 
     // "threads=" is left out on purpose: it would set TBB's parallelism for the whole process.
     const std::string config = "isa=" + m_impl->isa;
     m_impl->device = rtcNewDevice(config.c_str());
-    if (!m_impl->device) throw Error(Status::kInternal, "Embree offers no device for " + config);
+    if (!m_impl->device) {
+        m_impl->check("making a device for " + config);
+        throw Error(Status::kInternal, "Embree offers no device for " + config);
+    }
     rtcSetDeviceMemoryMonitorFunction(
         m_impl->device,
         [](void* user, ssize_t bytes, bool) {

@@ -45,7 +45,8 @@ class RayTracer {
     static constexpr float kLargestCoordinate = 1e18f;
 
     // isa: "best" or one of sse2, sse4.2, avx, avx2, avx512. Throws Error(kInvalidArgument) for
-    // others and for one that this processor lacks, Error(kInternal) when Embree fails.
+    // others and for one that this processor lacks, Error(kOutOfMemory, kInternal) when Embree
+    // fails.
     explicit RayTracer(const std::string& isa);
     ~RayTracer();
     RayTracer(const RayTracer&) = delete;

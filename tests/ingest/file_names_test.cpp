@@ -75,8 +75,10 @@ TEST_F(FileNames, LibrariesAndMaterialsBeforeAComment) {
     Heard heard;
     const SceneData scene = read("mtllib a.mtl\nusemtl Material #25\n", heard);
     EXPECT_FLOAT_EQ(scene.materials.at(0).diffuse[2], 0.3f);
-    read("mtllib b.mtl # gone\n", heard);
-    EXPECT_TRUE(heard.has(Warning::kMaterialFile, "b.mtl"));
+    read("\nmtllib a.mtl\nmtllib b.mtl # gone\n", heard);
+    EXPECT_TRUE(heard.has(Warning::kMaterialFile, "s.obj:3: material library missing: "));
+    EXPECT_TRUE(heard.has(Warning::kMaterialFile, "b.mtl: can't be read: No such file"));
+    EXPECT_TRUE(heard.has(Warning::kMaterialFile, "; a grey of 0.8 is taken for"));
     EXPECT_FALSE(heard.has(Warning::kMaterialFile, "gone"));
 }
 

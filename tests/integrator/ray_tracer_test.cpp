@@ -4,8 +4,12 @@
 #include "integrator/rays/ray_tracer.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include <cmath>
+#include <cstdio>
+#include <fstream>
 #include <limits>
 
 #include "integrator/scene/scene.h"
@@ -115,6 +119,32 @@ TEST(RayTracer, InstructionSets) {
             EXPECT_NE(std::string(error.what()).find(bad), std::string::npos) << error.what();
         }
     }
+}
+
+// A ray tracer in a process that may take no address space beyond what it has. Ends the process.
+[[noreturn]] void traceWithoutMemory() {
+    std::ifstream statm("/proc/self/statm");
+    rlim_t pages = 0;
+    statm >> pages;
+    const rlim_t bytes = pages * static_cast<rlim_t>(sysconf(_SC_PAGESIZE)) + (rlim_t{1} << 20);
+    const rlimit limit{bytes, bytes};
+    if (setrlimit(RLIMIT_AS, &limit) != 0) _exit(3);
+    try {
+        const RayTracer tracer("best");
+        _exit(2);
+    } catch (const Error& error) {
+        std::fputs(error.what(), stderr);
+        _exit(error.status() == Status::kOutOfMemory ? 0 : 1);
+    }
+}
+
+TEST(RayTracer, SaysWhenEmbreeHasNoMemory) {
+#ifdef __SANITIZE_ADDRESS__
+    GTEST_SKIP() << "the address sanitizer needs address space of its own";
+#else
+    GTEST_FLAG_SET(death_test_style, "threadsafe");
+    EXPECT_EXIT(traceWithoutMemory(), testing::ExitedWithCode(0), "out of memory: Embree");
+#endif
 }
 
 }  // namespace

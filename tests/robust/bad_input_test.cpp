@@ -44,7 +44,7 @@ TEST_F(BadInput, aMissingLibraryIsAWarningAndADefaultMaterial) {
     fs::remove(path("box.mtl"));
     const Outcome outcome = render({});
     EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
-    EXPECT_NE(outcome.err.find("warning: box.obj: material library missing: box.mtl"),
+    EXPECT_NE(outcome.err.find("warning: box.obj:1: material library missing: box.mtl"),
               std::string::npos)
         << outcome.err;
     EXPECT_NE(outcome.err.find("'wall', 'light'"), std::string::npos) << outcome.err;

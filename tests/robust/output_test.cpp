@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 // Outputs of the real pm_host: checked before the first ray, whole under their names, the same in
 // any locale.
+#include "host_shim/pictures/host_error.h"
+#include "host_shim/pictures/image_output.h"
 #include "host_shim/pictures/picture_io.h"
 #include "tests/robust/host_process.h"
 
@@ -118,6 +120,21 @@ TEST_F(Outputs, refusedSettingsNameTheirOption) {
     expectRefusal(render({"--bucket-size", "8", "--buckets", "0:99", "-o", "a.pmpart"}), 2,
                   {"--buckets: setting buckets is '0:99'", "within the 4 buckets of the picture"});
     expectRefusal(render({"--only-pixel", "16,3"}), 2, {"--only-pixel '16,3'", "X from 0 to 15"});
+}
+
+// Libraries that run out of memory say nothing.
+TEST_F(Outputs, aWriterThatGivesNoReasonIsNotQuoted) {
+    const OIIO::ImageSpec spec(4, 4, 3, OIIO::TypeDesc::FLOAT);
+    try {
+        writeImage(path("a.exr"), spec, [](OIIO::ImageOutput&) { return false; });
+        ADD_FAILURE() << "written";
+    } catch (const HostError& error) {
+        EXPECT_EQ(error.exitCode(), 4);
+        EXPECT_EQ(error.what(),
+                  path("a.exr").string() +
+                      ": can't be written: its library gives no reason; memory may be lacking");
+    }
+    EXPECT_TRUE(leftFiles().empty());
 }
 
 TEST_F(Outputs, errorLimit) {
