@@ -212,6 +212,11 @@ void checkSceneFile(const fs::path& file) {
 }
 
 std::string readWholeFile(const fs::path& file) {
+    // Streams open folders, and find nothing in them.
+    std::error_code ignored;
+    if (fs::is_directory(file, ignored))
+        throw HostError(ExitCode::kFile,
+                        fmt::format("{}: can't be read: it is a folder", file.string()));
     std::ifstream stream = openFile(file);
     std::ostringstream text;
     text << stream.rdbuf();

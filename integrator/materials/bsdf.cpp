@@ -187,8 +187,8 @@ Rgb Bsdf::evaluate(Lobe lobe, const Vec3f& in) const {
 }
 
 float Bsdf::pdfSolidAngle(Lobe lobe, const Vec3f& in) const {
-    const float probability = m_probability[index(lobe)];
-    if (probability == 0.0f) return 0.0f;
+    if (!has(lobe)) return 0.0f;
+    const float probability = m_followsAll ? 1.0f : m_probability[index(lobe)];
     if (lobe == Lobe::kDiffuse) return probability * std::max(0.0f, dot(in, m_ns)) * kInvPi;
     const float cosAlpha = dot(in, reflect(m_out, m_ns));
     if (!(cosAlpha > 0.0f)) return 0.0f;

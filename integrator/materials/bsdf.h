@@ -61,14 +61,16 @@ class Bsdf {
 
     // False: absorbed (photons), or the sampled direction has no value.
     bool sample(float uLobe, Vec2f u, BsdfSample& sample) const;
-    // The same for a lobe that is taken for sure, so that no choice is in the weight; it is in the
-    // density of one that is not delta. False also where the surface has no such lobe. u: a delta
-    // lobe needs none.
+    // From here on all lobes are followed, in place of one: densities have no choice in them.
+    void followAll() { m_followsAll = true; }
+    // The same for a lobe that is taken for sure, so that no choice is in the weight. False also
+    // where the surface has no such lobe. u: a delta lobe needs none.
     bool follow(Lobe lobe, BsdfSample& sample, Vec2f u = {}) const;
 
     // f |cos| of a lobe that is not delta, for light from `in` (unit, away from the surface).
     Rgb evaluate(Lobe lobe, const Vec3f& in) const;
-    // Density with which sample() takes that lobe and that direction; sr^-1.
+    // Density with which sample() takes that lobe and that direction, or, after followAll(), with
+    // which the lobe's own direction is that; sr^-1.
     float pdfSolidAngle(Lobe lobe, const Vec3f& in) const;
 
     // Lambertian reflectance; reflected radiance = diffuse() * irradiance / pi.
@@ -100,7 +102,7 @@ class Bsdf {
     const MaterialDescription& m_material;
     Vec3f m_out, m_ng, m_ns;
     bool m_frontSide;
-    bool m_black = false, m_diffuseOnly = false;
+    bool m_black = false, m_diffuseOnly = false, m_followsAll = false;
     Transport m_transport;
     float m_exponent = 0.0f;
     float m_eta = 1.0f;  // index on the far side over the index on this side

@@ -55,7 +55,8 @@ inline void wishForLargePages([[maybe_unused]] void* memory, [[maybe_unused]] st
 // Not initialised. Throws std::bad_alloc.
 template <typename T>
 BigArray<T> makeBigArray(std::size_t count) {
-    static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T>);
+    static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T> &&
+                  alignof(T) <= big_array::kLine);
     const std::size_t wanted = big_array::bytesOf<T>(count);
     const std::size_t alignment = big_array::alignmentOf(wanted);
     // Whole units of the alignment, as std::aligned_alloc wants them.

@@ -33,8 +33,9 @@ DrawnByFlux drawBySteps(const PhotonMap& photons, std::size_t count, float u,
     std::vector<double> before(chunks + 1, 0.0);
     tbb::parallel_for(std::size_t{0}, chunks, [&](std::size_t chunk) {
         cancel.throwIfSet("drawing photons");
-        visitChunk(photons, chunk,
-                   [&](const Photon& photon) { before[chunk + 1] += channelSum(photon.flux); });
+        double sum = 0;
+        visitChunk(photons, chunk, [&](const Photon& photon) { sum += channelSum(photon.flux); });
+        before[chunk + 1] = sum;
     });
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) before[chunk + 1] += before[chunk];
     drawn.flux = before.back();

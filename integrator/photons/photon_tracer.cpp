@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <mutex>
-#include <type_traits>
+#include <utility>
 
 #include "integrator/materials/bsdf.h"
 #include "integrator/sampling/sampler.h"

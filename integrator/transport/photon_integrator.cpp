@@ -31,8 +31,7 @@ std::uint32_t ownGatherRays(const GatherPoints* points) {
                   : kFewestOwnRays;
 }
 
-// Russian roulette is that of PathWalk where a path meets one lobe, and of its parts elsewhere.
-bool isDivided(const Bsdf& bsdf) {
+bool hasSeveralLobes(const Bsdf& bsdf) {
     int lobes = 0;
     for (std::size_t i = 0; i < kLobeCount; ++i) lobes += bsdf.has(static_cast<Lobe>(i));
     return lobes > 1;
@@ -59,15 +58,15 @@ SampleRadiance PhotonIntegrator::sample(Vec2f screen, const Ray& ray, Sampler& s
 // that reach a whole number.
 PhotonIntegrator::Survival PhotonIntegrator::divide(const Bsdf& bsdf, const Carried& path,
                                                     bool diffuse, Sampler& sampler) {
-    const bool divided = isDivided(bsdf);
+    const bool several = hasSeveralLobes(bsdf);
     Survival survival{};
     for (std::size_t i = 0; i < kLobeCount; ++i) {
         const auto lobe = static_cast<Lobe>(i);
         if (!bsdf.has(lobe) || (lobe == Lobe::kDiffuse && !diffuse)) continue;
         const float amount = maxChannel(path.throughput * bsdf.reflectance(lobe)) * path.etaScale;
-        survival[i] = divided ? std::min(1.0f, amount / kLeastDivided) : 1.0f;
+        survival[i] = several ? std::min(1.0f, amount / kLeastDivided) : 1.0f;
     }
-    if (!divided) return survival;
+    if (!several) return survival;
     double end = sampler.next1D();
     for (float& probability : survival) {
         const double begin = end;
@@ -98,8 +97,8 @@ void PhotonIntegrator::follow(Branch& branch, bool first, const Tree& tree) cons
         }
         if (tree.withSeenLamps || found != PathClass::kEmission)
             result.of(found) += path.throughput * weightedEmission(m_lights, surface, branch.last);
-        const Bsdf bsdf(m_scene, surface, -path.ray.direction, Transport::kRadiance,
-                        path.throughput);
+        Bsdf bsdf(m_scene, surface, -path.ray.direction, Transport::kRadiance, path.throughput);
+        bsdf.followAll();
         if (first) recordFirstHit(surface, bsdf, result);
         if (bsdf.isBlackBody()) return;
         const StillToFind still = addReflected(surface, bsdf, branch, tree);
@@ -114,6 +113,10 @@ bool PhotonIntegrator::followLobes(const Surface& surface, const Bsdf& bsdf, Sti
         return false;
     }
     const Survival survival = divide(bsdf, branch.path, still.any(), tree.sampler);
+    // A path that goes on by one lobe, beside the diffuse one, has lost the rest.
+    static_assert(static_cast<std::size_t>(Lobe::kDiffuse) == 0);
+    const auto isFollowed = [](float probability) { return probability > 0.0f; };
+    const bool divides = std::count_if(survival.begin() + 1, survival.end(), isFollowed) > 1;
     std::optional<Branch> next;
     for (std::size_t i = 0; i < kLobeCount; ++i) {
         if (survival[i] == 0.0f) continue;
@@ -126,7 +129,7 @@ bool PhotonIntegrator::followLobes(const Surface& surface, const Bsdf& bsdf, Sti
         if (!bsdf.follow(lobe, sample, isDelta(lobe) ? Vec2f{} : tree.sampler.next2D())) continue;
         sample.weight *= 1.0f / survival[i];
         Branch part = branch;
-        if (!part.goOn(surface, bsdf, sample, isDivided(bsdf), tree.sampler)) continue;
+        if (!part.goOn(surface, bsdf, sample, divides, tree.sampler)) continue;
         if (reflectsLamps(bsdf)) part.lampSamples = 1;
         if (next) follow(*next, false, tree);
         next = part;

@@ -151,9 +151,10 @@ void limitPhotons(const RenderSettings& settings, Plan& plan) {
     for (std::uint64_t* const photons : {&plan.globalPhotons, &plan.causticPhotons})
         *photons = static_cast<std::uint64_t>(static_cast<double>(*photons) * share);
     plan.reasons.push_back(fmt::format(
-        "photons: in all {} a pass and no more, so that the maps of {} passes fit into {} MiB: a "
-        "frame as large as this goes bucket by bucket; --photons asks for others",
-        plan.photonsPerPass(), kPassesOfHugeFrame, kMapBytesOfHugeFrame >> 20));
+        "photons: in all {} a pass and no more, so that the maps of {} passes fit into {:.2f} GiB: "
+        "a frame as large as this goes bucket by bucket; --photons asks for others",
+        plan.photonsPerPass(), kPassesOfHugeFrame,
+        static_cast<double>(kMapBytesOfHugeFrame) / (1 << 30)));
 }
 
 // How often photons land, for estimates of memory alone: no picture depends on it.
@@ -326,9 +327,9 @@ std::string Plan::explain() const {
     for (const std::string& reason : reasons) text += reason + "\n";
     if (tracePhotons)
         text += fmt::format(
-            "maps: at most about {:.1f} MB at a time\ntime: about {:.2g} processor seconds a "
+            "maps: at most about {:.2f} GiB at a time\ntime: about {:.2g} processor seconds a "
             "pass, to a factor of two\n",
-            static_cast<double>(mapBytes) / 1e6, processorSecondsPerPass);
+            static_cast<double>(mapBytes) / (1 << 30), processorSecondsPerPass);
     return text;
 }
 

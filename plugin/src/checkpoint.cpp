@@ -79,6 +79,7 @@ Checkpoint::Checkpoint(const std::string& file, bool resume, PieceHead head, con
     if (!m_isNew && !reader.isPiece())
         throw unusable(m_file->name(), "is there and no checkpoint; it would be overwritten");
     m_replacesOther = !resume && !m_isNew;
+    m_foundNone = resume && m_isNew;
     if (m_replacesOther) refuseOtherPieces();
     if (resume && !m_isNew)
         readHead();

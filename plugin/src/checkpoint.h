@@ -50,6 +50,8 @@ class Checkpoint {
     const DonePixels& done() const { return m_done; }
     // Whether one was there and was begun anew.
     bool replacesOther() const { return m_replacesOther; }
+    // It was to go on from one, and none was there.
+    bool foundNone() const { return m_foundNone; }
     // Of a torn end that load() dropped.
     std::uint64_t droppedBytes() const { return m_droppedBytes; }
 
@@ -88,6 +90,7 @@ class Checkpoint {
     std::uint64_t m_droppedBytes = 0;
     bool m_isNew = false;  // made by this
     bool m_replacesOther = false;
+    bool m_foundNone = false;
 
     std::atomic<bool> m_off{false};     // nothing is written any more
     std::mutex m_mutex;                 // of what follows

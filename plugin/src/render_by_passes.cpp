@@ -27,6 +27,10 @@ std::uint32_t RenderWork::resume(const Cancel& cancel, EventQueue& events) {
                                      "what they held is rendered again",
                                      resumed.file, resumed.droppedBytes),
                          events);
+    if (resumed.foundNone)
+        events.message(PMR_LEVEL_INFO, PMR_MESSAGE_PHASE,
+                       fmt::format("{}: no checkpoint was there to resume; the render begins anew",
+                                   resumed.file));
     const bool hasPart = resumed.shareOfNext > 0;
     if (resumed.passes == 0 && !hasPart) return 0;
     events.message(PMR_LEVEL_INFO, PMR_MESSAGE_PHASE,

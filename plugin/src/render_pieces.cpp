@@ -95,6 +95,7 @@ RenderPieces::Resumed RenderPieces::resume(FrameStore& frame, std::size_t channe
     resumed.shareOfNext =
         static_cast<double>(m_checkpoint->done().count()) / static_cast<double>(m_pixels);
     resumed.replacesOther = m_checkpoint->replacesOther();
+    resumed.foundNone = m_checkpoint->foundNone();
     resumed.droppedBytes = m_checkpoint->droppedBytes();
     return resumed;
 }

@@ -40,6 +40,7 @@ class RenderPieces {
         double shareOfNext = 0;          // of its pixels
         std::uint64_t droppedBytes = 0;  // of a torn end
         bool replacesOther = false;      // a checkpoint that was there and was not to go on
+        bool foundNone = false;          // there was none to go on from
     };
     // Puts what the checkpoint has into the empty frame; channels: floats that a pass has for each
     // pixel. Errors: those of Checkpoint::load.

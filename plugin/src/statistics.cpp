@@ -130,7 +130,9 @@ void addPasses(const RenderWork& work, const RenderWork::Progress& progress, Jso
     json["passesPlanned"] = work.passCount();
     json["threads"] = work.threads();
     json["delivery"] = work.memory().byBuckets ? "buckets" : "frame";
-    addError(work.estimateError(), json);
+    // Of a torn picture it would be that of its finished buckets alone.
+    const bool isTorn = work.memory().byBuckets && progress.passesDone == 0;
+    addError(isTorn ? std::nullopt : work.estimateError(), json);
     json["errorCurve"] = curveJson(progress.curve);
 }
 

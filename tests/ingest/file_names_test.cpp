@@ -79,6 +79,8 @@ TEST_F(FileNames, LibrariesAndMaterialsBeforeAComment) {
     EXPECT_TRUE(heard.has(Warning::kMaterialFile, "s.obj:3: material library missing: "));
     EXPECT_TRUE(heard.has(Warning::kMaterialFile, "b.mtl: can't be read: No such file"));
     EXPECT_TRUE(heard.has(Warning::kMaterialFile, "; a grey of 0.8 is taken for"));
+    read("mtllib Maps\n", heard);
+    EXPECT_TRUE(heard.has(Warning::kMaterialFile, "Maps: can't be read: it is a folder"));
     EXPECT_FALSE(heard.has(Warning::kMaterialFile, "gone"));
 }
 

@@ -89,6 +89,71 @@ TEST(CameraPaths, RouletteSparesParts) {
     EXPECT_LE(found.variance, r * reflected);
 }
 
+// Under a sky of 1, along a ray that comes down to a floor at the origin.
+struct UnderSky {
+    double emission = 0, direct = 0, directError = 0, leastEmission = 1e9, mostEmission = 0;
+};
+UnderSky underSky(SceneMaker maker, const MaterialDescription& floor) {
+    maker.quad({-0.01, 0, 0.01}, {0.02, 0, 0}, {0, 0, -0.02}, maker.material(floor));
+    maker.sky(Rgb(1.0f));
+    const auto scene = maker.build();
+    const LightSampler lights(*scene);
+    const PhotonIntegrator integrator(*scene, lights, {});
+    const Ray ray{Vec3f(Vec3d{0, 0.5, 0.5} - scene->centre()), normalize(Vec3f(0, -0.5f, -0.5f))};
+    NearestPhotons scratch;
+    constexpr std::uint32_t kCount = 20'000;
+    UnderSky found;
+    double squares = 0;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        Sampler sampler(5, 0, i, 0);
+        const SampleRadiance seen = integrator.sample({}, ray, sampler, scratch);
+        const auto emission = static_cast<double>(seen.emission.g);
+        const auto direct = static_cast<double>(seen.direct.g);
+        found.emission += emission / kCount;
+        found.leastEmission = std::min(found.leastEmission, emission);
+        found.mostEmission = std::max(found.mostEmission, emission);
+        found.direct += direct / kCount;
+        squares += direct * direct / kCount;
+    }
+    found.directError = std::sqrt((squares - found.direct * found.direct) / kCount);
+    return found;
+}
+
+// What passes a veil is followed for sure; what its few threads reflect, rarely, at its weight.
+TEST(CameraPaths, VeilsAtTheirWeights) {
+    MaterialDescription veil;
+    veil.diffuse = Rgb(1.0f);
+    veil.transparency = 0.99f;
+    const UnderSky found = underSky({}, veil);
+    EXPECT_NEAR(found.leastEmission, 0.99, 1e-6);
+    EXPECT_NEAR(found.mostEmission, 0.99, 1e-6);
+    EXPECT_NEAR(found.direct, 0.01, 4 * found.directError);
+    EXPECT_LT(found.directError, 0.01 * 0.01);
+}
+
+// A part that is followed by chance counts for more, diffuse ones, too.
+TEST(CameraPaths, LesserDiffuseParts) {
+    SceneMaker maker;
+    MaterialDescription veil;
+    veil.diffuse = Rgb(1.0f);
+    veil.transparency = 0.5f;
+    maker.quad({-1, 0, -0.5}, {2, 0, 0}, {0, 1, 0}, maker.material(veil));
+    const UnderSky found = underSky(maker, mirror(0.02f));
+    EXPECT_NEAR(found.direct, 0.01, 4 * found.directError);
+    EXPECT_NEAR(found.emission, 0.01, 1e-3);
+}
+
+// Two parts of what a mirror of 0.03 leaves: always one of them, at the whole.
+TEST(CameraPaths, OneOfTwoLesserParts) {
+    SceneMaker maker;
+    MaterialDescription half = mirror(1.0f);
+    half.transparency = 0.25f;
+    maker.quad({-1, 0, -0.5}, {2, 0, 0}, {0, 1, 0}, maker.material(half));
+    const UnderSky found = underSky(maker, mirror(0.03f));
+    EXPECT_NEAR(found.leastEmission, 0.03, 1e-6);
+    EXPECT_NEAR(found.mostEmission, 0.03, 1e-6);
+}
+
 // Direct light in the centres of 16 x 16 pixels, green: one path each.
 std::vector<double> directSeen(const SceneMaker& maker) {
     const auto scene = maker.build();

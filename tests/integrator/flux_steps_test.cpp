@@ -56,6 +56,31 @@ TEST(FluxSteps, DrawEachInProportion) {
     }
 }
 
+// Where the steps fall on the photons laid end to end.
+TEST(FluxSteps, DrawWhereTheStepsFall) {
+    const PhotonMap map(spread(40'000));
+    constexpr std::size_t kCount = 3000;
+    for (const float u : {0.0f, 0.3f, 0x1.fffffep-1f}) {
+        const DrawnByFlux drawn = drawBySteps(map, kCount, u);
+        double upTo = 0;
+        std::size_t next = 0;
+        for (std::uint32_t i = 0; i < map.size(); ++i) {
+            const Photon photon = map.photon(i);
+            upTo += channelSum(photon.flux);
+            for (; next < kCount; ++next) {
+                const double place = (static_cast<double>(next) + u) * drawn.flux / kCount;
+                if (place >= upTo - 1e-9 * drawn.flux) break;
+                ASSERT_EQ(drawn.photons[next].photon.position, photon.position) << next;
+            }
+            // So near an end that rounding decides.
+            if (next < kCount &&
+                (static_cast<double>(next) + u) * drawn.flux / kCount < upTo + 1e-9 * drawn.flux)
+                ++next;
+        }
+        EXPECT_EQ(next, kCount);
+    }
+}
+
 TEST(FluxSteps, TheSameBitsForAnyNumberOfThreads) {
     const PhotonMap map(spread(40'000));
     std::array<DrawnByFlux, 2> drawn;

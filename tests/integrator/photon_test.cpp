@@ -50,6 +50,18 @@ MaterialDescription mirror() {
     return m;
 }
 
+// In the order of their numbers, whatever batches they were traced in.
+TEST(Photons, FewerAreTheFirstOfMore) {
+    SceneMaker maker;
+    maker.quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10}, maker.diffuse(Rgb(0.7f)));
+    maker.pointLight({2, 3, 2}, Rgb(1.0f));
+    const auto scene = maker.build();
+    const auto more = trace(scene, 4 * 4096).photons, fewer = trace(scene, 4096).photons;
+    ASSERT_GT(fewer.size(), 900u);
+    for (std::size_t i = 0; i < fewer.size(); ++i)
+        ASSERT_EQ(fewer[i].position, more[i].position) << i;
+}
+
 TEST(Photons, EnergyIsConserved) {
     SceneMaker maker;
     maker.quad({-5, 0, 5}, {10, 0, 0}, {0, 0, -10}, maker.diffuse({0.7f, 0.5f, 0.3f}));

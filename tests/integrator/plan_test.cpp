@@ -105,7 +105,7 @@ TEST(Plan, HugeFramesHaveMapsThatFit) {
         const Plan huge = planOf(maker, settings);
         EXPECT_EQ(huge.photonsPerPass(), one.photonsPerPass());
         EXPECT_LE(huge.heldMapBytes(8) + huge.buildingMapBytes(), std::uint64_t{560} << 20);
-        EXPECT_NE(huge.explain().find("no more, so that the maps of 8 passes fit into 560 MiB"),
+        EXPECT_NE(huge.explain().find("no more, so that the maps of 8 passes fit into 0.55 GiB"),
                   std::string::npos);
         EXPECT_NE(huge.explain().find(std::to_string(huge.globalPhotons) + " photons a pass"),
                   std::string::npos);

@@ -206,6 +206,7 @@ TEST_F(BadInput, explainRefusesWhatTheRenderWould) {
     const Outcome good = run({"box.obj", "--explain", "--buckets", "299:300", "-o", "p.pmpart"});
     EXPECT_EQ(good.exitCode, 0) << good.err;
     EXPECT_NE(good.out.find("memory: "), std::string::npos);
+    EXPECT_NE(good.out.find(" GiB at a time\n"), std::string::npos) << good.out;
     EXPECT_EQ(good.out.find("would be refused"), std::string::npos) << good.out;
     EXPECT_NE(run({"box.obj", "--explain", "--memory-limit", "0.01"}).out.find("would be refused"),
               std::string::npos);

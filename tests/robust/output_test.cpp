@@ -122,6 +122,24 @@ TEST_F(Outputs, refusedSettingsNameTheirOption) {
     expectRefusal(render({"--only-pixel", "16,3"}), 2, {"--only-pixel '16,3'", "X from 0 to 15"});
 }
 
+TEST_F(Outputs, aRenderWithNothingToResumeSaysSo) {
+    std::vector<std::string> arguments{
+        "box.obj", "--size", "8x8",          "--passes", "1",  "--photons", "100",
+        "--aa",    "1",      "--checkpoint", "c",        "-o", "a.exr",     "--keep-checkpoint"};
+    const std::string line = "c: no checkpoint was there to resume; the render begins anew";
+    const Outcome notAsked = run(arguments);
+    EXPECT_EQ(notAsked.exitCode, 0) << notAsked.err;
+    EXPECT_EQ(notAsked.err.find(line), std::string::npos) << notAsked.err;
+    arguments.push_back("--resume");
+    const Outcome there = run(arguments);
+    EXPECT_EQ(there.exitCode, 0) << there.err;
+    EXPECT_EQ(there.err.find(line), std::string::npos) << there.err;
+    fs::remove(path("c"));
+    const Outcome none = run(arguments);
+    EXPECT_EQ(none.exitCode, 0) << none.err;
+    EXPECT_NE(none.err.find(line), std::string::npos) << none.err;
+}
+
 // Libraries that run out of memory say nothing.
 TEST_F(Outputs, aWriterThatGivesNoReasonIsNotQuoted) {
     const OIIO::ImageSpec spec(4, 4, 3, OIIO::TypeDesc::FLOAT);

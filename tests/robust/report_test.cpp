@@ -149,6 +149,11 @@ TEST_F(ReportPage, showsAMergeWithItsStandardError) {
 
 TEST_F(ReportPage, isCheckedBeforeTheFirstRay) {
     expectRefusal(run({"box.obj", "--report", "r.txt"}), 2, {"--report 'r.txt'", ".html"});
+    expectRefusal(run({"box.obj", "--report", "R.TXT"}), 2, {"--report 'R.TXT'", ".html"});
+    ASSERT_EQ(render({"-o", "a.exr", "--report", "R.HTML"}).exitCode, 0);
+    expectSections(checkedPage("R.HTML"), {"status", "picture"});
+    fs::remove(path("R.HTML"));
+    fs::remove(path("a.exr"));
     expectRefusal(run({"box.obj", "--report", "none/r.html"}), 4, {"none", "--make-output-path"});
     expectRefusal(run({"box.obj", "--report", "r.html", "--log", "./r.html"}), 2, {"twice"});
     fs::create_symlink("box.mtl", path("link.html"));

@@ -75,6 +75,7 @@ TEST_F(Tiles, HoldThePixelsOfTheWhole) {
                                       "--stats", "t.json", "-o", std::string("h") + name});
         ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
         EXPECT_EQ(json("t.json")["delivery"], "buckets");
+        EXPECT_TRUE(json("t.json")["relMseEstimate"].is_number());
     }
     expectSamePicture(readExr(path("whole.exr")), readExr(path("tiles1.exr")));
     EXPECT_EQ(readText(path("tiles1.exr")), readText(path("tiles3.exr")));
@@ -129,7 +130,8 @@ TEST_F(Tiles, RefuseWhatNeedsTheWhole) {
 
 TEST_F(Tiles, LeaveAPartialPictureWhenInterrupted) {
     const Outcome outcome =
-        run(large({"--memory-limit", "0.3", "-o", "a.exr", "--aa", "4", "--progress", "plain"}),
+        run(large({"--memory-limit", "0.3", "-o", "a.exr", "--aa", "4", "--progress", "plain",
+                   "--stats", "s.json"}),
             [this](pid_t child) {
                 for (int tries = 0; tries < 2000; ++tries) {
                     for (const auto& entry : fs::directory_iterator(path("")))
@@ -147,7 +149,10 @@ TEST_F(Tiles, LeaveAPartialPictureWhenInterrupted) {
     const std::vector<float>& alpha = picture.find("A")->values;
     EXPECT_GT(std::count(alpha.begin(), alpha.end(), 1.0f), 0);
     EXPECT_GT(std::count(alpha.begin(), alpha.end(), 0.0f), 200'000);
-    EXPECT_EQ(leftFiles(), (std::vector<std::string>{"a.partial.exr", "flat.obj"}));
+    // What its finished buckets have is not the picture's error.
+    for (const char* key : {"relMseEstimate", "relMseEstimateNoise", "relMseEstimateBias"})
+        EXPECT_TRUE(json("s.json")[key].is_null()) << key;
+    EXPECT_EQ(leftFiles(), (std::vector<std::string>{"a.partial.exr", "flat.obj", "s.json"}));
 }
 
 }  // namespace
