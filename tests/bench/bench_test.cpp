@@ -7,6 +7,7 @@
 #include <fstream>
 #include <random>
 #include <sstream>
+#include <stdexcept>
 
 #include "integrator/values/error.h"
 #include "tests/bench/child_process.h"
@@ -14,6 +15,7 @@
 #include "tests/bench/idle_share.h"
 #include "tests/bench/log_plot.h"
 #include "tests/bench/picture_error.h"
+#include "tests/bench/report.h"
 
 namespace pm::bench {
 namespace {
@@ -23,6 +25,14 @@ std::string contentsOf(const std::filesystem::path& file) {
     std::stringstream text;
     text << in.rdbuf();
     return text.str();
+}
+
+TEST(Report, RowsHaveAsManyCellsAsTheHeader) {
+    Report report("table");
+    report.table("squares", {"n", "n^2"});
+    report.row({"2", "4"});
+    EXPECT_THROW(report.row({"3"}), std::logic_error);
+    EXPECT_NE(std::string::npos, report.markdown().find("| n | n^2 |\n| --- | --- |\n| 2 | 4 |\n"));
 }
 
 TEST(SecondsTo, FollowsAStraightLineBetweenLogarithms) {

@@ -103,7 +103,7 @@ void ErrorBench::addStep(const std::string& name, const LadderStep& step) {
     m_report.row({name, std::to_string(step.passes), show(step.samples), show(step.error),
                   shown(step.estimated),
                   step.estimated ? fmt::format("{:.2f}", *step.estimated / step.error) : "",
-                  show(step.error * step.samples), shown(step.common),
+                  show(step.error * step.samples), shown(step.common), shown(step.estimatedBias),
                   fmt::format("{:.4f}", step.mean), show(step.seconds),
                   show(step.processorSeconds)});
 }

@@ -11,6 +11,7 @@
 #include <ctime>
 #include <fstream>
 #include <iterator>
+#include <stdexcept>
 #include <thread>
 
 #include "integrator/values/error.h"
@@ -68,6 +69,9 @@ void Report::table(const std::string& title, std::vector<std::string> header) {
 
 void Report::row(std::vector<std::string> cells) {
     fmt::print(stderr, "  {}\n", fmt::join(cells, " | "));
+    if (cells.size() != m_tables.back().header.size())
+        throw std::logic_error(fmt::format("a row of {} cells in a table of {} columns",
+                                           cells.size(), m_tables.back().header.size()));
     m_tables.back().rows.push_back(std::move(cells));
 }
 

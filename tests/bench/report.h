@@ -19,7 +19,8 @@ class Report {
     void paragraph(const std::string& text);
     // The rows that follow belong to this table.
     void table(const std::string& title, std::vector<std::string> header);
-    // Also says on standard error that this row is done.
+    // Also says on standard error that this row is done. As many cells as the header has; throws
+    // std::logic_error.
     void row(std::vector<std::string> cells);
 
     std::string markdown() const;

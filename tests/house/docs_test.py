@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: The pm authors
 """The documents hold: links lead somewhere, the C example compiles, options exist in pm_host, tests
-exist that docs/testing.md names.
+exist that docs/testing.md names, tables are even.
 
 usage: docs_test.py C_COMPILER PM_HOST
 """
@@ -52,6 +52,17 @@ def unknown_options(host):
                     yield f"{document.relative_to(ROOT)}: pm_host has no option {option}"
 
 
+def uneven_tables():
+    """Rows of a table have as many cells as its first."""
+    for document in DOCUMENTS:
+        head = 0
+        for number, line in enumerate(document.read_text(encoding="utf-8").splitlines(), 1):
+            cells = len(re.findall(r"(?<!\\)\|", line)) if line.startswith("|") else 0
+            if head and cells and cells != head:
+                yield f"{document.relative_to(ROOT)}:{number}: {cells - 1} cells of {head - 1}"
+            head = (head or cells) if cells else 0
+
+
 def unknown_tests():
     named = set()
     for source in ROOT.glob("tests/*/*.cpp"):
@@ -65,7 +76,7 @@ def unknown_tests():
 
 def main():
     compiler, host = sys.argv[1:3]
-    found = [*broken_links(), *broken_example(compiler), *unknown_tests()]
+    found = [*broken_links(), *broken_example(compiler), *unknown_tests(), *uneven_tables()]
     if pathlib.Path(host).exists():
         found += unknown_options(host)
     else:
