@@ -113,7 +113,8 @@ void GatherPoints::forget(const Rect& region, const Rect& all) const {
         }
 }
 
-// A path through the cell as camera samples go, up to where it would be scattered diffusely.
+// A path through the cell, by one lobe at each surface, up to where it would be scattered
+// diffusely.
 void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
     const std::size_t index = cell.row * static_cast<std::size_t>(m_tiles.columns()) + cell.column;
     Sampler sampler(m_request.seed, streamOf(m_request.pass), kPointSequences + index, 0);
