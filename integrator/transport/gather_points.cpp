@@ -113,8 +113,8 @@ void GatherPoints::forget(const Rect& region, const Rect& all) const {
         }
 }
 
-// A path through the cell, by one lobe at each surface, up to where it would be scattered
-// diffusely.
+// A path through the cell to a surface with a diffuse lobe: to the first in half of the cells at
+// least, as samples ask there as often as where its other lobes lead.
 void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
     const std::size_t index = cell.row * static_cast<std::size_t>(m_tiles.columns()) + cell.column;
     Sampler sampler(m_request.seed, streamOf(m_request.pass), kPointSequences + index, 0);
@@ -129,7 +129,8 @@ void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
     const Ray first =
         m_camera.ray(static_cast<double>(point.screen.x), static_cast<double>(point.screen.y));
     followCameraPath(m_scene, first, sampler, [&](const PathStop& stop) {
-        if (stop.next != Lobe::kDiffuse) return true;
+        const bool chosen = stop.bsdf.has(Lobe::kDiffuse) && stop.sampler.next1D() < 0.5f;
+        if (stop.next != Lobe::kDiffuse && !chosen) return true;
         point.position = stop.surface.position;
         point.normal = stop.bsdf.facingShadingNormal();
         tile.origins[cell.inTile()] = {stop.bsdf.facingGeometricNormal(), stop.surface.offset};
