@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <numbers>
 #include <optional>
 
 #include "integrator/sampling/warps.h"
@@ -26,9 +27,38 @@ constexpr std::uint32_t kFewestOwnRays = 4, kRaysOfPointToAnOwnRay = 8;
 // begin.
 constexpr float kLeastDivided = 0.03f;
 
-std::uint32_t ownGatherRays(const GatherPoints* points) {
-    return points ? std::max(kFewestOwnRays, points->raysOfPoint() / kRaysOfPointToAnOwnRay)
-                  : kFewestOwnRays;
+// Where a place's share is below this, refocused light is estimated the more seldom.
+constexpr float kLeastRefocused = 0.33f;
+
+// Of so many rays, a power of two, those that a part of a camera sample is worth; see
+// Branch::share. What their noise comes to goes with the share's square, so for its time it is
+// least where their number goes with the share: to the nearest power of two.
+std::uint32_t raysOfShare(std::uint32_t rays, float share) {
+    constexpr float kSqrt2 = std::numbers::sqrt2_v<float>;
+    const float worth = std::min(kSqrt2 * share, 1.0f) * static_cast<float>(rays);
+    return std::bit_floor(std::max(1u, static_cast<std::uint32_t>(worth)));
+}
+
+std::uint32_t ownGatherRays(const GatherPoints* points, float share) {
+    const std::uint32_t rays =
+        points ? std::max(kFewestOwnRays, points->raysOfPoint() / kRaysOfPointToAnOwnRay)
+               : kFewestOwnRays;
+    return raysOfShare(rays, share);
+}
+
+// To a part of what a camera sample finds.
+void add(const TwoRadii& irradiance, const Rgb& reflected, Rgb& part, SampleRadiance& result) {
+    part += reflected * irradiance.wide;
+    result.biasProbe += reflected * (irradiance.narrow - irradiance.wide);
+}
+
+// Of all that a surface reflects, a lobe's part.
+float partOf(const Bsdf& bsdf, Lobe lobe) {
+    if (bsdf.isDiffuseOnly()) return 1.0f;
+    float all = 0.0f;
+    for (std::size_t i = 0; i < kLobeCount; ++i)
+        all += maxChannel(bsdf.reflectance(static_cast<Lobe>(i)));
+    return all > 0.0f ? maxChannel(bsdf.reflectance(lobe)) / all : 0.0f;
 }
 
 bool hasSeveralLobes(const Bsdf& bsdf) {
@@ -129,8 +159,11 @@ bool PhotonIntegrator::followLobes(const Surface& surface, const Bsdf& bsdf, Sti
         if (!bsdf.follow(lobe, sample, isDelta(lobe) ? Vec2f{} : tree.sampler.next2D())) continue;
         sample.weight *= 1.0f / survival[i];
         Branch part = branch;
+        part.share *= partOf(bsdf, lobe) / survival[i];
         if (!part.goOn(surface, bsdf, sample, divides, tree.sampler)) continue;
-        if (reflectsLamps(bsdf)) part.lampSamples = 1;
+        part.lampSamples = reflectsLamps(bsdf) ? 1
+                                               : std::min(branch.lampSamples,
+                                                          raysOfShare(m_lampSamples, part.share));
         if (next) follow(*next, false, tree);
         next = part;
     }
@@ -145,9 +178,9 @@ PhotonIntegrator::StillToFind PhotonIntegrator::addReflected(const Surface& surf
                                                              const Tree& tree) const {
     const Rgb& throughput = branch.path.throughput;
     StillToFind still;
-    if (bsdf.has(Lobe::kDiffuse)) still = readMaps(surface, bsdf, throughput, tree);
+    if (bsdf.has(Lobe::kDiffuse)) still = readMaps(surface, bsdf, branch, tree);
     if (still.indirect && m_maps.lamps)
-        sampleCaustics(surface, bsdf, throughput, tree.sampler, tree.result);
+        sampleCaustics(surface, bsdf, throughput, still.ownRays, tree.sampler, tree.result);
     if (reflectsLamps(bsdf)) {
         const DirectRadiance direct =
             estimateDirect(m_scene, m_lights, surface, bsdf, still.lamps, branch.lampSamples,
@@ -158,14 +191,10 @@ PhotonIntegrator::StillToFind PhotonIntegrator::addReflected(const Surface& surf
 }
 
 PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(const Surface& surface, const Bsdf& bsdf,
-                                                         const Rgb& throughput,
+                                                         const Branch& branch,
                                                          const Tree& tree) const {
     SampleRadiance& result = tree.result;
-    const Rgb reflected = throughput * bsdf.diffuse() * kInvPi;
-    const auto add = [&](const TwoRadii& irradiance, Rgb& part) {
-        part += reflected * irradiance.wide;
-        result.biasProbe += reflected * (irradiance.narrow - irradiance.wide);
-    };
+    const Rgb reflected = branch.path.throughput * bsdf.diffuse() * kInvPi;
     StillToFind still;
     GatherPoints::Estimate indirect;
     const GatherPoints::Place place{tree.screen, surface.position, bsdf.facingShadingNormal(),
@@ -173,29 +202,42 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(const Surface& surface,
     const bool kept = m_maps.points && m_maps.points->estimate(place, indirect);
     result.rays += indirect.rays;
     if (kept) {
-        add(indirect.irradiance, result.indirect);
+        add(indirect.irradiance, reflected, result.indirect, result);
         if (indirect.lampShare < kLargeLampShare) still.lamps = LampStrategy::kNextEventOnly;
     }
     const Vec3f& normal = bsdf.facingGeometricNormal();
     if (m_maps.caustic)
-        add(m_maps.caustic->irradiance(surface.position, normal, tree.scratch), result.caustic);
+        add(m_maps.caustic->irradiance(surface.position, normal, tree.scratch), reflected,
+            result.caustic, result);
     still.indirect = !kept && m_maps.global;
-    if (still.indirect && m_maps.refocused) {
-        // Any pattern that depends on the place alone.
-        const auto pattern = std::bit_cast<std::uint32_t>(surface.position.x) ^
-                             std::bit_cast<std::uint32_t>(surface.position.y);
-        add(m_maps.points ? m_maps.points->refocusedAt(place, indirect.clearance, pattern)
-                          : m_maps.refocused->at(surface.position, normal, pattern),
-            result.indirect);
-    }
+    if (!still.indirect) return still;
+    const float share = branch.share * partOf(bsdf, Lobe::kDiffuse);
+    still.ownRays = ownGatherRays(m_maps.points, share);
+    if (m_maps.refocused) addRefocused(place, indirect.clearance, share, reflected, tree);
     return still;
+}
+
+// Where there is no gather point. Such an estimate costs as much as many rays: of what carries
+// little few are made.
+void PhotonIntegrator::addRefocused(const GatherPoints::Place& place, float clearance, float share,
+                                    const Rgb& reflected, const Tree& tree) const {
+    const float probability = std::min(1.0f, share / kLeastRefocused);
+    Sampler chance = tree.sampler;  // a copy: maps without photons are to change no bit
+    if (!(chance.next1D() < probability)) return;
+    // Any pattern that depends on the place alone.
+    const auto pattern = std::bit_cast<std::uint32_t>(place.position.x) ^
+                         std::bit_cast<std::uint32_t>(place.position.y);
+    const TwoRadii irradiance =
+        m_maps.points ? m_maps.points->refocusedAt(place, clearance, pattern)
+                      : m_maps.refocused->at(place.position, place.geometricNormal, pattern);
+    add(irradiance, reflected * (1.0f / probability), tree.result.indirect, tree.result);
 }
 
 void PhotonIntegrator::followDiffuse(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
                                      StillToFind still, float survival, const Tree& tree) const {
     const Sampler directions = tree.sampler;
     tree.sampler.skip();
-    const std::uint32_t rays = still.indirect ? ownGatherRays(m_maps.points) : 1;
+    const std::uint32_t rays = still.ownRays;
     const Rgb share = branch.path.throughput / (survival * static_cast<float>(rays));
     std::optional<GatherGuide::Directions> guide;
     // For lamps that such rays meet, too: the weights of the two strategies sum to 1 in every
@@ -217,9 +259,8 @@ void PhotonIntegrator::followDiffuse(const Surface& surface, const Bsdf& bsdf, c
 
 // What a sample's own gather rays leave out of the light that caustics send straight to a surface.
 void PhotonIntegrator::sampleCaustics(const Surface& surface, const Bsdf& bsdf,
-                                      const Rgb& throughput, Sampler sampler,
+                                      const Rgb& throughput, std::uint32_t rays, Sampler sampler,
                                       SampleRadiance& result) const {
-    const std::uint32_t rays = ownGatherRays(m_maps.points);
     const Vec3f& up = bsdf.facingGeometricNormal();
     const VirtualLamps::Place place{surface.position, surface.position + up * surface.offset,
                                     bsdf.facingShadingNormal(), up};

@@ -50,6 +50,7 @@ class PhotonIntegrator {
     struct StillToFind {
         LampStrategy lamps = LampStrategy::kBoth;
         bool indirect = false;
+        std::uint32_t ownRays = 1;  // by how many rays along it
 
         bool any() const { return indirect || lamps == LampStrategy::kBoth; }
     };
@@ -59,6 +60,9 @@ class PhotonIntegrator {
         PathState state;
         LastScatter last;
         std::uint32_t lampSamples = 1;
+        // Of what the camera sample brings, this branch's part, were all that it meets as bright:
+        // what is worth how much work.
+        float share = 1.0f;
 
         bool goOn(const Surface& surface, const Bsdf& bsdf, const BsdfSample& sample, bool isPart,
                   Sampler& sampler);
@@ -82,15 +86,17 @@ class PhotonIntegrator {
                      const Tree& tree) const;
     StillToFind addReflected(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
                              const Tree& tree) const;
-    StillToFind readMaps(const Surface& surface, const Bsdf& bsdf, const Rgb& throughput,
+    StillToFind readMaps(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
                          const Tree& tree) const;
+    void addRefocused(const GatherPoints::Place& place, float clearance, float share,
+                      const Rgb& reflected, const Tree& tree) const;
     void followDiffuse(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
                        StillToFind still, float survival, const Tree& tree) const;
     void gatherAlong(const LastScatter& last, StillToFind still, const Rgb& weight,
                      std::uint32_t rays, float cosine, Sampler& sampler,
                      SampleRadiance& result) const;
     void sampleCaustics(const Surface& surface, const Bsdf& bsdf, const Rgb& throughput,
-                        Sampler sampler, SampleRadiance& result) const;
+                        std::uint32_t rays, Sampler sampler, SampleRadiance& result) const;
 
     const Scene& m_scene;
     const LightSampler& m_lights;

@@ -2,16 +2,19 @@
 // SPDX-FileCopyrightText: The pm authors
 // Camera paths follow all lobes that carry enough: no grain where one would be chosen by chance,
 // and the same mean.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <vector>
 
 #include "integrator/transport/photon_integrator.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"
+#include "tests/integrator/statistics.h"
 
 namespace pm::test {
 namespace {
@@ -20,12 +23,8 @@ constexpr double kThickness = 0.05;
 // What lobes may carry that are followed by chance, see photon_integrator.cpp.
 constexpr double kLeastDivided = 0.03;
 
-struct Moments {
-    double mean = 0, variance = 0, standardError = 0;  // variance of one sample
-};
-
 // Lamps seen along a ray that comes down at 60 degrees to where the origin is.
-Moments momentsOf(const Scene& scene) {
+Moments lampsSeen(const Scene& scene) {
     constexpr std::uint32_t kCount = 20'000;
     const double sine = std::sqrt(0.75);
     const Vec3d eye{0, 0.5, sine};
@@ -33,16 +32,10 @@ Moments momentsOf(const Scene& scene) {
     const PhotonIntegrator integrator(scene, lights, {});
     const Ray ray{Vec3f(eye - scene.centre()), Vec3f(-eye)};
     NearestPhotons scratch;
-    double sum = 0, squares = 0;
-    for (std::uint32_t i = 0; i < kCount; ++i) {
+    return momentsOf(kCount, [&](std::uint32_t i) {
         Sampler sampler(5, 0, i, 0);
-        const auto value =
-            static_cast<double>(integrator.sample({}, ray, sampler, scratch).emission.g);
-        sum += value;
-        squares += value * value;
-    }
-    const double mean = sum / kCount, variance = squares / kCount - mean * mean;
-    return {mean, variance, std::sqrt(variance / kCount)};
+        return static_cast<double>(integrator.sample({}, ray, sampler, scratch).emission.g);
+    });
 }
 
 // Fresnel's reflectance of glass at 60 degrees.
@@ -67,7 +60,7 @@ SceneMaker pane() {
 TEST(CameraPaths, FollowBothPartsOfGlass) {
     SceneMaker maker = pane();
     maker.quad({-1, -3, -6}, {2, 0, 0}, {0, 9, 0}, maker.diffuse({}, Rgb(1.0f)));
-    const Moments found = momentsOf(*maker.build());
+    const Moments found = lampsSeen(*maker.build());
     const double r = reflectance(), reflected = 2 * r / (1 + r);
     const double byChance = reflected - r - (1 - r) * (1 - r) * r;
     EXPECT_NEAR(found.mean, reflected, 4 * found.standardError);
@@ -82,7 +75,7 @@ TEST(CameraPaths, RouletteSparesParts) {
     maker.quad({-1, 0.5, -0.4}, {2, 0, 0}, {0, 0, -5.2}, silver);
     maker.quad({-1, 0, -1.2}, {2, 0, 0}, {0, 0, -4.4}, silver);
     maker.quad({-1, 0, -5.6}, {2, 0, 0}, {0, 0.5, 0}, maker.diffuse({}, Rgb(1.0f)));
-    const Moments found = momentsOf(*maker.build());
+    const Moments found = lampsSeen(*maker.build());
     const double r = reflectance(), reflected = 2 * r / (1 + r) * std::pow(0.9, 6);
     EXPECT_NEAR(found.mean, reflected, 4 * found.standardError);
     // Each part counts for what it carried where it began, at most.
@@ -212,6 +205,75 @@ TEST(CameraPaths, DivideByTheWeightsOfBothParts) {
         const std::vector<double> seen = directSeen(maker);
         EXPECT_NEAR(std::ranges::min(seen) / kLitWall, weight, 1e-4 * weight);
         EXPECT_NEAR(std::ranges::max(seen) / kLitWall, weight, 1e-4 * weight);
+    }
+}
+
+// Photons of 1e-4 W, evenly over a parallelogram.
+PhotonMap evenPhotons(const Scene& scene, Vec3d p, Vec3d e0, Vec3d e1) {
+    std::vector<Photon> photons;
+    Random random(3);
+    for (int i = 0; i < 20'000; ++i) {
+        const Vec2f at = random.next2D();
+        const Vec3d place = p + e0 * static_cast<double>(at.x) + e1 * static_cast<double>(at.y);
+        photons.push_back({Vec3f(place - scene.centre()), Rgb(1e-4f),
+                           PackedNormal(Vec3f(normalize(cross(e0, e1))))});
+    }
+    return PhotonMap(photons);
+}
+
+// Indirect light along a ray to a wall under a ceiling: at once, or by way of a pane.
+struct Indirect {
+    Moments light;
+    double rays = 0;
+};
+Indirect indirectSeen(bool byPane, bool isRefocused) {
+    SceneMaker maker = byPane ? pane() : SceneMaker();
+    const auto grey = maker.diffuse(Rgb(0.5f));
+    const Vec3d wall{-1, -3, -6}, ceiling{-1, 5, -6}, wide{2, 0, 0}, high{0, 9, 0}, deep{0, 0, 5};
+    maker.quad(wall, wide, high, grey);
+    maker.quad(ceiling, wide, deep, grey);
+    const auto scene = maker.build();
+    // For the estimate at the wall itself, or for gather rays from there.
+    const PhotonMap photons = isRefocused ? evenPhotons(*scene, wall, wide, high)
+                                          : evenPhotons(*scene, ceiling, wide, deep);
+    const PhotonMap none(std::span<const Photon>{});
+    const IrradianceSites sites(*scene, isRefocused ? none : photons, 0.3f);
+    const SurfaceEstimate estimate(*scene, photons, 0.3f);
+    const LightSampler lights(*scene);
+    const PhotonMaps maps{.global = &sites, .refocused = isRefocused ? &estimate : nullptr};
+    const PhotonIntegrator integrator(*scene, lights, maps);
+    const double sine = std::sqrt(0.75);
+    const Vec3d from = byPane ? Vec3d{0, 0.5, sine} : Vec3d{0, 0, 0};
+    const Vec3d direction = byPane ? Vec3d{0, -0.5, -sine} : Vec3d{0, 0.5, -sine};
+    const Ray ray{Vec3f(from - scene->centre()), Vec3f(direction)};
+    NearestPhotons scratch;
+    constexpr std::uint32_t kCount = 20'000;
+    Indirect seen;
+    seen.light = momentsOf(kCount, [&](std::uint32_t i) {
+        Sampler sampler(5, 0, i, 0);
+        const SampleRadiance found = integrator.sample({}, ray, sampler, scratch);
+        seen.rays += static_cast<double>(found.rays) / kCount;
+        return static_cast<double>(found.indirect.g);
+    });
+    return seen;
+}
+
+// What a pane reflects is a sixth of a sample, in two parts: one gather ray of each in place of
+// four, refocused light in one sample of four, and the same mean. By way of the pane's back the
+// wall is seen 0.04 aside, where there are other photons and a little less of the ceiling.
+TEST(CameraPaths, LittleWorkForLittleParts) {
+    const double r = reflectance(), reflected = 2 * r / (1 + r);
+    for (const bool isRefocused : {true, false}) {
+        const Indirect once = indirectSeen(false, isRefocused);
+        const Indirect part = indirectSeen(true, isRefocused);
+        const double ratio = part.light.mean / once.light.mean / reflected;
+        const double error = std::hypot(part.light.standardError / part.light.mean,
+                                        once.light.standardError / once.light.mean);
+        fmt::print("    {:.3f} +- {:.3f} of what the pane reflects, {:.2f} rays and {:.2f}\n",
+                   ratio, error, part.rays, once.rays);
+        EXPECT_NEAR(ratio, 1, 4 * error + 0.02);
+        EXPECT_LT(error, 0.02);
+        EXPECT_LE(part.rays, 9);
     }
 }
 

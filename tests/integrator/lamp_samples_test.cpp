@@ -17,6 +17,7 @@
 #include "integrator/transport/photon_integrator.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"
+#include "tests/integrator/statistics.h"
 
 namespace pm::test {
 namespace {
@@ -24,29 +25,19 @@ namespace {
 constexpr double kPiD = 3.14159265358979323846;
 constexpr std::array<std::uint32_t, 4> kNumbers = {1, 4, 8, 16};
 
-struct Moments {
-    double mean = 0, variance = 0, standardError = 0;  // variance of one sample
-};
-
 // Light by way of a camera ray from `eye` to `at`, world, without maps: direct light and what a
 // glossy lobe brings, by next-event estimation and by sampling the lobes.
-Moments momentsOf(const Scene& scene, Vec3d eye, Vec3d at, std::uint32_t lampSamples) {
+Moments lightAlong(const Scene& scene, Vec3d eye, Vec3d at, std::uint32_t lampSamples) {
     constexpr std::uint32_t kCount = 20'000;
     const LightSampler lights(scene);
     const PhotonIntegrator integrator(scene, lights, {}, lampSamples);
     const Ray ray{Vec3f(eye - scene.centre()), Vec3f(normalize(at - eye))};
     NearestPhotons scratch;
-    double sum = 0, squares = 0;
-    for (std::uint32_t i = 0; i < kCount; ++i) {
+    return momentsOf(kCount, [&](std::uint32_t i) {
         // Each by a sequence of its own: independent, for the standard error.
         Sampler sampler(5, 0, i, 0);
-        const SampleRadiance s = integrator.sample({}, ray, sampler, scratch);
-        const auto value = static_cast<double>(s.direct.g);
-        sum += value;
-        squares += value * value;
-    }
-    const double mean = sum / kCount, variance = squares / kCount - mean * mean;
-    return {mean, variance, std::sqrt(variance / kCount)};
+        return static_cast<double>(integrator.sample({}, ray, sampler, scratch).direct.g);
+    });
 }
 
 // A large lamp close above a floor: rays along the lobe find much of its light.
@@ -146,7 +137,7 @@ TEST(LampSamples, LargeLampNearAFloor) {
     for (const double x : {0.0, 1.4}) {
         const double expected = 0.5 / kPiD * irradianceAt(x, 0.2);
         for (const std::uint32_t n : kNumbers) {
-            const Moments m = momentsOf(*scene, {3, 0.4, 0.2}, {x, 0, 0.2}, n);
+            const Moments m = lightAlong(*scene, {3, 0.4, 0.2}, {x, 0, 0.2}, n);
             EXPECT_NEAR(m.mean, expected, 4 * m.standardError + 1e-5) << n;
             EXPECT_LT(m.standardError, 0.01 * expected);
         }
@@ -160,7 +151,7 @@ TEST(LampSamples, EvenSky) {
     maker.sky(Rgb(2.0f));
     const auto scene = maker.build();
     for (const std::uint32_t n : kNumbers) {
-        const Moments m = momentsOf(*scene, {0, 2, 1}, {0, 0, 0}, n);
+        const Moments m = lightAlong(*scene, {0, 2, 1}, {0, 0, 0}, n);
         EXPECT_NEAR(m.mean, 1.0, 4 * m.standardError + 1e-5) << n;
     }
 }
@@ -172,9 +163,9 @@ TEST(LampSamples, GlossyFloorUnderALamp) {
     floor.glossy = Rgb(0.6f);
     floor.glossyExponent = 30;
     const auto scene = lampCloseToFloor(floor).build();
-    const Moments one = momentsOf(*scene, {2, 0.6, 0.2}, {0.9, 0, 0.2}, 1);
+    const Moments one = lightAlong(*scene, {2, 0.6, 0.2}, {0.9, 0, 0.2}, 1);
     for (const std::uint32_t n : kNumbers) {
-        const Moments m = momentsOf(*scene, {2, 0.6, 0.2}, {0.9, 0, 0.2}, n);
+        const Moments m = lightAlong(*scene, {2, 0.6, 0.2}, {0.9, 0, 0.2}, n);
         EXPECT_NEAR(m.mean, one.mean, 4 * std::hypot(m.standardError, one.standardError)) << n;
         EXPECT_LT(m.standardError, 0.02 * one.mean);
     }
@@ -184,7 +175,7 @@ TEST(LampSamples, GlossyFloorUnderALamp) {
 TEST(LampSamples, VarianceFalls) {
     const auto scene = roomOfLamps().build();
     const auto at = [&](std::uint32_t n) {
-        return momentsOf(*scene, {1.9, 2.2, 1.9}, {0.9, 0, 1.0}, n);
+        return lightAlong(*scene, {1.9, 2.2, 1.9}, {0.9, 0, 1.0}, n);
     };
     const Moments one = at(1);
     for (const std::uint32_t n : kNumbers) {

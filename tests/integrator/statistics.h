@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -28,6 +29,25 @@ class Random {
   private:
     std::mt19937_64 m_engine;
 };
+
+// Of independent numbers.
+struct Moments {
+    double mean = 0, variance = 0,
+           standardError = 0;  // variance of one, standard error of the mean
+};
+
+// number: the i-th of `count`, >= 1.
+template <typename Number>
+Moments momentsOf(std::uint32_t count, const Number& number) {
+    double sum = 0, squares = 0;
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const double value = number(i);
+        sum += value;
+        squares += value * value;
+    }
+    const double mean = sum / count, variance = squares / count - mean * mean;
+    return {mean, variance, std::sqrt(variance / count)};
+}
 
 // Probability that a chi-squared variable with so many degrees of freedom exceeds the statistic.
 double chiSquaredPValue(double statistic, double degreesOfFreedom);
