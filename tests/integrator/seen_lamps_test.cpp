@@ -11,6 +11,7 @@
 #include "integrator/scene/light_sampler.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"
+#include "tests/integrator/statistics.h"
 
 namespace pm::test {
 namespace {
@@ -42,18 +43,14 @@ struct Mean {
 };
 
 Mean meanAlong(const View& view, std::uint32_t count) {
-    double sum = 0, squares = 0;
     std::uint32_t rays = 0;
-    for (std::uint32_t i = 0; i < count; ++i) {
+    const Moments found = momentsOf(count, [&](std::uint32_t i) {
         // Each by a sequence of its own: independent, for the standard error.
         Sampler sampler(7, 0, i, 0);
         const Ray ray = view.ray(sampler);
-        const auto found = static_cast<double>(view.lamps.along(ray, sampler, rays).g);
-        sum += found;
-        squares += found * found;
-    }
-    const double n = count, mean = sum / n;
-    return {mean, std::sqrt(std::max(0.0, squares / n - mean * mean) / n), rays / n};
+        return static_cast<double>(view.lamps.along(ray, sampler, rays).g);
+    });
+    return {found.mean, found.standardError, static_cast<double>(rays) / count};
 }
 
 // A surface of glass below a lamp: of each ray the share by Fresnel, never all or nothing.

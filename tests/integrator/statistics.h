@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -30,10 +31,9 @@ class Random {
     std::mt19937_64 m_engine;
 };
 
-// Of independent numbers.
+// Of independent numbers: mean, variance of one of them, standard error of the mean.
 struct Moments {
-    double mean = 0, variance = 0,
-           standardError = 0;  // variance of one, standard error of the mean
+    double mean = 0, variance = 0, standardError = 0;
 };
 
 // number: the i-th of `count`, >= 1.
@@ -45,7 +45,8 @@ Moments momentsOf(std::uint32_t count, const Number& number) {
         sum += value;
         squares += value * value;
     }
-    const double mean = sum / count, variance = squares / count - mean * mean;
+    const double mean = sum / count;
+    const double variance = std::max(0.0, squares / count - mean * mean);  // rounded
     return {mean, variance, std::sqrt(variance / count)};
 }
 
