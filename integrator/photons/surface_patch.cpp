@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "integrator/photons/surface_estimate.h"
-#include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
 
 namespace pm {
@@ -19,11 +18,6 @@ struct Circle {
     int rays;
 };
 constexpr std::array<Circle, 2> kCircles{{{1.85f, 14}, {0.9f, 8}}};
-// Squares that an edge goes through get as many rays along a side.
-constexpr std::uint32_t kEdgeRays = 3;
-constexpr float kEdgeRayArea = 1.0f / static_cast<float>(kEdgeRays * kEdgeRays);
-// A square at least so full has no edge, but perhaps at its rim.
-constexpr float kFull = 0.999f;
 // What bends by more than this (14 degrees), or is farther off the plane, in radii, is not flat:
 // its area is another than that of the plane behind it.
 constexpr float kFlatCosine = 0.97f, kFlatHeight = 0.1f;
@@ -32,12 +26,6 @@ constexpr float kFlatCosine = 0.97f, kFlatHeight = 0.1f;
 constexpr float kFlatness = 0.2f, kRounding = 1e-3f;
 // How far off the plane, in radii, surface is looked for that is hidden.
 constexpr float kHiddenHeight = 0.02f;
-
-Vec2f randomPair(std::uint64_t pattern, std::uint32_t index) {
-    const std::uint64_t random = mixBits(pattern + index);
-    return {toUnitFloat(static_cast<std::uint32_t>(random)),
-            toUnitFloat(static_cast<std::uint32_t>(random >> 32))};
-}
 
 }  // namespace
 
@@ -108,63 +96,6 @@ bool SurfacePatch::hides(const Scene& scene, const PhotonGate& gate, Place place
     const float height = kHiddenHeight * m_radius;
     return lookFor(scene, gate, m_position + inPlane(place) + m_normal * height, inPlane(place))
                .area > 0.0f;
-}
-
-// One ray a square, and more where a square beside it is found to be otherwise. False where what is
-// seen isn't flat.
-bool SurfacePatch::measure(const Scene& scene, const PhotonGate& gate, std::uint64_t pattern) {
-    constexpr std::uint32_t n = kSquares;
-    const auto towards = [](std::uint32_t square, Vec2f inside) {
-        return Place{static_cast<float>(square % n) + inside.x,
-                     static_cast<float>(square / n) + inside.y};
-    };
-    std::array<Seen, std::size_t{n} * n> first;
-    for (std::uint32_t i = 0; i < n * n; ++i) {
-        first[i] = look(scene, gate, towards(i, randomPair(pattern, i)));
-        if (first[i] == Seen::kBent) return false;
-    }
-    for (std::uint32_t i = 0; i < n * n; ++i) {
-        const std::uint32_t x = i % n, y = i / n;
-        const bool isSame =
-            (x == 0 || first[i - 1] == first[i]) && (x == n - 1 || first[i + 1] == first[i]) &&
-            (y == 0 || first[i - n] == first[i]) && (y == n - 1 || first[i + n] == first[i]);
-        float area = first[i] == Seen::kFlat ? 1.0f : 0.0f;
-        const Vec2f done = randomPair(pattern, i);
-        if (!isSame) area *= kEdgeRayArea;
-        for (std::uint32_t k = 0; !isSame && k < kEdgeRays * kEdgeRays; ++k) {
-            const auto column = static_cast<float>(k % kEdgeRays);
-            const auto row = static_cast<float>(k / kEdgeRays);
-            if (std::floor(done.x * kEdgeRays) == column && std::floor(done.y * kEdgeRays) == row)
-                continue;
-            const Vec2f u = randomPair(pattern, (k + 1) * n * n + i);
-            const Vec2f inside{(column + u.x) / kEdgeRays, (row + u.y) / kEdgeRays};
-            const Seen seen = look(scene, gate, towards(i, inside));
-            if (seen == Seen::kBent) return false;
-            if (seen == Seen::kFlat) area += kEdgeRayArea;
-        }
-        if (first[i] == Seen::kNothing && !m_grid->hasHidden)
-            m_grid->hasHidden = hides(scene, gate, towards(i, done));
-        auto& row = m_grid->areaUpTo[y];
-        if (x == 0) row[0] = 0.0f;
-        row[x + 1] = row[x] + area;
-    }
-    findInner();
-    return true;
-}
-
-void SurfacePatch::findInner() {
-    const auto isFull = [this](std::size_t x, std::size_t y) {
-        return m_grid->areaUpTo[y][x + 1] - m_grid->areaUpTo[y][x] >= kFull;
-    };
-    constexpr std::size_t last = kSquares - 1;
-    for (std::size_t y = 0; y <= last; ++y)
-        for (std::size_t x = 0; x <= last; ++x) {
-            bool inner = true;
-            for (std::size_t v = y - (y > 0); v <= std::min(y + 1, last); ++v)
-                for (std::size_t u = x - (x > 0); u <= std::min(x + 1, last); ++u)
-                    inner = inner && isFull(u, v);
-            m_grid->isInner[y] |= std::uint32_t{inner} << x;
-        }
 }
 
 bool SurfacePatch::isInner(Place place) const {

@@ -65,6 +65,7 @@ class SurfacePatch {
         bool isInside() const;
     };
     enum class Seen { kNothing, kFlat, kBent };
+    class Survey;
 
     Vec3f inPlane(Place place) const;
     Place placeOf(const Vec3f& position) const;
@@ -72,7 +73,6 @@ class SurfacePatch {
     bool looksWhole(const Scene& scene, const PhotonGate& gate) const;
     bool measure(const Scene& scene, const PhotonGate& gate, std::uint64_t pattern);
     bool hides(const Scene& scene, const PhotonGate& gate, Place place) const;
-    void findInner();
     bool isInner(Place place) const;
     float share(Place middle, float radius) const;
     bool sees(const Scene& scene, const Vec3f& position, const Vec3f& normal) const;

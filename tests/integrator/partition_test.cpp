@@ -17,7 +17,7 @@
 namespace pm::test {
 namespace {
 
-constexpr std::int32_t kSize = 64, kRegion = 8;
+constexpr std::int32_t kSize = 48, kRegion = 8;
 constexpr int kRenders = 8;
 constexpr std::uint32_t kPasses = 4;
 // A pass whose radii are two fifths of the first one's.

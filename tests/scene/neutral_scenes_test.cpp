@@ -53,7 +53,7 @@ class NeutralScenes : public HostTest {
     }
 };
 
-const Arguments kPath{"--integrator", "path", "--passes", "16"};
+const Arguments kPath{"--integrator", "path", "--passes", "8"};
 const Arguments kPhoton{"--integrator", "photon", "--passes", "4"};
 
 // No bias is to be seen beside the noise.
