@@ -6,6 +6,7 @@
 #include "host_shim/cli/option_table.h"
 #include "host_shim/cli/option_values.h"
 #include "host_shim/cli/piece_options.h"
+#include "host_shim/cli/unknown_words.h"
 #include "host_shim/ingest/text_lines.h"
 #include "host_shim/pictures/picture_io.h"
 
@@ -192,6 +193,9 @@ void readWords(const std::vector<std::string>& arguments, bool isMerge, Typed& t
         // CLI11 takes them from the end.
         app.parse(
             std::vector<std::string>(arguments.rbegin(), arguments.rend() - (isMerge ? 1 : 0)));
+    } catch (const CLI::ExtrasError&) {
+        throw HostError(ExitCode::kUsage,
+                        aboutUnknownWords(app, app.remaining()) + " (see pm_host -h)");
     } catch (const CLI::ParseError& error) {
         throw HostError(ExitCode::kUsage, oneLine(error.what()) + " (see pm_host -h)");
     }

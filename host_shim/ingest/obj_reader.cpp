@@ -143,6 +143,15 @@ std::vector<SubdivisionTag> tagsOfGroup(const ObjText& text, std::size_t group) 
     return tags;
 }
 
+// Opening one would wait, deaf to Ctrl-C, for somebody to write into it.
+void refusePipe(const fs::path& file) {
+    std::error_code ignored;
+    if (fs::is_fifo(file, ignored))
+        throw HostError(
+            ExitCode::kFile,
+            fmt::format("{}: can't be read: it is a pipe; a file is wanted", file.string()));
+}
+
 std::ifstream openFile(const fs::path& file) {
     errno = 0;
     std::ifstream stream(file, std::ios::binary);
@@ -208,6 +217,7 @@ void checkSceneFile(const fs::path& file) {
             ExitCode::kBadInput,
             fmt::format("{}: no geometry: this is a folder; an OBJ file is wanted", file.string()));
     }
+    refusePipe(file);
     openFile(file);
 }
 
@@ -217,6 +227,7 @@ std::string readWholeFile(const fs::path& file) {
     if (fs::is_directory(file, ignored))
         throw HostError(ExitCode::kFile,
                         fmt::format("{}: can't be read: it is a folder", file.string()));
+    refusePipe(file);
     std::ifstream stream = openFile(file);
     std::ostringstream text;
     text << stream.rdbuf();

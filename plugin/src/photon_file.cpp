@@ -148,7 +148,7 @@ PhotonFileReader::PhotonFileReader(const std::string& file, Wanted wanted)
       m_kinds(passKinds(m_wanted.plan)) {
     std::error_code error;
     if (!fs::exists(file, error) && !error)
-        throw unusable(file, "there is no such photon map; photonsOnly makes one");
+        throw unusable(file, "there is no such photon map; a render of photons only makes one");
     // Nobody is waited for who might write into a pipe.
     m_file = OwnedFile(file, O_RDONLY | O_NONBLOCK);
     if (!fs::is_regular_file(file, error))

@@ -5,6 +5,8 @@
 #include "host_shim/app/guarded.h"
 #include "tests/robust/host_process.h"
 
+#include <sys/stat.h>
+
 #include <nlohmann/json.hpp>
 
 #include <system_error>
@@ -31,6 +33,8 @@ TEST_F(BadInput, scenes) {
     expectRefusal(runScene(""), 3, {"bad.obj: no geometry"});
     expectRefusal(runScene(std::string("\xFE\xFF\0v\0 ", 6)), 3, {"bad.obj: no geometry"});
     expectRefusal(run({"/"}), 3, {"no geometry"});
+    ASSERT_EQ(mkfifo(path("pipe.obj").c_str(), 0600), 0);
+    expectRefusal(run({"pipe.obj"}), 4, {"pipe.obj: can't be read: it is a pipe"});
     write("scene.txt", "x");
     expectRefusal(run({"scene.txt"}), 3, {"scene.txt", ".obj"});
     expectRefusal(run({"box.obj", "--log", "BOX.MTL"}), 2, {"BOX.MTL", "may not end in .mtl"});
@@ -100,7 +104,11 @@ TEST_F(BadInput, anEmptyPictureIsAWarning) {
 
 TEST_F(BadInput, options) {
     expectRefusal(run({}), 2, {"SCENE"});
-    expectRefusal(run({"box.obj", "--bogus"}), 2, {"--bogus"});
+    expectRefusal(run({"box.obj", "--bogus"}), 2, {"--bogus: there is no such option (see"});
+    expectRefusal(run({"--pases", "3", "box.obj"}), 2,
+                  {"--pases: there is no such option; is --passes meant?"});
+    expectRefusal(run({"box.obj", "--sed=3"}), 2, {"--sed: there is no such", "is --seed meant?"});
+    expectRefusal(run({"box.obj", "b.obj"}), 2, {"'b.obj': one scene is wanted"});
     expectRefusal(run({"box.obj", "--denoise"}), 2, {"--denoise: not available yet"});
     expectRefusal(run({"box.obj", "--photon-map", "f"}), 3, {"f: there is no such photon map"});
     expectRefusal(run({"box.obj", "--photons-only"}), 2, {"--photons-only needs --photon-map"});
