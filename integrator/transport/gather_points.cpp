@@ -9,6 +9,7 @@
 #include "integrator/sampling/warps.h"
 #include "integrator/transport/final_gather.h"
 #include "integrator/transport/path_walk.h"
+#include "integrator/transport/surroundings.h"
 
 namespace pm {
 
@@ -22,9 +23,6 @@ constexpr float kReach = 1.0f;
 // open.
 constexpr float kRefocusedReach = 0.25f;
 constexpr float kNarrowestRefocused = 0.3f;
-// Short rays that look for it where no point tells, on a golden spiral (Vogel 1979).
-constexpr std::uint32_t kLooksAround = 8;
-constexpr float kGoldenTurn = 0.381966011f;
 // Points whose surface leans away more than this (25 degrees) see another half-space.
 constexpr float kNormalCosine = 0.9f;
 // Height of a point over the plane through the place, relative to its distance: more is another
@@ -231,6 +229,10 @@ float GatherPoints::reachOfClearance() const {
     return kReach * m_request.radiusFactor;
 }
 
+Surroundings GatherPoints::surroundingsOf(const Place& place) const {
+    return {m_scene, place.position, place.geometricNormal, place.offset, m_planeTolerance};
+}
+
 float GatherPoints::refocusedRadius(const Vec3f& position, const Vec3f& normal) const {
     NearestPhotons scratch;
     return m_request.refocusedRadius->at(position, normal, scratch) * m_request.radiusFactor;
@@ -248,7 +250,8 @@ TwoRadii GatherPoints::refocusedAt(const Place& place, float clearance,
                                    std::uint32_t pattern) const {
     if (!m_request.refocused) return {};
     const float radius = refocusedRadius(place.position, place.geometricNormal);
-    if (!std::isfinite(clearance)) clearance = lookAround(place, radius / kRefocusedReach, pattern);
+    if (!std::isfinite(clearance))
+        clearance = surroundingsOf(place).clearance(radius / kRefocusedReach, pattern);
     return refocused(place.position, place.geometricNormal, clearance, radius, pattern);
 }
 
@@ -307,34 +310,6 @@ std::size_t GatherPoints::findNear(const Place& place, std::array<Near, kMostNea
     return count;
 }
 
-// The distance from the place to what is met in a direction, or nothing beyond `farthest`.
-std::optional<float> GatherPoints::distanceAlong(const Vec3f& direction, const Place& place,
-                                                 float farthest) const {
-    const Vec3f start = place.position + place.geometricNormal * place.offset;
-    Surface met;
-    if (!m_scene.intersect({start, direction, farthest}, met)) return std::nullopt;
-    return std::max(length(met.position - place.position), m_planeTolerance);
-}
-
-// What a point's gather rays tell of its clearance, by few short rays: beyond `farthest` infinity.
-// Straight up alone would not do: in a corner what is near is beside the place.
-float GatherPoints::lookAround(const Place& place, float farthest, std::uint32_t pattern) const {
-    const Frame frame(place.geometricNormal);
-    const std::uint64_t random = mixBits(pattern);
-    const float turn = toUnitFloat(static_cast<std::uint32_t>(random));
-    const float shift = toUnitFloat(static_cast<std::uint32_t>(random >> 32));
-    float clearance = std::numeric_limits<float>::infinity();
-    for (std::uint32_t i = 0; i < kLooksAround; ++i) {
-        const auto at = static_cast<float>(i);
-        const float turns = turn + kGoldenTurn * at;
-        const Vec3f direction = frame.toWorld(
-            sampleCosineHemisphere({(at + shift) / kLooksAround, turns - std::floor(turns)}));
-        clearance =
-            distanceAlong(direction, place, std::min(farthest, clearance)).value_or(clearance);
-    }
-    return clearance;
-}
-
 // What the points near a place tell of its clearance, once they are filled, and a ray straight up.
 // Points in the open, beside a gap, see nothing of what makes it one.
 float GatherPoints::clearanceAt(const Place& place, std::span<const Near> near) const {
@@ -349,7 +324,8 @@ float GatherPoints::clearanceAt(const Place& place, std::span<const Near> near) 
     // What is so far up that the reach would still be twice the farthest point's makes no
     // difference.
     const float farthest = 2.0f * std::sqrt(farthestSquared) / reachOfClearance();
-    const auto above = distanceAlong(place.geometricNormal, place, std::min(clearance, farthest));
+    const auto above =
+        surroundingsOf(place).distanceAlong(place.geometricNormal, std::min(clearance, farthest));
     return std::min(clearance, above.value_or(clearance));
 }
 

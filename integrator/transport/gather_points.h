@@ -22,6 +22,8 @@
 
 namespace pm {
 
+class Surroundings;
+
 // Indirect irradiance, as final gathering finds it, kept at points that the camera sees: one in
 // each cell of a lattice over the frame, anew in each pass. A camera sample takes the weighted mean
 // of the points near it, on its surface and on the screen, so that a few gather rays serve many
@@ -172,9 +174,7 @@ class GatherPoints {
     void fill(Tile& tile, const Cell& cell) const;
     float reachOfClearance() const;
     float clearanceAt(const Place& place, std::span<const Near> near) const;
-    std::optional<float> distanceAlong(const Vec3f& direction, const Place& place,
-                                       float farthest) const;
-    float lookAround(const Place& place, float farthest, std::uint32_t pattern) const;
+    Surroundings surroundingsOf(const Place& place) const;
     float refocusedRadius(const Vec3f& position, const Vec3f& normal) const;
     TwoRadii refocused(const Vec3f& position, const Vec3f& normal, float clearance, float radius,
                        std::uint32_t pattern) const;
