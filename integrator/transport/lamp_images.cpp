@@ -293,25 +293,24 @@ bool LampImage::isAround(const FrameArea& frame) const {
            std::abs(2 * centre[1] - frame.y0 - frame.y1) < frame.y1 - frame.y0 + 2 * halfY;
 }
 
-LampView followLobes(const Scene& scene, const LightSampler& lights, const Camera& camera, double x,
-                     double y, std::vector<LampRay>& rays) {
+Rgb followLobes(const Scene& scene, const LightSampler& lights, const Camera& camera, double x,
+                double y, std::vector<LampRay>& rays) {
     struct Branch {
         Ray ray;
         std::uint64_t lobes = 1;
         Carried carried{};
         int count = 0;
     };
-    LampView view{Rgb(0.0f), 0};
+    Rgb found;
     std::vector<Branch> waiting{{camera.ray(x, y)}};
     while (!waiting.empty()) {
         const Branch branch = waiting.back();
         waiting.pop_back();
-        ++view.rays;
         rays.push_back({branch.lobes, x, y, branch.ray});
         const Arrival arrival(scene, branch.ray, branch.carried);
         if (arrival.isSurface && arrival.surface.light != kNoLight)
-            view.radiance += branch.carried.throughput *
-                             lights.emittedRadiance(arrival.surface, -branch.ray.direction);
+            found += branch.carried.throughput *
+                     lights.emittedRadiance(arrival.surface, -branch.ray.direction);
         if (branch.count == kMostLobes) continue;
         for (std::size_t i = 0; i < kDeltaLobes.size(); ++i) {
             Branch next{branch.ray, branch.lobes << 2 | i, branch.carried, branch.count + 1};
@@ -320,7 +319,7 @@ LampView followLobes(const Scene& scene, const LightSampler& lights, const Camer
                 waiting.push_back(next);
         }
     }
-    return view;
+    return found;
 }
 
 std::vector<LampImage> findLampImages(const Scene& scene, const Camera& camera,

@@ -60,14 +60,10 @@ struct LampRay {
     double x, y;          // where the path left the camera, pixels
     Ray ray;
 };
-// What the path through a place of the frame shows that follows every delta lobe.
-struct LampView {
-    Rgb radiance;      // of the lamps along it
-    std::size_t rays;  // of the path
-};
-// As far as they carry something. Adds its rays to `rays`.
-LampView followLobes(const Scene& scene, const LightSampler& lights, const Camera& camera, double x,
-                     double y, std::vector<LampRay>& rays);
+// The lamps' radiance along the path through a place of the frame that follows every delta lobe, as
+// far as they carry something. Adds its rays to `rays`.
+Rgb followLobes(const Scene& scene, const LightSampler& lights, const Camera& camera, double x,
+                double y, std::vector<LampRay>& rays);
 
 // Images that reach into an area of the frame, among paths of that area. How far a lamp's ball is
 // from the line of a ray is nearly linear in the ray's place, for rays by way of the same lobes: a

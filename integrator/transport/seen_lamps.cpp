@@ -15,10 +15,10 @@ namespace pm {
 
 namespace {
 
-// Paths of each camera sample where the pilot met a delta lobe, and where it saw a lamp, or more of
-// it here than there: what is this even needs no more than one. See docs/decisions.md.
+// Paths of each camera sample where the pilot saw a lamp, or more of it here than there: what is
+// this even the camera sample's own path finds. See docs/decisions.md.
 constexpr float kEven = 0.5f;
-constexpr std::uint32_t kPathsAtDelta = 1, kPathsAtLamps = 8;
+constexpr std::uint32_t kPathsAtLamps = 8;
 // Pilot paths along each side of a square, which reach so many pixels beyond it.
 constexpr std::int32_t kPilots = 8;
 constexpr float kBeyond = 1.0f;
@@ -98,11 +98,10 @@ SeenLamps::Square SeenLamps::look(std::int32_t column, std::int32_t row) const {
         const Vec2f jitter = Sampler(kPilotSeed, 0, key, static_cast<std::uint32_t>(i)).next2D();
         const float x = (static_cast<float>(i % kPilots) + jitter.x) * kStep - kBeyond;
         const float y = (static_cast<float>(i / kPilots) + jitter.y) * kStep - kBeyond;
-        const LampView view = followLobes(m_scene, m_lights, m_camera, x0 + static_cast<double>(x),
-                                          y0 + static_cast<double>(y), rays);
-        least = std::min(least, maxChannel(view.radiance));
-        most = std::max(most, maxChannel(view.radiance));
-        if (view.rays > 1) square.paths = kPathsAtDelta;
+        const Rgb seen = followLobes(m_scene, m_lights, m_camera, x0 + static_cast<double>(x),
+                                     y0 + static_cast<double>(y), rays);
+        least = std::min(least, maxChannel(seen));
+        most = std::max(most, maxChannel(seen));
     }
     const FrameArea area{x0 - kFilterReach, y0 - kFilterReach, x0 + kSquare + kFilterReach,
                          y0 + kSquare + kFilterReach};

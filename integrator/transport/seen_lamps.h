@@ -27,8 +27,8 @@ namespace pm {
 
 // Lamps that the camera sees, straight or by way of delta lobes: the class of paths E S* L (see
 // PathClass). Their images are bright and often smaller than a pixel, and rays to them cost little
-// beside a camera sample's look-ups; so where lamps or delta lobes are seen a camera sample has
-// several paths for this class alone. Where they meet glass they follow reflection and refraction
+// beside a camera sample's look-ups; so where lamps are seen a camera sample has several paths for
+// this class alone. Where they meet glass they follow reflection and refraction
 // both: a choice between them would find most images of lamps once in 25 times.
 //
 // An image much smaller than a pixel is hit by few of these paths, and is then a speck, or missing.

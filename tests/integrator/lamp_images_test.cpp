@@ -94,7 +94,7 @@ TEST(LampImages, AreFoundInGlass) {
         for (int x = 0; x < kSize * kFine; ++x) {
             const double atX = (x + 0.5) / kFine, atY = (y + 0.5) / kFine;
             rays.clear();
-            if (isBlack(followLobes(*scene, lights, camera, atX, atY, rays).radiance)) continue;
+            if (isBlack(followLobes(*scene, lights, camera, atX, atY, rays))) continue;
             ++shown;
             const SeenLamps::Shown square = lamps.shown(x / kFine, y / kFine);
             found += std::ranges::any_of(

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
@@ -94,19 +95,26 @@ TEST(SeenLamps, ShiningMirrorsAllAround) {
     EXPECT_LT(m.raysOfAPath, 12.0);
 }
 
-TEST(SeenLamps, PathsWhereLampsOrDeltaLobesAreSeen) {
+TEST(SeenLamps, PathsWhereLampsAreSeen) {
     SceneMaker maker = openRoom();
     maker.sphere({0, -0.5, 0}, 0.4, maker.material(mirror()));
     maker.quad({-0.9, 0.8, -0.9}, {0.3, 0, 0}, {0, 0, 0.3}, maker.diffuse({}, Rgb(5.0f)));
     maker.camera({0, 0, 3.9}, {0, 0, 0}, {0, 1, 0}, 37);
     const View view(maker);
-    const std::uint32_t atMirror = view.lamps.shown(kSize / 2 - 1, kSize * 11 / 16).paths;
-    const std::uint32_t atLamp = view.lamps.shown(kSize * 5 / 16, kSize * 5 / 16).paths;
-    EXPECT_GT(atMirror, 0u);
-    EXPECT_GT(atLamp, 1u);
-    EXPECT_EQ(view.lamps.shown(kSize - 10, kSize / 2).paths, 0u);
-    EXPECT_EQ(view.lamps.shown(-1, 0).paths, 0u);
-    EXPECT_EQ(view.lamps.shown(0, kSize).paths, 0u);
+    const auto paths = [&](std::int32_t x, std::int32_t y) { return view.lamps.shown(x, y).paths; };
+    EXPECT_GT(paths(kSize * 5 / 16, kSize * 5 / 16), 0u) << "at the lamp";
+    // The ball shows the lamp as far from its middle as the mirrored half-way direction says.
+    const Vec3d half = normalize(normalize(Vec3d(-0.75, 1.3, -0.75)) + Vec3d(0, 0, 1));
+    const double pixels = 0.4 * kSize / 2 / (3.9 * std::tan(18.5 * std::numbers::pi / 180));
+    const double down = 0.5 / 0.4 * pixels;
+    EXPECT_GT(paths(static_cast<std::int32_t>(kSize / 2 + pixels * half.x),
+                    static_cast<std::int32_t>(kSize / 2 + down - pixels * half.y)),
+              0u)
+        << "at the lamp's image in the ball";
+    EXPECT_EQ(paths(kSize / 2 - 1, kSize * 25 / 32), 0u) << "low in the ball";
+    EXPECT_EQ(paths(kSize - 10, kSize / 2), 0u);
+    EXPECT_EQ(paths(-1, 0), 0u);
+    EXPECT_EQ(paths(0, kSize), 0u);
     SceneMaker dark = openRoom();
     dark.sphere({0, 0, 0}, 0.4, dark.material(mirror()));
     dark.camera({0, 0, 3.9}, {0, 0, 0}, {0, 1, 0}, 37);
