@@ -45,7 +45,7 @@ TwoRadii CausticMap::irradiance(const Vec3f& position, const Vec3f& normal,
         const Scene& scene = m_patches->scene();
         SurfacePatch spare;
         const SurfacePatch& patch = m_patches->at(position, normal, radius, spare);
-        if (!patch.speaksFor(scene, position, normal)) {
+        if (!patch.speaksFor(scene, position, normal, radius)) {
             // Any pattern that depends on the place alone.
             const auto pattern =
                 std::bit_cast<std::uint32_t>(position.x) ^ std::bit_cast<std::uint32_t>(position.y);

@@ -22,6 +22,8 @@ constexpr float kApexHeight = 0.6f;
 constexpr float kRayReach = 1.5f;
 // Grazing rays see much surface each; more than this is cut, so that one ray can't decide the area.
 constexpr float kLargestAreaRatio = 4.0f;
+// What ends on a surface is lifted off it by this share of the height it is seen from.
+constexpr float kLift = 0.01f;
 constexpr float kFlatTolerance = 0.02f;
 // Rays to the rim; where all of them find it flat, the disc is taken as whole.
 constexpr std::uint32_t kRimRays = 8;
@@ -34,6 +36,11 @@ struct Zone {
 };
 constexpr std::array<Zone, 4> kZones{
     {{0.0f, 0.5f, 18}, {0.5f, 1.0f, 12}, {1.0f, 1.3f, 5}, {1.3f, 2.0f, 5}}};
+
+// Off a surface by more than places are rounded by.
+float leastLift(const Scene& scene) {
+    return 4.0f * PhotonGate::kRounding * static_cast<float>(scene.radius());
+}
 
 }  // namespace
 
@@ -60,11 +67,14 @@ SeenArea lookFor(const Scene& scene, const PhotonGate& gate, const Vec3f& apex,
 float apexHeight(const Scene& scene, const Vec3f& position, const Vec3f& normal, float radius) {
     const float height = kApexHeight * radius;
     // Off the surface itself, but below a ball as close to where it touches as can be told.
-    const float lift = 4.0f * PhotonGate::kRounding * static_cast<float>(scene.radius());
-    const Vec3f start = position + normal * lift;
+    const Vec3f start = position + normal * leastLift(scene);
     Surface above;
     if (!scene.intersect({start, normal, 2.0f * height}, above)) return height;
     return std::min(height, 0.5f * dot(above.position - position, normal));
+}
+
+float liftSeenFrom(const Scene& scene, float height) {
+    return std::max(kLift * height, leastLift(scene));
 }
 
 SurfaceEstimate::Seen SurfaceEstimate::look(const View& view, float turns,
@@ -129,7 +139,7 @@ bool SurfaceEstimate::askPatch(const Vec3f& position, const Vec3f& normal, TwoRa
                                Shares& share) const {
     SurfacePatch spare;
     const SurfacePatch& patch = m_patches->at(position, normal, m_radius, spare);
-    if (!patch.speaksFor(m_scene, position, normal)) return false;
+    if (!patch.speaksFor(m_scene, position, normal, m_radius)) return false;
     const SurfacePatch::Shares shares = patch.shares(position, m_radius);
     share = {shares.wide, shares.narrow};
     if (patch.hidesSurface())
@@ -155,10 +165,11 @@ TwoRadii SurfaceEstimate::askRays(const Vec3f& position, const Vec3f& normal, st
     const Shares share = shares(view);
     // What sees nothing at all is inside of something that stands there, and tells nothing.
     if (!(share.wide > 0.0f)) return irradiance(flux, {});
+    const float lift = liftSeenFrom(m_scene, height);
     flux = m_map.fluxWithin(position, normal, m_radius, [&](std::uint32_t index) {
         const Photon photon = m_map.photon(index);
         // Ends a little above the photon, whose own surface must not hide it.
-        const Vec3f above = photon.position + photon.normal.unpack() * (kLift * height);
+        const Vec3f above = photon.position + photon.normal.unpack() * lift;
         return !m_scene.occluded({view.apex, above - view.apex, 1.0f});
     });
     return irradiance(flux, share);

@@ -11,8 +11,6 @@ namespace pm {
 
 class SurfacePatches;
 
-// What ends on a surface is lifted off it by this share of the height it is seen from.
-inline constexpr float kLift = 0.01f;
 // The share of the disc in the sharpest corner that is still told apart; a square one has 1/4.
 inline constexpr float kSmallestShare = 0.1f;
 
@@ -28,6 +26,9 @@ SeenArea lookFor(const Scene& scene, const PhotonGate& gate, const Vec3f& apex,
 // How far above a point to look from, scene units: enough to see a disc of this radius, but half as
 // high as whatever stands there; under a ball on the floor the apex must not be inside the ball.
 float apexHeight(const Scene& scene, const Vec3f& position, const Vec3f& normal, float radius);
+// How far off its surface a ray is to end, scene units, so that the surface doesn't hide it: seen
+// from an apex so high.
+float liftSeenFrom(const Scene& scene, float height);
 
 // Irradiance of a photon map at a point of a surface.
 //

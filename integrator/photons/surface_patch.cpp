@@ -12,18 +12,24 @@ namespace pm {
 
 namespace {
 
-// Rays that tell whether a patch is whole: on two circles, radii in radii, an even number each.
+// Rays that tell whether a patch is whole: on circles, radii in radii, an even number each. A hole
+// as wide as a radius does not fit between them.
 struct Circle {
     float radius;
     int rays;
 };
-constexpr std::array<Circle, 2> kCircles{{{1.85f, 14}, {0.9f, 8}}};
+constexpr std::array<Circle, 3> kCircles{{{1.85f, 14}, {1.4f, 12}, {0.9f, 8}}};
 // What bends by more than this (14 degrees), or is farther off the plane, in radii, is not flat:
 // its area is another than that of the plane behind it.
 constexpr float kFlatCosine = 0.97f, kFlatHeight = 0.1f;
 // Between a point and the site the surface bends evenly: the way is at right angles to the sum of
 // both normals, within this, and within so many radii of rounding.
 constexpr float kFlatness = 0.2f, kRounding = 1e-3f;
+// The same of all that a whole patch shows. Across a fold sharper than this photons don't count for
+// a point beside it: there the disc is not whole.
+constexpr float kEvenness = 0.05f;
+// Of a disc's radius, so much lies on the grid at least; what is beyond is not known.
+constexpr float kReachOnGrid = 0.5f;
 // How far off the plane, in radii, surface is looked for that is hidden.
 constexpr float kHiddenHeight = 0.02f;
 
@@ -76,6 +82,12 @@ SurfacePatch::Seen SurfacePatch::look(const Scene& scene, const PhotonGate& gate
                : Seen::kBent;
 }
 
+bool SurfacePatch::bendsEvenly(const Vec3f& way, const Vec3f& normal, float within) const {
+    const float height = dot(way, m_normal + normal);
+    const float tolerance = kRounding * m_radius;
+    return height * height <= within * within * lengthSquared(way) + tolerance * tolerance;
+}
+
 bool SurfacePatch::looksWhole(const Scene& scene, const PhotonGate& gate) const {
     for (const Circle& circle : kCircles) {
         const float reach = circle.radius * kSquaresPerRadius;
@@ -85,7 +97,9 @@ bool SurfacePatch::looksWhole(const Scene& scene, const PhotonGate& gate) const 
             const SinCos phi =
                 sinCosTurns((static_cast<float>(j) + 0.5f) / static_cast<float>(circle.rays));
             const Place place{kMiddle + phi.cos * reach, kMiddle + phi.sin * reach};
-            if (look(scene, gate, place) == Seen::kNothing) return false;
+            const SeenArea seen = lookFor(scene, gate, m_apex, inPlane(place));
+            if (!(seen.area > 0.0f) || !bendsEvenly(seen.fromPoint, seen.normal, kEvenness))
+                return false;
         }
     }
     return true;
@@ -106,19 +120,20 @@ bool SurfacePatch::isInner(Place place) const {
 
 // From a little above it, or its own surface would hide it.
 bool SurfacePatch::sees(const Scene& scene, const Vec3f& position, const Vec3f& normal) const {
-    return !scene.occluded({m_apex, position + normal * (kLift * m_height) - m_apex, 1.0f});
+    return !scene.occluded(
+        {m_apex, position + normal * liftSeenFrom(scene, m_height) - m_apex, 1.0f});
 }
 
-bool SurfacePatch::speaksFor(const Scene& scene, const Vec3f& position, const Vec3f& normal) const {
-    if (!(dot(normal, m_normal) >= PhotonGate::kNormalCosine)) return false;
-    const Vec3f way = position - m_position;
-    const float height = dot(way, m_normal + normal);
-    const float tolerance = kRounding * m_radius;
-    if (height * height > kFlatness * kFlatness * lengthSquared(way) + tolerance * tolerance)
+bool SurfacePatch::speaksFor(const Scene& scene, const Vec3f& position, const Vec3f& normal,
+                             float radius) const {
+    if (!(dot(normal, m_normal) >= PhotonGate::kNormalCosine) ||
+        !bendsEvenly(position - m_position, normal, kFlatness))
         return false;
     if (isWhole()) return true;
     const Place place = placeOf(position);
-    return place.isInside() && (isInner(place) || sees(scene, position, normal));
+    const float reach = kReachOnGrid * radius / m_radius * kSquaresPerRadius;
+    return std::max(std::abs(place.x - kMiddle), std::abs(place.y - kMiddle)) <= kMiddle - reach &&
+           (isInner(place) || sees(scene, position, normal));
 }
 
 bool SurfacePatch::counts(const Scene& scene, const Photon& photon) const {

@@ -31,10 +31,12 @@ class SurfacePatch {
                  std::uint64_t pattern);
     static constexpr float kHalfWidth = 1.75f;
 
-    // Whether what is known here holds for discs around this point: it is on the site's surface and
-    // seen from above the site, and the surface is whole or nearly flat.
-    bool speaksFor(const Scene& scene, const Vec3f& position, const Vec3f& normal) const;
-    // No edge, bend or obstacle within reach: all discs are whole, all photons count.
+    // Whether what is known here holds for a disc around this point: it is on the site's surface
+    // and seen from above the site, and the surface is whole, or nearly flat and most of the disc
+    // on the grid. radius: scene units.
+    bool speaksFor(const Scene& scene, const Vec3f& position, const Vec3f& normal,
+                   float radius) const;
+    // No edge, fold or obstacle within reach: all discs are whole, all photons count.
     bool isWhole() const { return !m_grid; }
     // Photons may lie where surface is not seen, beyond a wall or under a ball: see counts().
     bool hidesSurface() const { return m_grid && m_grid->hasHidden; }
@@ -70,6 +72,8 @@ class SurfacePatch {
     Vec3f inPlane(Place place) const;
     Place placeOf(const Vec3f& position) const;
     Seen look(const Scene& scene, const PhotonGate& gate, Place towards) const;
+    // Whether the surface bends evenly from the site to a place, on a way from the site.
+    bool bendsEvenly(const Vec3f& way, const Vec3f& normal, float within) const;
     bool looksWhole(const Scene& scene, const PhotonGate& gate) const;
     bool measure(const Scene& scene, const PhotonGate& gate, std::uint64_t pattern);
     bool hides(const Scene& scene, const PhotonGate& gate, Place place) const;

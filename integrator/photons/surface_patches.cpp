@@ -15,8 +15,11 @@ namespace pm {
 
 namespace {
 
-// Of the step's radius. A patch reaches a radius beyond it.
+// Of the step's radius. A patch reaches a radius beyond it, where its axes are the cell's and the
+// site is in its middle.
 constexpr float kCellSize = 2.0f * (SurfacePatch::kHalfWidth - 1.0f);
+// Takes 1, and what rounding makes more of it, to a number below.
+constexpr float kBelowOne = 0.999f;
 // Where the corner of a cell lies, in cells: a scene's planes are seldom there.
 constexpr Vec3f kOrigin{0.371f, 0.613f, 0.457f};
 // What the table takes for an entry beside it, about.
@@ -41,9 +44,10 @@ SurfacePatches::~SurfacePatches() = default;
 
 const SurfacePatch& SurfacePatches::at(const Vec3f& position, const Vec3f& normal, float radius,
                                        SurfacePatch& spare) const {
-    // The power of two that makes radius / unit a number in [1/2, 1).
+    // The power of two that makes radius / unit a number in (1/2, 1]: the first pass's radius,
+    // which is the unit as a rule, is the largest of its step.
     int step = 0;
-    std::frexp(radius / m_unit, &step);
+    std::frexp(radius / m_unit * kBelowOne, &step);
     const float largest = std::ldexp(m_unit, step);
     const float cellSize = kCellSize * largest;
     const SurfaceCells cells(m_scene, cellSize, kOrigin * cellSize);

@@ -133,27 +133,32 @@ TEST(Edges, OfARoom) {
     }
 }
 
-// A thin wall on a floor that is lit on one side only: nothing comes through beneath it.
+// A thin wall on a floor that is lit on one side only: nothing comes through beneath it, nor over
+// it though it be lower than the radius.
 TEST(Edges, NoLightThroughAThinWall) {
-    SceneMaker maker;
-    const auto grey = maker.diffuse(Rgb(0.5f));
-    maker.quad({-1, -1, -0.5}, {2, 0, 0}, {0, 2, 0}, grey);
-    maker.quad({0, -1, -0.5}, {0, 2, 0}, {0, 0, 1}, grey);
-    const auto scene = maker.build();
-    std::vector<Photon> photons;
-    light(photons, {0, -1, -0.5}, {1, 0, 0}, {0, 2, 0});
-    const PhotonMap map(photons);
-    for (const By by : {By::kRays, By::kPatches}) {
-        SCOPED_TRACE(nameOf(by));
-        const Estimates dark = estimate(*scene, map, by, {-0.02, -0.5, -0.5}, {0, 0.05, 0});
-        const Estimates lit = estimate(*scene, map, by, {0.02, -0.5, -0.5}, {0, 0.05, 0});
-        report("dark side", dark);
-        report("lit side", lit);
-        EXPECT_EQ(dark.corrected, 0.0);
-        EXPECT_EQ(dark.narrow, 0.0);
-        EXPECT_GT(dark.plain, 0.1);
-        EXPECT_NEAR(lit.corrected, 1, 0.05);
-        EXPECT_NEAR(lit.narrow, 1, 0.05);
+    for (const double height : {1.0, 0.6 * static_cast<double>(kRadius)}) {
+        SceneMaker maker;
+        const auto grey = maker.diffuse(Rgb(0.5f));
+        maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, grey);
+        maker.quad({0, -1, 0}, {0, 2, 0}, {0, 0, height}, grey);
+        const auto scene = maker.build();
+        const Vec3d origin = -scene->centre();
+        std::vector<Photon> photons;
+        light(photons, origin + Vec3d(0, -1, 0), {1, 0, 0}, {0, 2, 0});
+        const PhotonMap map(photons);
+        for (const By by : {By::kRays, By::kPatches}) {
+            SCOPED_TRACE(fmt::format("{}, height {}", nameOf(by), height));
+            const Vec3d step{0, 0.05, 0};
+            const Estimates dark = estimate(*scene, map, by, origin + Vec3d(-0.02, -0.5, 0), step);
+            const Estimates lit = estimate(*scene, map, by, origin + Vec3d(0.02, -0.5, 0), step);
+            report("dark side", dark);
+            report("lit side", lit);
+            EXPECT_EQ(dark.corrected, 0.0);
+            EXPECT_EQ(dark.narrow, 0.0);
+            EXPECT_GT(dark.plain, 0.1);
+            EXPECT_NEAR(lit.corrected, 1, 0.05);
+            EXPECT_NEAR(lit.narrow, 1, 0.05);
+        }
     }
 }
 
