@@ -122,7 +122,7 @@ TEST(RayTracer, InstructionSets) {
 }
 
 // A ray tracer in a process that may take no address space beyond what it has. Ends the process.
-[[noreturn]] void traceWithoutMemory() {
+[[noreturn, maybe_unused]] void traceWithoutMemory() {
     std::ifstream statm("/proc/self/statm");
     rlim_t pages = 0;
     statm >> pages;
