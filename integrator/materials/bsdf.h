@@ -52,6 +52,8 @@ class Bsdf {
          const Rgb& carried);
 
     bool has(Lobe lobe) const { return m_probability[index(lobe)] > 0.0f; }
+    // With which sample() chooses the lobe.
+    float probability(Lobe lobe) const { return m_probability[index(lobe)]; }
     // What the lobe reflects or transmits; at a refraction without its factor 1 / etaSquared().
     const Rgb& reflectance(Lobe lobe) const { return m_reflectance[index(lobe)]; }
     // Nothing but Lambertian reflection, or less.

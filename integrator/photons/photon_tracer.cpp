@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <mutex>
 #include <utility>
@@ -22,6 +23,11 @@ constexpr std::uint64_t kBatchSize = 4096;
 // Light can be caught for ever between lossless surfaces; what is still on its way after this many
 // events is counted as lost.
 constexpr int kMaxEvents = 1000;
+// Glass reflects 4 % of most light, often to where it is all there is: there so little flux would
+// lie in a few bright photons. A caustic photon divides at the first of its events, and its smaller
+// part goes on at least so often. See docs/decisions.md.
+constexpr float kLeastShare = 0.2f;
+constexpr int kDividedEvents = 2;
 // Flux density on a surface counts by its geometric normal, the BSDF by its shading normal; their
 // ratio is cut off where a photon arrives almost edge-on.
 constexpr float kLargestNormalRatio = 20.0f;
@@ -85,14 +91,36 @@ class PhotonWalk {
         bool isFollowed = true;  // of the share that carries on what descends from caustics
     };
 
+    // A photon, or what goes on of it where it has divided.
+    struct Part {
+        Ray ray;
+        Rgb flux;
+        Way way{};
+        int events = 0;
+    };
+    // Parts of one photon that wait to be followed.
+    struct Waiting {
+        std::array<Part, kDividedEvents + 1> parts;
+        std::size_t count = 0;
+    };
+
     // Returns the flux that landed as asked for, W, summed over the channels.
     double walk(const EmittedPhoton& photon, Sampler& sampler, Batch& batch) const {
-        PhotonBalance& balance = batch.balance;
-        Ray ray = photon.ray;
-        Rgb flux = photon.flux;
-        Way way;
+        Waiting waiting;
+        waiting.parts[waiting.count++] = {photon.ray, photon.flux};
         double landed = 0;
-        for (int event = 0; event < kMaxEvents; ++event) {
+        while (waiting.count > 0) {
+            const Part part = waiting.parts[--waiting.count];
+            landed += walk(part, sampler, waiting, batch);
+        }
+        return landed;
+    }
+
+    double walk(Part part, Sampler& sampler, Waiting& waiting, Batch& batch) const {
+        PhotonBalance& balance = batch.balance;
+        auto& [ray, flux, way, events] = part;
+        double landed = 0;
+        while (events < kMaxEvents) {
             Surface surface;
             ++balance.rays;
             if (!m_scene.intersect(ray, surface)) {
@@ -105,6 +133,10 @@ class PhotonWalk {
             BsdfSample sample;
             const float uLobe = sampler.next1D();
             const Vec2f u = sampler.next2D();
+            if (divides(part, bsdf)) {
+                if (divide(part, surface, bsdf, {uLobe, u.x}, waiting, balance)) continue;
+                return landed;
+            }
             if ((bsdf.isDiffuseOnly() && endsAtDiffuse(way)) || !bsdf.sample(uLobe, u, sample) ||
                 (sample.lobe == Lobe::kDiffuse && endsAtDiffuse(way))) {
                 balance.fluxAbsorbed += channelSum(flux);
@@ -119,10 +151,42 @@ class PhotonWalk {
             balance.fluxAbsorbed += channelSum(flux) - channelSum(scattered);
             flux = scattered;
             ray = rayFrom(surface, sample.direction);
+            ++events;
         }
         ++balance.lost;
         balance.fluxLost += channelSum(flux);
         return landed;
+    }
+
+    // At glass and nothing else, on the way to a caustic.
+    bool divides(const Part& part, const Bsdf& bsdf) const {
+        return isCaustic(m_request.kind) && part.events < kDividedEvents &&
+               part.way.stage <= Stage::kSpecular && bsdf.has(Lobe::kReflection) &&
+               bsdf.has(Lobe::kRefraction) && !bsdf.has(Lobe::kStraight);
+    }
+
+    // The reflected part waits, the refracted one takes the place of `part`. The smaller of both
+    // goes on with the probability of its share, or a little more, the larger always, but for what
+    // tinted glass absorbs. False: the refracted one does not go on.
+    static bool divide(Part& part, const Surface& surface, const Bsdf& bsdf, Vec2f u,
+                       Waiting& waiting, PhotonBalance& balance) {
+        const float all = bsdf.probability(Lobe::kReflection) + bsdf.probability(Lobe::kRefraction);
+        const auto goesOn = [&](Lobe lobe, float uSurvival, Part& next) {
+            const float share = bsdf.probability(lobe) / all;
+            const float survival = all * (share < 0.5f ? std::max(share, kLeastShare) : 1.0f);
+            BsdfSample sample;
+            if (!(uSurvival < survival) || !bsdf.follow(lobe, sample)) return false;
+            next.ray = rayFrom(surface, sample.direction);
+            next.flux *= sample.weight * (1.0f / survival);
+            next.way.stage = Stage::kSpecular;
+            ++next.events;
+            balance.fluxAbsorbed -= channelSum(next.flux);
+            return true;
+        };
+        balance.fluxAbsorbed += channelSum(part.flux);
+        Part reflection = part;
+        if (goesOn(Lobe::kReflection, u.x, reflection)) waiting.parts[waiting.count++] = reflection;
+        return goesOn(Lobe::kRefraction, u.y, part);
     }
 
     // By a lobe, with the flux that it carries on. False: the photon is not of the share that is

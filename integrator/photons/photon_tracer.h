@@ -26,6 +26,9 @@ struct PhotonBalance {
     friend bool operator==(const PhotonBalance&, const PhotonBalance&) = default;
 };
 
+// Into so many a caustic photon divides at glass, at most as a rule.
+inline constexpr double kCausticParts = 1.44;
+
 enum class PhotonKind : std::uint8_t {
     kGlobal,       // every arrival at a diffuse surface
     kGlobalPilot,  // as kGlobal and kCaustic, with random numbers of their own: to find radii
@@ -42,7 +45,8 @@ struct PhotonTraceRequest {
     std::uint64_t count = 0;  // photons to emit, up to 2^32
     std::uint64_t seed = 1;
     std::uint32_t pass = 0;
-    const AimedEmission* aim = nullptr;  // of the same scene; null or empty: unaimed
+    // Of the same scene, at casters or, for global photons, at a focus; null or empty: unaimed.
+    const AimedEmission* aim = nullptr;
     // Caustic photons: the share of those that landed which is followed on, as light descended from
     // caustics, in [0, 1]; 0: none is. All are as far as to where they are refocused.
     float descent = 0.0f;

@@ -265,14 +265,18 @@ std::uint64_t Plan::globalLandings() const {
     return static_cast<std::uint64_t>(static_cast<double>(globalPhotons) * landingsOfPhoton);
 }
 
+std::uint64_t Plan::causticLandings() const {
+    return static_cast<std::uint64_t>(static_cast<double>(causticPhotons) * kCausticParts);
+}
+
 std::uint64_t Plan::descendedLandings() const {
-    return static_cast<std::uint64_t>(static_cast<double>(causticPhotons) *
+    return static_cast<std::uint64_t>(static_cast<double>(causticLandings()) *
                                       static_cast<double>(descent) * landingsOfPhoton) +
            refocusedLandings();
 }
 
 std::uint64_t Plan::refocusedLandings() const {
-    return descent > 0.0f ? static_cast<std::uint64_t>(static_cast<double>(causticPhotons) *
+    return descent > 0.0f ? static_cast<std::uint64_t>(static_cast<double>(causticLandings()) *
                                                        kExpectedRefocused)
                           : 0;
 }

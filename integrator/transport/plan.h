@@ -45,8 +45,8 @@ struct Plan {
         return globalLandings() + causticLandings() + descendedLandings();
     }
     std::uint64_t globalLandings() const;
-    std::uint64_t causticLandings() const { return causticPhotons; }  // one of each
-    std::uint64_t descendedLandings() const;                          // refocused ones included
+    std::uint64_t causticLandings() const;
+    std::uint64_t descendedLandings() const;  // refocused ones included
     std::uint64_t refocusedLandings() const;
 
     // Estimated memory where the maps of several passes are held: of the first so many passes,

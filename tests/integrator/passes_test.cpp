@@ -188,8 +188,11 @@ TEST(Passes, SpecularDiffuseSpecularConverges) {
                    mean / expected, 100 * rms.back());
         EXPECT_NEAR(mean / expected, 1, 0.01);
     }
-    // 16 times the passes: 16^(-a/2) = 0.4 of the error.
-    EXPECT_LT(rms[2], 0.5 * rms[0]);
+    // Photons are stratified: the relative variance of a disc's count n goes as its rim, n^(-3/2),
+    // not as 1 / n. As n falls with passes^(-1/3), 16 times the passes have 16^(-1/4) = 0.5 of the
+    // error (0.516 from 16 seeds); photons chosen at glass have 16^(-1/3), of twice as much.
+    EXPECT_LT(rms[2], 0.6 * rms[0]);
+    EXPECT_LT(rms[0], 0.035);
 }
 
 // Resident memory, bytes; 0 where it can't be found out.

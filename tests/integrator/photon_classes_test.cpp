@@ -143,6 +143,28 @@ TEST_P(PhotonClasses, EnergyIsConserved) {
     EXPECT_TRUE(trace.caustics(20'000, 1, 0, true).descended.empty());
 }
 
+// Above a lamp that shines down on a ball of glass all light is reflected by the ball, once
+TEST(PhotonClasses, WeakReflectionsHaveManyPhotons) {
+    SceneMaker maker;
+    maker.box({-1, -1, -1}, {1, 1, 1}, maker.diffuse(Rgb(0.5f)), true);
+    maker.sphere({0, -0.3, 0}, 0.4, maker.material(glass()));
+    maker.quad({-0.1, 0.5, -0.1}, {0.2, 0, 0}, {0, 0, 0.2}, maker.diffuse({}, Rgb(5.0f)));
+    const Tracing trace(maker.build());
+    double flux = 0, above = 0, photonsAbove = 0;
+    const PhotonTraceResult caustics = trace.caustics(40'000, 1, 0, true);
+    for (const Photon& photon : caustics.photons) {
+        const auto carried = static_cast<double>(photon.flux.g);
+        flux += carried;
+        if (photon.position.y < 0.5f) continue;
+        above += carried;
+        ++photonsAbove;
+    }
+    const auto photons = static_cast<double>(caustics.photons.size());
+    fmt::print("    {:.4f} of the flux, {:.4f} of the photons\n", above / flux,
+               photonsAbove / photons);
+    EXPECT_GT(photonsAbove / photons, 2 * above / flux);
+}
+
 // Before the first diffuse surface light is no caustic, after it it stays what it was.
 TEST(PhotonClasses, NothingWithoutOtherLobes) {
     const Tracing trace(roomsOfEveryLobe().front().maker.build());
