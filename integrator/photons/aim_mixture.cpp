@@ -7,7 +7,7 @@
 namespace pm {
 
 AimMixture::AimMixture(std::span<const Caster> casters, std::span<const float> worth,
-                       const EmissionPoint& from)
+                       const EmissionPoint& from, float unaimedShare)
     : m_from(from) {
     float total = 0.0f;
     for (std::uint32_t i = 0; i < casters.size(); ++i) {
@@ -21,8 +21,8 @@ AimMixture::AimMixture(std::span<const Caster> casters, std::span<const float> w
         m_count = 0;
         return;
     }
-    m_unaimedShare = kUnaimedShare;
-    const float scale = (1.0f - kUnaimedShare) / total;
+    m_unaimedShare = unaimedShare;
+    const float scale = (1.0f - unaimedShare) / total;
     for (std::size_t i = 0; i < m_count; ++i) {
         m_slots[i].part.share *= scale;
         if (m_slots[i].part.cone.all) m_unaimedShare += m_slots[i].part.share;

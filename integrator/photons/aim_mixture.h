@@ -34,7 +34,7 @@ class AimMixture {
 
     // casters: at most kMostCasters. worth: of each caster, > 0.
     AimMixture(std::span<const Caster> casters, std::span<const float> worth,
-               const EmissionPoint& from);
+               const EmissionPoint& from, float unaimedShare = kUnaimedShare);
 
     // False when the direction has no density.
     bool sample(float uChoice, Vec2f u, Sample& sample) const;

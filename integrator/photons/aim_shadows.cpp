@@ -24,7 +24,7 @@ double discArea(const Caster& caster) {
 }  // namespace
 
 AimShadows::AimShadows(std::span<const Caster> casters, std::span<const float> worth,
-                       const Vec3f& direction, const Vec3d& halfSize)
+                       const Vec3f& direction, const Vec3d& halfSize, float unaimedShare)
     : m_direction(normalize(Vec3d(direction))), m_scene(halfSize, m_direction) {
     double total = 0.0;
     for (std::uint32_t i = 0; i < casters.size(); ++i) {
@@ -36,8 +36,7 @@ AimShadows::AimShadows(std::span<const Caster> casters, std::span<const float> w
         total += part.share;
     }
     if (m_count == 0) return;
-    constexpr auto kUnaimed = static_cast<double>(AimMixture::kUnaimedShare);
-    m_unaimedShare = m_scene.area() > 0.0 ? kUnaimed : 0.0;
+    m_unaimedShare = m_scene.area() > 0.0 ? static_cast<double>(unaimedShare) : 0.0;
     for (std::size_t i = 0; i < m_count; ++i)
         m_slots[i].part.share *= (1.0 - m_unaimedShare) / total;
 }

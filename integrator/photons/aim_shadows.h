@@ -28,7 +28,8 @@ class AimShadows {
     // casters: at most kMostCasters. worth: of each caster, > 0. direction: in which light travels;
     // halfSize: of the scene's box around the origin.
     AimShadows(std::span<const Caster> casters, std::span<const float> worth,
-               const Vec3f& direction, const Vec3d& halfSize);
+               const Vec3f& direction, const Vec3d& halfSize,
+               float unaimedShare = AimMixture::kUnaimedShare);
 
     // False when the point has no density.
     bool sample(float uChoice, Vec2f u, Sample& sample) const;

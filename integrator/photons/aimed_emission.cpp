@@ -31,7 +31,25 @@ constexpr double kLeastWorth = 0.05, kMostWorth = 2.0;
 // Photons that an expectation counts for beside what a pilot has measured.
 constexpr double kPriorPhotons = 8.0;
 
-constexpr const char* kAiming = "aiming at what casts caustics";
+// Of photons that are aimed at a focus, the share for the innermost ball, and what is unaimed:
+// light may come by way of anything.
+constexpr double kInnermostShare = 0.5;
+constexpr float kUnaimedShareOfFocus = 0.25f;
+
+constexpr const char* kAiming = "aiming photons";
+
+// The balls of a focus, as many as it takes to hold the scene.
+std::vector<Caster> ballsAround(const Focus& focus, double sceneRadius) {
+    std::vector<Caster> balls;
+    const Vec3d centre(focus.centre);
+    double radius = 1.0 / std::sqrt(static_cast<double>(focus.inverseRadiusSquared));
+    const double whole = length(centre) + sceneRadius;
+    for (; balls.size() < kMostCasters; radius *= 2) {
+        balls.push_back({centre, radius});
+        if (radius >= whole) break;
+    }
+    return balls;
+}
 
 // Flux, and in how many photons, of a pilot.
 struct Landing {
@@ -152,11 +170,38 @@ AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights,
     if (m_casters.empty()) return;
     groupLights(cancel);
     m_guess.resize(all.size());
-    const std::uint32_t points = all.size() <= 1024 ? 16 : 4;
     tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
         cancel.throwIfSet(kAiming);
-        m_guess[i] = fluxTowardsCasters(static_cast<std::uint32_t>(i), points);
+        m_guess[i] = fluxTowards(m_casters, static_cast<std::uint32_t>(i));
     });
+    m_choice = LightChoice(m_guess);
+}
+
+AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights, const Focus& focus,
+                             const CancelCheck& cancel)
+    : m_scene(scene), m_lights(lights), m_focus(focus), m_unaimedShare(kUnaimedShareOfFocus) {
+    if (lights.empty() || focus.isEverywhere()) return;
+    m_casters = ballsAround(focus, scene.radius());
+    const std::size_t count = scene.lights().size(), balls = m_casters.size();
+    m_group.assign(count, 0);
+    m_guess.assign(count, 0.0);
+    std::vector<double> flux(count);
+    for (std::size_t ball = 0; ball < balls; ++ball) {
+        const double share = balls == 1  ? 1.0
+                             : ball == 0 ? kInnermostShare
+                                         : (1 - kInnermostShare) / static_cast<double>(balls - 1);
+        // A photon is aimed at a ball as often as its solid angle or shadow says times its worth:
+        // so at each as often as its share says, from wherever all look small.
+        const double ratio = m_casters[0].radius / m_casters[ball].radius;
+        m_worth.push_back(static_cast<float>(share * ratio * ratio));
+        tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+            cancel.throwIfSet(kAiming);
+            flux[i] = fluxTowards({&m_casters[ball], 1}, static_cast<std::uint32_t>(i));
+        });
+        double all = 0;
+        for (const double one : flux) all += one;
+        for (std::size_t i = 0; all > 0 && i < count; ++i) m_guess[i] += share * flux[i] / all;
+    }
     m_choice = LightChoice(m_guess);
 }
 
@@ -188,10 +233,11 @@ EmissionPoint AimedEmission::viewpoint(std::uint32_t index, Vec2f uPoint) const 
     return point;
 }
 
-double AimedEmission::shareTowardsCasters(const EmissionPoint& point) const {
+double AimedEmission::shareTowards(std::span<const Caster> casters,
+                                   const EmissionPoint& point) const {
     double sum = 0;
     AimCone cone;
-    for (const Caster& caster : m_casters)
+    for (const Caster& caster : casters)
         if (cone.aim(caster, point)) sum += static_cast<double>(cone.solidAngle);
     const double whole = point.onSurface ? static_cast<double>(kPi)
                          : point.beam    ? static_cast<double>(point.beam->fluxOverIntensity())
@@ -199,22 +245,23 @@ double AimedEmission::shareTowardsCasters(const EmissionPoint& point) const {
     return std::min(1.0, sum / whole);
 }
 
-double AimedEmission::shareInShadows(const Light& light, Vec2f uDirection) const {
+double AimedEmission::shareInShadows(std::span<const Caster> casters, const Light& light,
+                                     Vec2f uDirection) const {
     ParallelLight parallel;
     if (!m_lights.emitParallel(light, uDirection, parallel)) return 0;
     const Vec3d direction = normalize(Vec3d(parallel.direction));
     double sum = 0;
-    for (const Caster& caster : m_casters) sum += AimShadows::areaOf(caster, direction);
+    for (const Caster& caster : casters) sum += AimShadows::areaOf(caster, direction);
     return std::min(1.0, sum / crossSection(m_scene.halfSize(), direction));
 }
 
-double AimedEmission::fluxTowardsCasters(std::uint32_t index, std::uint32_t points) const {
+double AimedEmission::fluxTowards(std::span<const Caster> casters, std::uint32_t index) const {
     const Light& light = m_scene.lights()[index];
-    if (light.isAtPoint()) points = 1;
+    const std::uint32_t points = light.isAtPoint() ? 1 : m_scene.lights().size() <= 1024 ? 16 : 4;
     double share = 0;
     for (std::uint32_t i = 0; i < points; ++i)
-        share += light.isFar() ? shareInShadows(light, spreadPoint(i))
-                               : shareTowardsCasters(viewpoint(index, spreadPoint(i)));
+        share += light.isFar() ? shareInShadows(casters, light, spreadPoint(i))
+                               : shareTowards(casters, viewpoint(index, spreadPoint(i)));
     return share / points * light.powerMean;
 }
 
@@ -303,7 +350,7 @@ bool AimedEmission::emit(Vec2f uChoice, Vec2f uPoint, Vec2f uDirection, AimedPho
         return emitParallel(light, probability, uChoice.y, uPoint, uDirection, photon);
     Origin origin;
     place(photon.light, uChoice.y, uPoint, origin);
-    const AimMixture mixture(m_casters, worthOf(photon.light), origin.point);
+    const AimMixture mixture(m_casters, worthOf(photon.light), origin.point, m_unaimedShare);
     AimMixture::Sample sample;
     if (!mixture.sample(uChoice.y, uDirection, sample)) return false;
     const float cosine = origin.point.onSurface ? dot(sample.direction, origin.point.axis) : 1.0f;
@@ -315,6 +362,20 @@ bool AimedEmission::emit(Vec2f uChoice, Vec2f uPoint, Vec2f uDirection, AimedPho
     return !isBlack(photon.flux);
 }
 
+bool AimedEmission::scatter(const Vec3f& position, const Vec3f& normal, float uChoice, Vec2f u,
+                            Vec3f& direction, float& pdfSolidAngle) const {
+    EmissionPoint point;
+    point.position = Vec3d(position);
+    point.axis = normal;
+    point.onSurface = true;
+    AimMixture::Sample sample;
+    if (!AimMixture(m_casters, m_worth, point, m_unaimedShare).sample(uChoice, u, sample))
+        return false;
+    direction = sample.direction;
+    pdfSolidAngle = sample.pdfSolidAngle;
+    return true;
+}
+
 bool AimedEmission::emitParallel(const Light& light, float probability, float uCaster, Vec2f uPoint,
                                  Vec2f uDirection, AimedPhoton& photon) const {
     ParallelLight parallel;
@@ -324,7 +385,7 @@ bool AimedEmission::emitParallel(const Light& light, float probability, float uC
     if (!m_lights.emitParallel(light, uDirection, parallel)) return false;
     if (isSky) photon.part = SkyParts::partOf(-parallel.direction);
     const AimShadows shadows(m_casters, worthOf(photon.light), parallel.direction,
-                             m_scene.halfSize());
+                             m_scene.halfSize(), m_unaimedShare);
     AimShadows::Sample sample;
     if (!shadows.sample(uCaster, uPoint, sample)) return false;
     photon.caster = sample.caster;

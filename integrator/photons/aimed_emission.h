@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "integrator/photons/aim_mixture.h"
+#include "integrator/photons/focus.h"
 #include "integrator/photons/sky_parts.h"
 #include "integrator/scene/light_choice.h"
 #include "integrator/scene/light_sampler.h"
@@ -52,6 +53,11 @@ class AimedEmission {
     // calling TBB arena. Throws Error(kCancelled) soon after cancel is set.
     AimedEmission(const Scene& scene, const LightSampler& lights, const CancelCheck& cancel = {});
 
+    // Emission of global photons towards a focus: the same with balls around it for casters, out to
+    // where they hold the scene; there is nothing to refine.
+    AimedEmission(const Scene& scene, const LightSampler& lights, const Focus& focus,
+                  const CancelCheck& cancel = {});
+
     // Nothing to aim from or at: emit() has no photon to give.
     bool empty() const { return m_casters.empty() || m_choice.empty(); }
 
@@ -62,6 +68,15 @@ class AimedEmission {
     // False when the photon carries nothing. uChoice: of the light and of the caster.
     bool emit(Vec2f uChoice, Vec2f uPoint, Vec2f uDirection, AimedPhoton& photon) const;
 
+    // Whether photons that leave a place should go by scatter(): far from the focus, where there is
+    // one. What is far has few photons of much flux each; a bounce must not bring them near.
+    bool scattersFrom(const Vec3f& position) const { return m_focus.levelAt(position) > 0; }
+    // A direction towards the balls of the focus or, the unaimed share, by the cosine to `normal`
+    // (unit); with the density of both, sr^-1. False when it has none.
+    bool scatter(const Vec3f& position, const Vec3f& normal, float uChoice, Vec2f u,
+                 Vec3f& direction, float& pdfSolidAngle) const;
+
+    const Focus& focus() const { return m_focus; }
     std::span<const Caster> casters() const { return m_casters; }
     // Of a light's choice.
     float lightProbability(std::size_t light) const { return m_choice.probability(light); }
@@ -83,13 +98,14 @@ class AimedEmission {
     EmissionPoint viewpoint(std::uint32_t light, Vec2f uPoint) const;
     EmissionPoint pointLightView(const Light& light) const;
     EmissionPoint farView(const Light& light, Vec2f uDirection) const;
-    double shareTowardsCasters(const EmissionPoint& point) const;
-    double shareInShadows(const Light& light, Vec2f uDirection) const;
+    double shareTowards(std::span<const Caster> casters, const EmissionPoint& point) const;
+    double shareInShadows(std::span<const Caster> casters, const Light& light,
+                          Vec2f uDirection) const;
     void refineSky(std::span<const EmissionRecord> pilot);
     bool emitParallel(const Light& light, float probability, float uCaster, Vec2f uPoint,
                       Vec2f uDirection, AimedPhoton& photon) const;
     void place(std::uint32_t light, float& uCaster, Vec2f uPoint, Origin& origin) const;
-    double fluxTowardsCasters(std::uint32_t light, std::uint32_t points) const;
+    double fluxTowards(std::span<const Caster> casters, std::uint32_t light) const;
     void groupLights(const CancelCheck& cancel);
     std::span<const float> worthOf(std::uint32_t light) const {
         return std::span(m_worth).subspan(m_group[light] * m_casters.size(), m_casters.size());
@@ -103,6 +119,8 @@ class AimedEmission {
     std::vector<double> m_guess;        // flux that each light sends to casters, unhidden, W
     SkyParts m_sky;
     LightChoice m_choice;
+    Focus m_focus;
+    float m_unaimedShare = AimMixture::kUnaimedShare;
 };
 
 }  // namespace pm

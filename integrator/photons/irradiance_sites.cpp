@@ -45,9 +45,10 @@ Vec3f originOf(const PhotonMap& map, float radius) {
 }  // namespace
 
 IrradianceSites::IrradianceSites(const Scene& scene, const PhotonMap& map, float radius,
-                                 const SurfacePatches* patches, float radiusFactor)
+                                 const SurfacePatches* patches, float radiusFactor,
+                                 const Focus& focus)
     : m_estimate(scene, map, radius, patches),
-      m_cells(scene, kCellSize * radius, originOf(map, radius)),
+      m_cells(scene, kCellSize * radius, originOf(map, radius), focus),
       m_slotCount(slotsFor(map.size(), radiusFactor)),
       m_slots(makeBigZeroedArray<Slot>(m_slotCount)) {}
 
@@ -55,7 +56,7 @@ IrradianceSites::Value IrradianceSites::compute(const Cell& cell, std::uint64_t 
     Value value;
     if (!m_cells.findSurface(cell, value.position, value.normal)) return {};
     value.irradiance =
-        m_estimate.at(value.position, value.normal, static_cast<std::uint32_t>(hash));
+        estimateOf(cell.level).at(value.position, value.normal, static_cast<std::uint32_t>(hash));
     return value;
 }
 
@@ -104,19 +105,20 @@ IrradianceSites::Value IrradianceSites::valueOf(const Cell& cell) const {
 }
 
 TwoRadii IrradianceSites::at(const Vec3f& position, const Vec3f& normal) const {
+    Cell cell = m_cells.at(position, normal);
+    const float cellSize = m_cells.cellSize(cell.level);
     const auto speaksFor = [&](const Value& site) {
         const Vec3f way = position - site.position;
         const float height = dot(way, site.normal + normal);
-        const float tolerance = 1e-4f * m_cells.cellSize();
+        const float tolerance = 1e-4f * cellSize;
         return dot(site.normal, normal) >= kSiteCosine &&
                height * height <=
                    kSiteFlatness * kSiteFlatness * lengthSquared(way) + tolerance * tolerance;
     };
-    Cell cell = m_cells.at(position, normal);
     Value site = valueOf(cell);
     if (speaksFor(site)) return site.irradiance;
     // A sliver of surface at an edge, or one of two surfaces in the cell: the nearest cell aside.
-    const Vec3f place = (position - m_cells.origin()) * (1.0f / m_cells.cellSize());
+    const Vec3f place = (position - m_cells.origin()) * (1.0f / cellSize);
     int nearest = 0;
     float way = 1.0f;
     std::int64_t step = 0;

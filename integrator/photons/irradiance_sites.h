@@ -23,9 +23,11 @@ class IrradianceSites {
   public:
     // scene, map and patches must outlive this. radius: of the estimates, scene units, > 0.
     // patches: see SurfaceEstimate. radiusFactor: this pass's radii over the first pass's, by which
-    // room is made for more sites, in (0, 1].
+    // room is made for more sites, in (0, 1]. focus: where the radius is as given; beyond it
+    // estimates are wider.
     IrradianceSites(const Scene& scene, const PhotonMap& map, float radius,
-                    const SurfacePatches* patches = nullptr, float radiusFactor = 1.0f);
+                    const SurfacePatches* patches = nullptr, float radiusFactor = 1.0f,
+                    const Focus& focus = {});
 
     // Irradiance, W m^-2, at a site near the point, on the side of the normal; estimated at the
     // point itself where none is.
@@ -37,7 +39,7 @@ class IrradianceSites {
 
     // Irradiance, W m^-2, at a point, computed now. pattern turns the rays about the normal.
     TwoRadii estimate(const Vec3f& position, const Vec3f& normal, std::uint32_t pattern) const {
-        return m_estimate.at(position, normal, pattern);
+        return estimateOf(m_cells.focus().levelAt(position)).at(position, normal, pattern);
     }
 
     std::uint64_t memoryBytes() const;
@@ -60,6 +62,9 @@ class IrradianceSites {
 
     std::size_t firstSlot(std::uint64_t hash) const {
         return static_cast<std::size_t>((static_cast<unsigned __int128>(hash) * m_slotCount) >> 64);
+    }
+    SurfaceEstimate estimateOf(int level) const {
+        return m_estimate.withRadius(m_estimate.radius() * powerOfTwo(level));
     }
     Slot* slotOf(std::uint64_t hash) const;
     Value compute(const Cell& cell, std::uint64_t hash) const;

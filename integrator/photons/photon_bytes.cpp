@@ -20,6 +20,11 @@ bool isPossible(const Photon& photon, float farthest) {
            isFinite(photon.flux) && !photon.normal.isNull();
 }
 
+bool isPossible(const Focus& focus) {
+    return isFinite(focus.centre) && std::isfinite(focus.inverseRadiusSquared) &&
+           focus.inverseRadiusSquared >= 0.0f;
+}
+
 bool isPossible(const PhotonBalance& balance) {
     return std::isfinite(balance.fluxEmitted) && std::isfinite(balance.fluxAbsorbed) &&
            std::isfinite(balance.fluxEscaped) && std::isfinite(balance.fluxLost);
@@ -28,8 +33,9 @@ bool isPossible(const PhotonBalance& balance) {
 }  // namespace
 
 TracedHead tracedHead(PhotonKind kind, std::uint32_t pass, const PhotonTraceResult& traced) {
-    return {static_cast<std::uint32_t>(kind), pass, traced.balance, traced.photons.size(),
-            traced.descended.size()};
+    return {
+        static_cast<std::uint32_t>(kind), pass, traced.focus, traced.balance, traced.photons.size(),
+        traced.descended.size()};
 }
 
 std::array<std::span<const std::byte>, 3> tracedBytes(const TracedHead& head,
@@ -54,6 +60,7 @@ std::array<std::span<std::byte>, 2> tracedRoom(const TracedHead& head, PhotonTra
 
 const char* faultOf(const TracedHead& head, const PhotonTraceResult& traced, double sceneRadius) {
     if (!isPossible(head.balance)) return "its flux is not finite";
+    if (!isPossible(head.focus)) return "its focus is not finite";
     if (head.balance.stored != head.photons + head.descended) return "its photons are miscounted";
     if (head.descended > 0 && !isCaustic(static_cast<PhotonKind>(head.kind)))
         return "it has photons of another kind";

@@ -17,12 +17,13 @@ namespace pm {
 struct TracedHead {
     std::uint32_t kind = 0;  // PhotonKind
     std::uint32_t pass = 0;
+    Focus focus;
     PhotonBalance balance;
     std::uint64_t photons = 0, descended = 0;  // how many follow
 
     friend bool operator==(const TracedHead&, const TracedHead&) = default;
 };
-static_assert(sizeof(PhotonBalance) == 64 && sizeof(TracedHead) == 88);
+static_assert(sizeof(PhotonBalance) == 64 && sizeof(TracedHead) == 104);
 static_assert(std::is_trivially_copyable_v<TracedHead> && std::is_trivially_copyable_v<Photon>);
 
 TracedHead tracedHead(PhotonKind kind, std::uint32_t pass, const PhotonTraceResult& traced);

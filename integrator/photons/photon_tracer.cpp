@@ -138,7 +138,8 @@ class PhotonWalk {
                 return landed;
             }
             if ((bsdf.isDiffuseOnly() && endsAtDiffuse(way)) || !bsdf.sample(uLobe, u, sample) ||
-                (sample.lobe == Lobe::kDiffuse && endsAtDiffuse(way))) {
+                (sample.lobe == Lobe::kDiffuse &&
+                 (endsAtDiffuse(way) || !aimScattered(surface, bsdf, sampler, sample)))) {
                 balance.fluxAbsorbed += channelSum(flux);
                 return landed;
             }
@@ -156,6 +157,21 @@ class PhotonWalk {
         ++balance.lost;
         balance.fluxLost += channelSum(flux);
         return landed;
+    }
+
+    // Of what is scattered diffusely where photons are aimed at a focus far away. False: nothing
+    // goes on.
+    bool aimScattered(const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
+                      BsdfSample& sample) const {
+        if (!m_aim || !m_aim->scattersFrom(surface.position)) return true;
+        float pdf;
+        const float uChoice = sampler.next1D();
+        if (!m_aim->scatter(surface.position, bsdf.facingShadingNormal(), uChoice, sampler.next2D(),
+                            sample.direction, pdf))
+            return false;
+        sample.weight = bsdf.evaluate(Lobe::kDiffuse, sample.direction) /
+                        (pdf * bsdf.probability(Lobe::kDiffuse));
+        return !isBlack(sample.weight);
     }
 
     // At glass and nothing else, on the way to a caustic.
@@ -293,6 +309,7 @@ PhotonTraceResult tracePhotons(const Scene& scene, const LightSampler& lights,
                                const std::atomic<bool>& cancelled,
                                const std::function<void(double)>& progress) {
     PhotonTraceResult result;
+    if (request.aim) result.focus = request.aim->focus();
     if (request.count == 0 || lights.empty()) return result;
     const PhotonWalk walk(scene, lights, request);
     const std::size_t batchCount = (request.count + kBatchSize - 1) / kBatchSize;

@@ -63,6 +63,7 @@ struct PhotonTraceResult {
     // comes by way of other lobes before it meets another diffuse surface: refocused.
     BigVector<Photon> descended;
     BigVector<EmissionRecord> records;  // of each photon that carried something, if asked for
+    Focus focus;                        // that global photons were aimed at
 };
 
 // Traces photons from the lights, in parallel in the calling TBB arena: batches of fixed size, each

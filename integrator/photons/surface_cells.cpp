@@ -37,21 +37,22 @@ std::uint64_t SurfaceCells::Cell::hash() const {
         h = h * 0x9e3779b97f4a7c15ull +
             static_cast<std::uint64_t>(place[static_cast<std::size_t>(axis)] * 16 +
                                        direction[static_cast<std::size_t>(axis)] + 8);
-    h = mixBits(h);
+    h = mixBits(h + static_cast<std::uint64_t>(level) * 0xd1b54a32d192ed03ull);
     return h == 0 ? 1 : h;  // 0 is an empty slot
 }
 
 SurfaceCells::Cell SurfaceCells::at(const Vec3f& position, const Vec3f& normal) const {
-    const Vec3f place = (position - m_origin) * (1.0f / m_cellSize);
+    const int level = m_focus.levelAt(position);
+    const Vec3f place = (position - m_origin) * (1.0f / cellSize(level));
     const Vec3f direction = normal * kDirectionSteps + Vec3f(0.5f);
-    return {
-        {floorToInteger(place.x), floorToInteger(place.y), floorToInteger(place.z)},
-        {floorToInteger(direction.x), floorToInteger(direction.y), floorToInteger(direction.z)}};
+    return {{floorToInteger(place.x), floorToInteger(place.y), floorToInteger(place.z)},
+            {floorToInteger(direction.x), floorToInteger(direction.y), floorToInteger(direction.z)},
+            level};
 }
 
 bool SurfaceCells::findAlong(const Vec3f& middle, const Vec3f& through, const Vec3f& direction,
-                             Vec3f& position, Vec3f& normal) const {
-    Ray ray{through + direction * m_cellSize, -direction, 2.0f * m_cellSize};
+                             float cellSize, Vec3f& position, Vec3f& normal) const {
+    Ray ray{through + direction * cellSize, -direction, 2.0f * cellSize};
     for (int i = 0; i < kMostSurfaces; ++i) {
         Surface surface;
         if (!m_scene.intersect(ray, surface)) return false;
@@ -60,10 +61,10 @@ bool SurfaceCells::findAlong(const Vec3f& middle, const Vec3f& through, const Ve
                                                                 : -surface.geometricNormal;
         const MaterialDescription& material = m_scene.material(surface.material);
         if (dot(normal, direction) >= kDirectionCosine &&
-            maxAbsComponent(position - middle) <= kCellReach * m_cellSize &&
+            maxAbsComponent(position - middle) <= kCellReach * cellSize &&
             material.kind == MaterialKind::kSurface && !isBlack(material.diffuse))
             return true;
-        const float passed = dot(ray.origin - position, direction) + 1e-3f * m_cellSize;
+        const float passed = dot(ray.origin - position, direction) + 1e-3f * cellSize;
         ray.origin -= direction * passed;
         ray.tMax -= passed;
         if (!(ray.tMax > 0.0f)) return false;
@@ -72,20 +73,21 @@ bool SurfaceCells::findAlong(const Vec3f& middle, const Vec3f& through, const Ve
 }
 
 bool SurfaceCells::findSurface(const Cell& cell, Vec3f& position, Vec3f& normal) const {
+    const float size = cellSize(cell.level);
     const auto middleAlong = [&](std::size_t axis) {
-        return (static_cast<float>(cell.place[axis]) + 0.5f) * m_cellSize;
+        return (static_cast<float>(cell.place[axis]) + 0.5f) * size;
     };
     const Vec3f middle = m_origin + Vec3f{middleAlong(0), middleAlong(1), middleAlong(2)};
     const Vec3f direction = normalize(Vec3f{static_cast<float>(cell.direction[0]),
                                             static_cast<float>(cell.direction[1]),
                                             static_cast<float>(cell.direction[2])});
-    if (findAlong(middle, middle, direction, position, normal)) return true;
+    if (findAlong(middle, middle, direction, size, position, normal)) return true;
     const Frame frame(direction);
     for (const float u : {-kAside, 0.0f, kAside})
         for (const float v : {-kAside, 0.0f, kAside}) {
             if (u == 0.0f && v == 0.0f) continue;
-            const Vec3f aside = (frame.tangent * u + frame.bitangent * v) * m_cellSize;
-            if (findAlong(middle, middle + aside, direction, position, normal)) return true;
+            const Vec3f aside = (frame.tangent * u + frame.bitangent * v) * size;
+            if (findAlong(middle, middle + aside, direction, size, position, normal)) return true;
         }
     return false;
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 
+#include "integrator/photons/focus.h"
 #include "integrator/scene/scene.h"
 
 namespace pm {
@@ -15,14 +16,16 @@ namespace pm {
 // Threads: const functions from any, at once.
 class SurfaceCells {
   public:
-    // scene must outlive this. cellSize: scene units, > 0; origin: a corner of one of the cells.
-    SurfaceCells(const Scene& scene, float cellSize, const Vec3f& origin)
-        : m_scene(scene), m_cellSize(cellSize), m_origin(origin) {}
+    // scene must outlive this. cellSize: in focus, scene units, > 0; origin: a corner of one of the
+    // cells.
+    SurfaceCells(const Scene& scene, float cellSize, const Vec3f& origin, const Focus& focus = {})
+        : m_scene(scene), m_cellSize(cellSize), m_origin(origin), m_focus(focus) {}
 
     // A cell and a rough direction.
     struct Cell {
         std::array<std::int64_t, 3> place;
         std::array<std::int64_t, 3> direction;
+        int level = 0;  // of the focus, by which cells differ in size
 
         std::uint64_t hash() const;  // never 0
     };
@@ -33,16 +36,19 @@ class SurfaceCells {
     // false where there is none.
     bool findSurface(const Cell& cell, Vec3f& position, Vec3f& normal) const;
 
-    float cellSize() const { return m_cellSize; }
+    // Of the cells of a level, scene units.
+    float cellSize(int level) const { return m_cellSize * powerOfTwo(level); }
+    const Focus& focus() const { return m_focus; }
     const Vec3f& origin() const { return m_origin; }
 
   private:
     bool findAlong(const Vec3f& middle, const Vec3f& through, const Vec3f& direction,
-                   Vec3f& position, Vec3f& normal) const;
+                   float cellSize, Vec3f& position, Vec3f& normal) const;
 
     const Scene& m_scene;
     float m_cellSize;
     Vec3f m_origin;
+    Focus m_focus;
 };
 
 }  // namespace pm

@@ -24,6 +24,11 @@ constexpr float kRayReach = 1.5f;
 constexpr float kLargestAreaRatio = 4.0f;
 // What ends on a surface is lifted off it by this share of the height it is seen from.
 constexpr float kLift = 0.01f;
+// Where less of the disc than this is surface (a leaf, a wire) it is too wide for what is there: it
+// is halved, so many times at most. By what stands there alone: photons that chose their own radius
+// would bias it.
+constexpr float kLeastShare = 0.2f;
+constexpr int kMostHalvings = 6;
 constexpr float kFlatTolerance = 0.02f;
 // Rays to the rim; where all of them find it flat, the disc is taken as whole.
 constexpr std::uint32_t kRimRays = 8;
@@ -125,32 +130,60 @@ TwoRadii SurfaceEstimate::irradiance(const TwoRadii& flux, const Shares& share) 
 
 TwoRadii SurfaceEstimate::at(const Vec3f& position, const Vec3f& normal,
                              std::uint32_t pattern) const {
-    TwoRadii flux = m_map.fluxWithin(position, normal, m_radius);
     // In the dark there is nothing to correct.
+    const TwoRadii flux = m_map.fluxWithin(position, normal, m_radius);
     if (isBlack(flux.wide)) return {};
-    Shares share;
-    if (m_patches && askPatch(position, normal, flux, share)) return irradiance(flux, share);
-    return askRays(position, normal, pattern, flux);
+    if (const auto seen = ofWhatIsSeen(position, normal, pattern, flux, 0)) return *seen;
+    // What sees nothing at all is inside of something that stands there, and tells nothing.
+    return irradiance(flux, {});
 }
 
-// False where the patch there doesn't speak for the point. flux: becomes that of the photons that
+// Nothing where no surface is seen. flux: of all photons within the radius. halvings: of the first
+// radius so far.
+std::optional<TwoRadii> SurfaceEstimate::ofWhatIsSeen(const Vec3f& position, const Vec3f& normal,
+                                                      std::uint32_t pattern, const TwoRadii& flux,
+                                                      int halvings) const {
+    const float least = halvings < kMostHalvings ? kLeastShare : 0.0f;
+    TwoRadii counted = flux;
+    std::optional<Shares> share;
+    if (m_patches) share = askPatch(position, normal, counted);
+    if (!share || share->wide < least) {
+        counted = flux;
+        share = askRays(position, normal, pattern, least, counted);
+    }
+    const bool sawAny = share->wide > 0.0f;
+    if (sawAny && share->wide >= least) return irradiance(counted, *share);
+    if (halvings == kMostHalvings) return std::nullopt;
+    // Patches don't tell apart what is so small.
+    const SurfaceEstimate nearer(m_scene, m_map, 0.5f * m_radius);
+    const TwoRadii fluxNearer = m_map.fluxWithin(position, normal, nearer.m_radius);
+    const auto seen = isBlack(fluxNearer.wide) ? std::nullopt
+                                               : nearer.ofWhatIsSeen(position, normal, pattern,
+                                                                     fluxNearer, halvings + 1);
+    // No photon where something is seen: dark.
+    return !seen && sawAny ? TwoRadii{} : seen;
+}
+
+// Nothing where the patch there doesn't speak for the point. flux: becomes that of the photons that
 // count.
-bool SurfaceEstimate::askPatch(const Vec3f& position, const Vec3f& normal, TwoRadii& flux,
-                               Shares& share) const {
+std::optional<SurfaceEstimate::Shares> SurfaceEstimate::askPatch(const Vec3f& position,
+                                                                 const Vec3f& normal,
+                                                                 TwoRadii& flux) const {
     SurfacePatch spare;
     const SurfacePatch& patch = m_patches->at(position, normal, m_radius, spare);
-    if (!patch.speaksFor(m_scene, position, normal, m_radius)) return false;
+    if (!patch.speaksFor(m_scene, position, normal, m_radius)) return std::nullopt;
     const SurfacePatch::Shares shares = patch.shares(position, m_radius);
-    share = {shares.wide, shares.narrow};
     if (patch.hidesSurface())
         flux = m_map.fluxWithin(position, normal, m_radius, [&](std::uint32_t index) {
             return patch.counts(m_scene, m_map.photon(index));
         });
-    return true;
+    return Shares{shares.wide, shares.narrow};
 }
 
-TwoRadii SurfaceEstimate::askRays(const Vec3f& position, const Vec3f& normal, std::uint32_t pattern,
-                                  TwoRadii flux) const {
+// flux: as of askPatch, where at least the `least` share is surface.
+SurfaceEstimate::Shares SurfaceEstimate::askRays(const Vec3f& position, const Vec3f& normal,
+                                                 std::uint32_t pattern, float least,
+                                                 TwoRadii& flux) const {
     const Frame frame(normal);
     const float height = apexHeight(m_scene, position, normal, m_radius);
     const std::uint64_t random = mixBits(pattern);
@@ -161,10 +194,9 @@ TwoRadii SurfaceEstimate::askRays(const Vec3f& position, const Vec3f& normal, st
                     frame.bitangent,
                     toUnitFloat(static_cast<std::uint32_t>(random)),
                     toUnitFloat(static_cast<std::uint32_t>(random >> 32))};
-    if (isWhole(view)) return irradiance(flux, {});
+    if (isWhole(view)) return {};
     const Shares share = shares(view);
-    // What sees nothing at all is inside of something that stands there, and tells nothing.
-    if (!(share.wide > 0.0f)) return irradiance(flux, {});
+    if (share.wide < least || !(share.wide > 0.0f)) return share;
     const float lift = liftSeenFrom(m_scene, height);
     flux = m_map.fluxWithin(position, normal, m_radius, [&](std::uint32_t index) {
         const Photon photon = m_map.photon(index);
@@ -172,7 +204,7 @@ TwoRadii SurfaceEstimate::askRays(const Vec3f& position, const Vec3f& normal, st
         const Vec3f above = photon.position + photon.normal.unpack() * lift;
         return !m_scene.occluded({view.apex, above - view.apex, 1.0f});
     });
-    return irradiance(flux, share);
+    return share;
 }
 
 }  // namespace pm

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "integrator/photons/photon_map.h"
 #include "integrator/scene/scene.h"
@@ -35,7 +36,8 @@ float liftSeenFrom(const Scene& scene, float height);
 // Near an edge a part of the estimate's disc is not on the surface. It is found by short rays from
 // above the point, and the flux is divided by the area that is there; there, too, only photons that
 // are seen from above the point count, so that none is counted across a wall. Where a patch knows
-// the surface around the point it is asked in place of the rays.
+// the surface around the point it is asked in place of the rays. Where next to nothing of the disc
+// is surface, a smaller one is taken.
 // Threads: const functions from any, at once.
 class SurfaceEstimate {
   public:
@@ -67,9 +69,13 @@ class SurfaceEstimate {
         Vec3f tangent, bitangent;
         float turn, shift;  // [0, 1)
     };
-    bool askPatch(const Vec3f& position, const Vec3f& normal, TwoRadii& flux, Shares& share) const;
-    TwoRadii askRays(const Vec3f& position, const Vec3f& normal, std::uint32_t pattern,
-                     TwoRadii flux) const;
+    std::optional<TwoRadii> ofWhatIsSeen(const Vec3f& position, const Vec3f& normal,
+                                         std::uint32_t pattern, const TwoRadii& flux,
+                                         int halvings) const;
+    std::optional<Shares> askPatch(const Vec3f& position, const Vec3f& normal,
+                                   TwoRadii& flux) const;
+    Shares askRays(const Vec3f& position, const Vec3f& normal, std::uint32_t pattern, float least,
+                   TwoRadii& flux) const;
     TwoRadii irradiance(const TwoRadii& flux, const Shares& share) const;
     Seen look(const View& view, float turns, float radiusSquared) const;
     bool isWhole(const View& view) const;

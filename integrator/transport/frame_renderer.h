@@ -51,6 +51,7 @@ struct RenderCounters {
     std::uint64_t photonsLost = 0;  // ended for a numerical reason
     // Gather rays of each gather point, all passes alike; 0 before the first or without points.
     std::uint32_t gatherRaysOfPoint = 0;
+    bool photonsInFocus = false;    // global ones aimed at where gather rays end
     bool gatherRaysGuided = false;  // towards where photons say that light comes from
     std::uint32_t lampSamples = 0;  // of a camera sample; 0 before the first pass
     // Flux over all passes and channels, W: emitted = absorbed + escaped + lost.

@@ -23,6 +23,10 @@ constexpr float kReach = 1.0f;
 // open.
 constexpr float kRefocusedReach = 0.25f;
 constexpr float kNarrowestRefocused = 0.3f;
+// Points nearer than this, over the clearance, are taken as in sight; others are looked for along
+// a line which is raised by so much of its length.
+constexpr float kSurelySeen = 0.5f;
+constexpr float kLift = 0.05f;
 // Points whose surface leans away more than this (25 degrees) see another half-space.
 constexpr float kNormalCosine = 0.9f;
 // Height of a point over the plane through the place, relative to its distance: more is another
@@ -329,6 +333,17 @@ float GatherPoints::clearanceAt(const Place& place, std::span<const Near> near) 
     return std::min(clearance, above.value_or(clearance));
 }
 
+// Behind a wall that stands between: so thin that no point saw it, it is beyond their clearance.
+bool GatherPoints::isHidden(const Place& place, const Near& point, float clearance) const {
+    if (point.distanceSquared <= kSurelySeen * kSurelySeen * clearance * clearance) return false;
+    const std::size_t at = point.cell.inTile();
+    const float lift = kLift * std::sqrt(point.distanceSquared) + m_planeTolerance;
+    const Vec3f from = place.position + place.geometricNormal * lift;
+    const Vec3f to =
+        point.tile->points[at].position + point.tile->origins[at].geometricNormal * lift;
+    return m_scene.occluded({from, to - from, 1.0f});
+}
+
 bool GatherPoints::estimate(const Place& place, Estimate& result) const {
     std::array<Near, kMostNear> all;
     const auto near = std::span<const Near>(all).first(findNear(place, all));
@@ -343,7 +358,7 @@ bool GatherPoints::estimate(const Place& place, Estimate& result) const {
     for (const Near& point : near) {
         // Epanechnikov's kernel over both distances.
         const float q = point.screenDistanceSquared + point.distanceSquared * inverseReach;
-        if (!(q < 1.0f)) continue;
+        if (!(q < 1.0f) || isHidden(place, point, result.clearance)) continue;
         const float weight = 1.0f - q, narrowWeight = std::max(0.0f, 1.0f - 2.0f * q);
         weights += weight;
         narrowWeights += narrowWeight;

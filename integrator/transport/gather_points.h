@@ -174,6 +174,7 @@ class GatherPoints {
     void fill(Tile& tile, const Cell& cell) const;
     float reachOfClearance() const;
     float clearanceAt(const Place& place, std::span<const Near> near) const;
+    bool isHidden(const Place& place, const Near& point, float clearance) const;
     Surroundings surroundingsOf(const Place& place) const;
     float refocusedRadius(const Vec3f& position, const Vec3f& normal) const;
     TwoRadii refocused(const Vec3f& position, const Vec3f& normal, float clearance, float radius,

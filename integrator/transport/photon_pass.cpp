@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "integrator/transport/frame_renderer.h"
+#include "integrator/transport/gather_focus.h"
 #include "integrator/transport/gather_pilot.h"
 #include "integrator/transport/pass_radius.h"
 #include "integrator/values/stopwatch.h"
@@ -34,6 +35,18 @@ std::vector<Photon> refocusedOf(std::span<const Photon> descended) {
     std::ranges::copy_if(descended, std::back_inserter(found),
                          [](const Photon& photon) { return photon.normal.isMarked(); });
     return found;
+}
+
+BigVector<Photon> inFocus(std::span<const Photon> photons, const Focus& focus) {
+    BigVector<Photon> found;
+    for (const Photon& photon : photons)
+        if (focus.levelAt(photon.position) == 0) found.push_back(photon);
+    return found;
+}
+
+// Where a pilot finds next to nothing, estimates reach a hundredth of what is in focus.
+float fallbackIn(const Focus& focus, float ofScene) {
+    return focus.isEverywhere() ? ofScene : 0.01f / std::sqrt(focus.inverseRadiusSquared);
 }
 
 BigVector<Photon> join(std::span<const Photon> first, std::span<const Photon> second) {
@@ -73,7 +86,10 @@ void PhotonPass::traceInto(PhotonSink& sink, std::uint32_t pass, const std::atom
         sink.write(kind, ofPass, trace(kind, count, ofPass, control), cancelled);
     };
     if (!m_pilotsAreKept) {
-        if (m_plan.globalMap) keep(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0);
+        if (m_plan.globalMap) {
+            findFocus(CancelCheck(cancelled));
+            keep(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0);
+        }
         if (m_plan.causticMap) {
             aim(control);
             keep(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), 0);
@@ -141,10 +157,8 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
                                                static_cast<double>(m_plan.photonsPerPass())));
     };
     PhotonTraceRequest request{kind, count, m_settings.seed, pass};
-    if (isCaustic(kind)) {
-        request.aim = m_aim.get();
-        request.descent = m_plan.descent;
-    }
+    request.aim = isCaustic(kind) ? m_aim.get() : m_focused.get();
+    if (isCaustic(kind)) request.descent = m_plan.descent;
     request.withoutCaustics = m_plan.descent > 0.0f;
     PhotonTraceResult result =
         m_source ? m_source->read(kind, pass, control.cancelled)
@@ -155,6 +169,12 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
     const std::lock_guard lock(m_mutex);
     m_photonSeconds += watch.seconds();
     return result;
+}
+
+void PhotonPass::findFocus(const CancelCheck& check) {
+    const Focus focus = findGatherFocus(m_scene, m_camera, m_settings, check);
+    if (!focus.isEverywhere())
+        m_focused = std::make_unique<AimedEmission>(m_scene, m_lights, focus, check);
 }
 
 // What light is sent to which casters of caustics: a geometric guess, and a pilot that finds what
@@ -173,7 +193,7 @@ void PhotonPass::aim(Control& control) {
 void PhotonPass::chooseGatherRays(const PhotonMap& pilot, const CancelCheck& check) {
     m_raysOfPoint = m_plan.gatherRays;
     if (!m_plan.gatherRaysByPilot) return;
-    const IrradianceSites sites(m_scene, pilot, m_globalRadius);
+    const IrradianceSites sites(m_scene, pilot, m_globalRadius, nullptr, 1.0f, m_focus);
     std::optional<VirtualLamps> lamps;
     if (m_plan.descent > 0.0f)
         lamps.emplace(m_scene, m_causticRadius->photons(),
@@ -209,13 +229,23 @@ void PhotonPass::findRadii(Control& control) {
     const auto fallback = static_cast<float>(0.01 * m_scene.radius());
     const CancelCheck check(control.cancelled);
     BigVector<Photon> global;
-    if (m_plan.globalMap)
-        global = trace(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0, control).photons;
+    if (m_plan.globalMap) {
+        if (!m_source) findFocus(check);
+        PhotonTraceResult pilot =
+            trace(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0, control);
+        // Of photons that are read, that of the view which they were made for.
+        m_focus = pilot.focus;
+        global = std::move(pilot.photons);
+    }
     if (m_plan.causticMap) global = join(global, findCausticRadii(fallback, control));
     if (m_plan.globalMap) {
-        const PilotRadius pilot(global, m_settings.estimatePhotons, fallback, check);
+        const PilotRadius pilot(inFocus(global, m_focus), m_settings.estimatePhotons,
+                                fallbackIn(m_focus, fallback), check);
         m_globalRadius = pilot.typical();
-        chooseGatherRays(pilot.photons(), check);
+        if (m_focus.isEverywhere())
+            chooseGatherRays(pilot.photons(), check);
+        else
+            chooseGatherRays(PhotonMap(global, check), check);
     }
     // By the sites' radius, so that they know nothing of caustics.
     const bool byCaustics = m_causticRadius && !m_plan.globalMap;
@@ -268,7 +298,7 @@ void PhotonPass::buildIndirect(PassMaps& maps, BigVector<Photon> descended, Cont
     maps.global = std::make_unique<PhotonMap>(traced.photons, CancelCheck(control.cancelled));
     noteBuilding(maps, maps.global->size());
     maps.sites = std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor,
-                                                   patchesOfSites(m_globalRadius), factor);
+                                                   patchesOfSites(m_globalRadius), factor, m_focus);
     const GatherPoints::Request request{.width = m_settings.width,
                                         .height = m_settings.height,
                                         .spacing = m_plan.gatherSpacing,
@@ -335,6 +365,7 @@ void PhotonPass::addTo(RenderCounters& counters) const {
     counters.photonsLost += m_allKinds.lost;
     counters.gatherRaysOfPoint = m_raysOfPoint;
     counters.gatherRaysGuided = m_guide != nullptr;
+    counters.photonsInFocus = !m_focus.isEverywhere();
     counters.fluxEmitted += m_global.fluxEmitted;
     counters.fluxAbsorbed += m_global.fluxAbsorbed;
     counters.fluxEscaped += m_global.fluxEscaped;

@@ -11,6 +11,7 @@
 
 #include "integrator/photons/aimed_emission.h"
 #include "integrator/photons/caustic_map.h"
+#include "integrator/photons/focus.h"
 #include "integrator/photons/irradiance_sites.h"
 #include "integrator/photons/photon_map.h"
 #include "integrator/photons/photon_store.h"
@@ -88,6 +89,7 @@ class PhotonPass {
     BigVector<Photon> buildCaustics(PassMaps& maps, Control& control);
     const SurfacePatches* patchesOfSites(float radius) const;
     void buildIndirect(PassMaps& maps, BigVector<Photon> descended, Control& control);
+    void findFocus(const CancelCheck& check);
     void aim(Control& control);
     BigVector<Photon> findCausticRadii(float fallback, Control& control);
     void chooseGatherRays(const PhotonMap& pilot, const CancelCheck& check);
@@ -109,10 +111,12 @@ class PhotonPass {
     bool m_pilotsAreKept = false;            // by the sink
     // Of the first pass, scene units.
     bool m_haveRadii = false;
-    float m_globalRadius = 0.0f;
-    std::uint32_t m_raysOfPoint = 0;       // gather rays; 0 until the radii are known
-    std::unique_ptr<GatherGuide> m_guide;  // of gather rays; null: by the cosine alone
-    std::unique_ptr<AimedEmission> m_aim;  // of caustic photons
+    float m_globalRadius = 0.0f;               // in focus
+    Focus m_focus;                             // of the global photons
+    std::uint32_t m_raysOfPoint = 0;           // gather rays; 0 until the radii are known
+    std::unique_ptr<GatherGuide> m_guide;      // of gather rays; null: by the cosine alone
+    std::unique_ptr<AimedEmission> m_focused;  // of global photons; null: unaimed
+    std::unique_ptr<AimedEmission> m_aim;      // of caustic photons
     std::unique_ptr<PilotRadius> m_causticRadius, m_refocusedRadius;
     std::unique_ptr<SurfacePatches> m_patches;  // filled as the passes go on
 

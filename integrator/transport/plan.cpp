@@ -185,7 +185,7 @@ void planGlobalMap(const RenderSettings& settings, Plan& plan) {
                                : ""));
     plan.reasons.push_back(fmt::format(
         "global map: {} photons a pass, its irradiance kept at sites for what the gather rays "
-        "meet",
+        "meet; aimed at where those end, if the scene reaches far beyond, as a pilot finds",
         plan.globalPhotons));
 }
 

@@ -263,6 +263,7 @@ PhotonTraceResult PhotonFileReader::read(PhotonKind kind, std::uint32_t pass,
     if (fault != nullptr)
         throw unusable(m_file.name(), fmt::format("the photon map is damaged at byte {}: {}",
                                                   from.place.payloadAt, fault));
+    traced.focus = head.focus;
     traced.balance = head.balance;
     return traced;
 }

@@ -93,6 +93,7 @@ Json planJson(const Plan& plan, const RenderCounters& counters) {
             {"globalPhotonsPerPass", plan.globalPhotons},
             {"gatherRaysPerPoint", counters.gatherRaysOfPoint},
             {"gatherRaysGuided", counters.gatherRaysGuided},
+            {"photonsInFocus", counters.photonsInFocus},
             {"causticPhotonsPerPass", plan.causticPhotons},
             {"lampSamples", counters.lampSamples},
             {"lines", plan.reasons}};

@@ -69,6 +69,20 @@ std::vector<Room> tightRooms() {
             {"gaps", gaps},       {"caustics", caustics}, {"glossy bulb", bulb}};
 }
 
+// A wall without thickness between light and dark, from above: points beyond it are near, and few
+// see it.
+Room thinWall() {
+    SceneMaker maker;
+    const std::int32_t white = maker.diffuse({0.7f, 0.7f, 0.7f});
+    maker.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, white);
+    maker.quad({0, 0, 1}, {0, 0, -2}, {0, 0.6, 0}, white);
+    for (const double x : {-1.0, 1.0}) maker.quad({x, 0, 1}, {0, 0, -2}, {0, 1, 0}, white);
+    for (const double z : {-1.0, 1.0}) maker.quad({-1, 0, z}, {2, 0, 0}, {0, 1, 0}, white);
+    maker.quad({-0.5, 0.1, 0.2}, {0, 0, -0.4}, {0, 0.4, 0}, maker.diffuse({}, Rgb(20.0f)));
+    maker.camera({0, 4, 0.001}, {0, 0, 0}, {0, 0, -1}, 30);
+    return {"thin wall", maker};
+}
+
 // The indirect layer, its estimated bias taken off: all that is compared here, in kIndirect.
 RegionMeans corrected(RegionMeans means) {
     for (LayerMeans& m : means)
@@ -125,6 +139,12 @@ TEST_P(GatherPointRooms, BringWhatOwnRaysBring) {
         const Replicated whole = spread(wholeFrames(pairs.byPoints), 0, kIndirect, 1);
         EXPECT_LT(whole.standardError, 0.005 * whole.mean);
     }
+}
+
+// Without the look for what hides a point, light comes through: |z| is 7 then.
+TEST(GatherPoints, AreNotReadThroughThinWalls) {
+    const Pairs pairs = renderPairs(thinWall(), 0, 40);
+    expectAgreement(pairs.byPoints, pairs.byRays, kIndirect, 0.03, 4, "thin wall");
 }
 
 // Pixels of a frame that was begun, by some order of rectangles.

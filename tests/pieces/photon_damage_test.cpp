@@ -109,14 +109,19 @@ TEST_F(PhotonDamage, InPassesThatAreNotAskedForDoesNoHarm) {
 }
 
 TEST_F(PhotonDamage, WithRightChecksumsIsRefusedAsWell) {
+    constexpr std::size_t kFocus = offsetof(TracedHead, focus);
+    constexpr std::size_t kBalance = offsetof(TracedHead, balance);
     constexpr std::size_t kCounts = offsetof(TracedHead, photons);
     constexpr std::size_t kFirst = sizeof(TracedHead);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     const std::vector<std::pair<const char*, std::function<void(std::string&)>>> cases = {
         {"another kind", [](std::string& p) { put(p, 0, std::uint32_t{1}); }},
         {"another pass", [](std::string& p) { put(p, 4, std::uint32_t{1}); }},
-        {"stored", [](std::string& p) { put(p, 16, std::uint64_t{3}); }},
-        {"flux", [](std::string& p) { put(p, 40, std::numeric_limits<double>::infinity()); }},
+        {"focus", [&](std::string& p) { put(p, kFocus + 4, nan); }},
+        {"size of the focus", [](std::string& p) { put(p, kFocus + 12, -1.0f); }},
+        {"stored", [](std::string& p) { put(p, kBalance + 8, std::uint64_t{3}); }},
+        {"flux",
+         [](std::string& p) { put(p, kBalance + 32, std::numeric_limits<double>::infinity()); }},
         {"more photons", [](std::string& p) { put(p, kCounts, std::uint64_t{1} << 62); }},
         {"descended", [](std::string& p) { put(p, kCounts + 8, ~std::uint64_t{0}); }},
         {"position", [&](std::string& p) { put(p, kFirst, nan); }},

@@ -17,9 +17,10 @@ class PhotonFarm : public HostProcess {
         arguments.insert(arguments.end(), more.begin(), more.end());
         return arguments;
     }
-    void makePhotons(const std::string& passes) const {
-        const Outcome outcome = run(command({"--photons-only", "--photon-map", "b.pmphotons",
-                                             "--passes", passes, "--stats", "p.json"}));
+    void makePhotons(const std::string& passes, const std::string& plan = "everything") const {
+        const Outcome outcome =
+            run(command({"--photons-only", "--photon-map", "b.pmphotons", "--passes", passes,
+                         "--plan", plan, "--stats", "p.json"}));
         ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
         ASSERT_EQ(outcome.out, "");
     }
@@ -45,10 +46,10 @@ TEST_F(PhotonFarm, PhotonsOnceThenParts) {
 }
 
 TEST_F(PhotonFarm, OtherViewsOfTheScene) {
-    makePhotons("2");
-    const std::vector<std::string> view{"--passes", "2",        "--eye",  "3,2,4",
-                                        "--fov",    "60",       "--crop", "5,5,30,20",
-                                        "--filter", "gaussian", "-o"};
+    makePhotons("2", "auto");  // no focus
+    const std::vector<std::string> view{"--passes", "2",      "--eye",     "3,2,4",    "--fov",
+                                        "60",       "--crop", "5,5,30,20", "--filter", "gaussian",
+                                        "--plan",   "auto",   "-o"};
     std::vector<std::string> traced = view, read = view;
     traced.push_back("a.exr");
     read.insert(read.end(), {"b.exr", "--photon-map", "b.pmphotons", "--size", "40x28"});
@@ -56,7 +57,8 @@ TEST_F(PhotonFarm, OtherViewsOfTheScene) {
     ASSERT_EQ(run(command(read)).exitCode, 0);
     EXPECT_TRUE(readText(path("a.exr")) == readText(path("b.exr")));
     write("box.mtl", "newmtl light\nKd 0 0 0\nKe 5 5 5\nnewmtl wall\nKd 0.4 0.5 0.5\n");
-    const Outcome refused = run(command({"--passes", "2", "--photon-map", "b.pmphotons"}));
+    const Outcome refused =
+        run(command({"--passes", "2", "--plan", "auto", "--photon-map", "b.pmphotons"}));
     EXPECT_EQ(refused.exitCode, 3);
     EXPECT_NE(refused.err.find("differs in: materials"), std::string::npos) << refused.err;
     EXPECT_EQ(refused.errorLines(), 1u) << refused.err;
