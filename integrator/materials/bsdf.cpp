@@ -65,7 +65,9 @@ Bsdf::Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transpo
         m_ng = -m_ng;
         m_ns = -m_ns;
     }
-    // Seen from behind its shading normal a surface would have no front to reflect with.
+    m_nd = m_ns;
+    // Seen from behind its shading normal a surface would have no front to be a mirror with. What
+    // is Lambertian does not ask where it is seen from.
     const bool behindShading = dot(m_out, m_ns) <= 0.0f;
     if (behindShading) m_ns = m_ng;
     const float opacity = clamp01((1.0f - m_material.transparency) *
@@ -82,7 +84,7 @@ Bsdf::Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transpo
             break;
     }
     m_reflectance[index(Lobe::kStraight)] = Rgb(1.0f - opacity);
-    // A camera path finds no light there (see isReflection), so a photon from there brings none.
+    // A camera path finds no light there (see evaluate), so a photon from there brings none.
     if (behindShading && transport == Transport::kPhotons)
         m_reflectance[index(Lobe::kDiffuse)] = m_reflectance[index(Lobe::kGlossy)] = Rgb();
     m_diffuseOnly = m_material.kind == MaterialKind::kSurface && opacity == 1.0f &&
@@ -174,10 +176,25 @@ float Bsdf::adjointCorrection(const Vec3f& in) const {
                                                          : numerator / denominator;
 }
 
+float Bsdf::normalRatio() const {
+    const float shading = dot(m_out, m_nd), geometric = dot(m_out, m_ng);
+    return shading >= kLargestCorrection * geometric ? kLargestCorrection
+                                                     : std::max(0.0f, shading / geometric);
+}
+
+// Light counts by its cosine to the shading normal, and photons that it sends off leave by that to
+// the geometric one: eq. 5.19 with one side of it used up where they arrived.
+Rgb Bsdf::evaluateDiffuse(const Vec3f& in) const {
+    const float geometric = dot(in, m_ng), shading = dot(in, m_nd);
+    if (!(geometric > 0.0f)) return {};
+    if (m_transport == Transport::kPhotons) return diffuse() * (kInvPi * geometric * normalRatio());
+    return shading > 0.0f ? diffuse() * (kInvPi * shading) : Rgb();
+}
+
 Rgb Bsdf::evaluate(Lobe lobe, const Vec3f& in) const {
+    if (lobe == Lobe::kDiffuse) return evaluateDiffuse(in);
     if (!isReflection(in)) return {};
     const float cosine = dot(in, m_ns);
-    if (lobe == Lobe::kDiffuse) return diffuse() * (kInvPi * cosine * adjointCorrection(in));
     // Lafortune & Willems 1994: rho (n+2)/(2 pi) cos^n(alpha), reciprocal and never above rho.
     const float cosAlpha = dot(in, reflect(m_out, m_ns));
     if (!(cosAlpha > 0.0f)) return {};
@@ -189,7 +206,8 @@ Rgb Bsdf::evaluate(Lobe lobe, const Vec3f& in) const {
 float Bsdf::pdfSolidAngle(Lobe lobe, const Vec3f& in) const {
     if (!has(lobe)) return 0.0f;
     const float probability = m_followsAll ? 1.0f : m_probability[index(lobe)];
-    if (lobe == Lobe::kDiffuse) return probability * std::max(0.0f, dot(in, m_ns)) * kInvPi;
+    if (lobe == Lobe::kDiffuse)
+        return probability * std::max(0.0f, dot(in, diffuseAxis())) * kInvPi;
     const float cosAlpha = dot(in, reflect(m_out, m_ns));
     if (!(cosAlpha > 0.0f)) return 0.0f;
     return probability * (m_exponent + 1.0f) * (0.5f * kInvPi) *
@@ -232,10 +250,10 @@ bool Bsdf::take(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const
     sample.weight = m_reflectance[index(lobe)] / probability;
     switch (sample.lobe) {
         case Lobe::kDiffuse:
-            sample.direction = normalize(Frame(m_ns).toWorld(sampleCosineHemisphere(u)));
+            sample.direction = normalize(Frame(diffuseAxis()).toWorld(sampleCosineHemisphere(u)));
             sample.pdfSolidAngle = pdfSolidAngle(sample.lobe, sample.direction);
-            sample.weight *= adjointCorrection(sample.direction);
-            return sample.pdfSolidAngle > 0.0f && isReflection(sample.direction);
+            if (m_transport == Transport::kPhotons) sample.weight *= normalRatio();
+            return sample.pdfSolidAngle > 0.0f && dot(sample.direction, m_ng) > 0.0f;
         case Lobe::kGlossy:
             sample.direction =
                 normalize(Frame(reflect(m_out, m_ns)).toWorld(samplePhongLobe(u, m_exponent)));

@@ -85,7 +85,12 @@ class Bsdf {
 
     // The normals turned to the side of `out`.
     const Vec3f& facingGeometricNormal() const { return m_ng; }
-    const Vec3f& facingShadingNormal() const { return m_ns; }
+    const Vec3f& facingShadingNormal() const { return m_nd; }
+    // Cosine of `out` to the shading normal over that to the geometric one, in [0, 20]: what a
+    // photon that arrived from there counts for in irradiance.
+    float normalRatio() const;
+    // Diffuse directions are drawn by the cosine to it.
+    const Vec3f& diffuseAxis() const { return m_transport == Transport::kPhotons ? m_ng : m_nd; }
 
   private:
     static constexpr std::size_t index(Lobe lobe) { return static_cast<std::size_t>(lobe); }
@@ -97,12 +102,14 @@ class Bsdf {
     void chooseProbabilities(const Rgb& carried);
     bool take(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const;
     bool isReflection(const Vec3f& in) const;
+    Rgb evaluateDiffuse(const Vec3f& in) const;
     // correction: of the normal that was used, see adjointCorrection.
     bool refract(Vec3f& direction, float& correction) const;
     float adjointCorrection(const Vec3f& in) const;
 
     const MaterialDescription& m_material;
-    Vec3f m_out, m_ng, m_ns;
+    Vec3f m_out, m_ng;
+    Vec3f m_nd, m_ns;  // shading normals, of the diffuse lobe and of all others
     bool m_frontSide;
     bool m_black = false, m_diffuseOnly = false, m_followsAll = false;
     Transport m_transport;

@@ -28,9 +28,6 @@ constexpr int kMaxEvents = 1000;
 // part goes on at least so often. See docs/decisions.md.
 constexpr float kLeastShare = 0.2f;
 constexpr int kDividedEvents = 2;
-// Flux density on a surface counts by its geometric normal, the BSDF by its shading normal; their
-// ratio is cut off where a photon arrives almost edge-on.
-constexpr float kLargestNormalRatio = 20.0f;
 
 struct Batch {
     std::vector<Photon> photons;
@@ -129,7 +126,7 @@ class PhotonWalk {
             }
             const Vec3f out = -ray.direction;
             const Bsdf bsdf(m_scene, surface, out, Transport::kPhotons, flux);
-            if (bsdf.has(Lobe::kDiffuse)) landed += land(way, surface, bsdf, out, flux, batch);
+            if (bsdf.has(Lobe::kDiffuse)) landed += land(way, surface, bsdf, flux, batch);
             BsdfSample sample;
             const float uLobe = sampler.next1D();
             const Vec2f u = sampler.next2D();
@@ -166,7 +163,7 @@ class PhotonWalk {
         if (!m_aim || !m_aim->scattersFrom(surface.position)) return true;
         float pdf;
         const float uChoice = sampler.next1D();
-        if (!m_aim->scatter(surface.position, bsdf.facingShadingNormal(), uChoice, sampler.next2D(),
+        if (!m_aim->scatter(surface.position, bsdf.diffuseAxis(), uChoice, sampler.next2D(),
                             sample.direction, pdf))
             return false;
         sample.weight = bsdf.evaluate(Lobe::kDiffuse, sample.direction) /
@@ -233,39 +230,34 @@ class PhotonWalk {
 
     // Stores a photon where its way is asked for. Returns its flux if so; of light that descends
     // from caustics 0.
-    double land(const Way& way, const Surface& surface, const Bsdf& bsdf, const Vec3f& out,
-                const Rgb& flux, Batch& batch) const {
+    double land(const Way& way, const Surface& surface, const Bsdf& bsdf, const Rgb& flux,
+                Batch& batch) const {
         if (isCaustic(m_request.kind)) {
             if (way.stage == Stage::kSpecular)
-                store(surface, bsdf, out, flux, batch, batch.photons);
+                store(surface, bsdf, flux, batch, batch.photons);
             else if (way.stage != Stage::kStraight)
-                landDescended(way, surface, bsdf, out, flux, batch);
+                landDescended(way, surface, bsdf, flux, batch);
             return way.stage == Stage::kSpecular ? channelSum(flux) : 0;
         }
         if (way.stage == Stage::kSpecular && m_request.withoutCaustics) return 0;
-        store(surface, bsdf, out, flux, batch, batch.photons);
+        store(surface, bsdf, flux, batch, batch.photons);
         return channelSum(flux);
     }
 
     // What caustics send straight to a surface is even: the share that is followed carries it.
-    void landDescended(const Way& way, const Surface& surface, const Bsdf& bsdf, const Vec3f& out,
-                       const Rgb& flux, Batch& batch) const {
+    void landDescended(const Way& way, const Surface& surface, const Bsdf& bsdf, const Rgb& flux,
+                       Batch& batch) const {
         const bool isStraight = way.stage == Stage::kDescended;
         if (isStraight && !way.isFollowed) return;
-        store(surface, bsdf, out, isStraight ? flux * (1.0f / m_request.descent) : flux, batch,
+        store(surface, bsdf, isStraight ? flux * (1.0f / m_request.descent) : flux, batch,
               batch.descended);
         if (way.stage == Stage::kRefocused) batch.descended.back().normal.mark();
     }
 
-    static void store(const Surface& surface, const Bsdf& bsdf, const Vec3f& out, const Rgb& flux,
-                      Batch& batch, std::vector<Photon>& photons) {
-        const float cosineGeometric = dot(out, bsdf.facingGeometricNormal());
-        const float cosineShading = dot(out, bsdf.facingShadingNormal());
-        const float ratio = cosineShading >= kLargestNormalRatio * cosineGeometric
-                                ? kLargestNormalRatio
-                                : cosineShading / cosineGeometric;
-        photons.push_back(
-            {surface.position, flux * ratio, PackedNormal(bsdf.facingGeometricNormal())});
+    static void store(const Surface& surface, const Bsdf& bsdf, const Rgb& flux, Batch& batch,
+                      std::vector<Photon>& photons) {
+        photons.push_back({surface.position, flux * bsdf.normalRatio(),
+                           PackedNormal(bsdf.facingGeometricNormal())});
         ++batch.balance.stored;
     }
 

@@ -66,7 +66,9 @@ Vec3f interpolateNormal(const Vec3f& n0, const Vec3f& n1, const Vec3f& n2, float
     Vec3f n = n0 * (1.0f - b1 - b2) + n1 * b1 + n2 * b2;
     const float l2 = lengthSquared(n);
     if (!(l2 > 1e-12f)) return geometricNormal;
-    n = n / std::sqrt(l2);
+    // Files wind triangles the other way round than their normals say; fronts are by winding.
+    const bool isTurned = dot(n0 + n1 + n2, geometricNormal) < 0.0f;
+    n = n / (isTurned ? -std::sqrt(l2) : std::sqrt(l2));
     // A normal beyond the horizon of its own triangle says nothing usable about its front.
     return dot(n, geometricNormal) > 0.0f ? n : geometricNormal;
 }

@@ -176,6 +176,20 @@ TEST(Surface, MirroredInstanceEmitsFromItsFront) {
         }
 }
 
+// Files wind faces the other way round than their normals point.
+TEST(Surface, NormalsOfFacesWoundTheOtherWay) {
+    const Vec3d normal = normalize(Vec3d{0.4, -0.3, 1});
+    for (const double sign : {1.0, -1.0}) {
+        SceneMaker maker;
+        maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.diffuse(Rgb(0.5f)));
+        maker.bendNormals(normal * sign);
+        Surface surface;
+        ASSERT_TRUE(maker.build()->intersect({{0.1f, 0.2f, 1}, {0, 0, -1}}, surface));
+        EXPECT_EQ(surface.geometricNormal, (Vec3f{0, 0, 1}));
+        EXPECT_LT(length(surface.shadingNormal - Vec3f(normal)), 1e-6f) << sign;
+    }
+}
+
 // A two-sided quad between two lamps shows both sides lit (hard cases P2): E = pi L sin^2 each.
 TEST(Surface, BothSidesAreLit) {
     for (const double side : {1.0, -1.0})
