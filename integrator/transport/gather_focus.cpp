@@ -70,9 +70,7 @@ Focus findGatherFocus(const Scene& scene, const Camera& camera, const RenderSett
     std::vector<float> distances;
     for (const Vec3f& end : ends) distances.push_back(length(end - focus.centre));
     const float radius = quantile(std::move(distances), kShareInFocus);
-    const bool always = settings.plan == PlanKind::kEverything;
-    if (!(radius > 0.0f) || (kFarBeyond * radius > static_cast<float>(scene.radius()) && !always))
-        return {};
+    if (!(radius > 0.0f) || kFarBeyond * radius > static_cast<float>(scene.radius())) return {};
     focus.inverseRadiusSquared = 1.0f / (radius * radius);
     return focus;
 }

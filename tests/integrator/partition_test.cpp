@@ -298,7 +298,6 @@ TEST(PartitionMoves, MapsWithoutPhotonsChangeNoBit) {
         Plan plan = makePlan(*scene, settings);
         EXPECT_EQ(plan.causticMap, kind == PlanKind::kEverything);
         plan.lampSamples = 2;
-        settings.plan = PlanKind::kAuto;  // no focus of the photons either
         return PlannedRender(scene, settings, plan).render(pixels, 2);
     };
     const RegionMeans automatic = rendered(PlanKind::kAuto);

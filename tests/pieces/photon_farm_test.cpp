@@ -17,10 +17,9 @@ class PhotonFarm : public HostProcess {
         arguments.insert(arguments.end(), more.begin(), more.end());
         return arguments;
     }
-    void makePhotons(const std::string& passes, const std::string& plan = "everything") const {
-        const Outcome outcome =
-            run(command({"--photons-only", "--photon-map", "b.pmphotons", "--passes", passes,
-                         "--plan", plan, "--stats", "p.json"}));
+    void makePhotons(const std::string& passes) const {
+        const Outcome outcome = run(command({"--photons-only", "--photon-map", "b.pmphotons",
+                                             "--passes", passes, "--stats", "p.json"}));
         ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
         ASSERT_EQ(outcome.out, "");
     }
@@ -46,10 +45,10 @@ TEST_F(PhotonFarm, PhotonsOnceThenParts) {
 }
 
 TEST_F(PhotonFarm, OtherViewsOfTheScene) {
-    makePhotons("2", "auto");  // no focus
-    const std::vector<std::string> view{"--passes", "2",      "--eye",     "3,2,4",    "--fov",
-                                        "60",       "--crop", "5,5,30,20", "--filter", "gaussian",
-                                        "--plan",   "auto",   "-o"};
+    makePhotons("2");
+    const std::vector<std::string> view{"--passes", "2",        "--eye",  "3,2,4",
+                                        "--fov",    "60",       "--crop", "5,5,30,20",
+                                        "--filter", "gaussian", "-o"};
     std::vector<std::string> traced = view, read = view;
     traced.push_back("a.exr");
     read.insert(read.end(), {"b.exr", "--photon-map", "b.pmphotons", "--size", "40x28"});
@@ -57,11 +56,31 @@ TEST_F(PhotonFarm, OtherViewsOfTheScene) {
     ASSERT_EQ(run(command(read)).exitCode, 0);
     EXPECT_TRUE(readText(path("a.exr")) == readText(path("b.exr")));
     write("box.mtl", "newmtl light\nKd 0 0 0\nKe 5 5 5\nnewmtl wall\nKd 0.4 0.5 0.5\n");
-    const Outcome refused =
-        run(command({"--passes", "2", "--plan", "auto", "--photon-map", "b.pmphotons"}));
+    const Outcome refused = run(command({"--passes", "2", "--photon-map", "b.pmphotons"}));
     EXPECT_EQ(refused.exitCode, 3);
     EXPECT_NE(refused.err.find("differs in: materials"), std::string::npos) << refused.err;
     EXPECT_EQ(refused.errorLines(), 1u) << refused.err;
+}
+
+// The photons know what they were aimed at.
+TEST_F(PhotonFarm, OnAHugeGround) {
+    write("ground.obj",
+          "mtllib box.mtl\nv -900 0 900\nv 900 0 900\nv 900 0 -900\nv -900 0 -900\n"
+          "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 2 0\nv 1 2 0\nv 1 2 1\nv 0 2 1\n"
+          "usemtl wall\nf 1 2 3 4\nf 5 6 7 8\nusemtl light\nf 9 10 11 12\n");
+    const auto render = [&](std::vector<std::string> more) {
+        more.insert(more.begin(),
+                    {"ground.obj", "--size", "32x24", "--aa", "2", "-q", "--photons", "1000",
+                     "--passes", "2", "--eye", "0.5,1,4", "--look-at", "0.5,0.5,0"});
+        const Outcome outcome = run(more);
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    };
+    render({"--photons-only", "--photon-map", "g.pmphotons"});
+    render({"--photon-map", "g.pmphotons", "-o", "read.exr", "--stats", "s.json"});
+    render({"-o", "traced.exr"});
+    EXPECT_TRUE(readText(path("read.exr")) == readText(path("traced.exr")));
+    const auto json = nlohmann::json::parse(readText(path("s.json")));
+    EXPECT_EQ(json.at("plan").at("photonsInFocus"), true);
 }
 
 TEST_F(PhotonFarm, CommandLinesThatMakeNoSense) {
