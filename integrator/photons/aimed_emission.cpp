@@ -5,9 +5,9 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "integrator/photons/aim_caps.h"
 #include "integrator/photons/aim_shadows.h"
 #include "integrator/photons/caustic_casters.h"
 #include "integrator/photons/place_groups.h"
@@ -23,8 +23,6 @@ constexpr std::size_t kGroups = 64;
 constexpr std::uint32_t kViewpoints = 32;
 // Distance over the scene's radius from which lights that are infinitely far judge them.
 constexpr double kFarView = 8.0;
-// Share of the points on a sphere light that are chosen evenly.
-constexpr float kEvenPoints = 0.1f;
 // A caster's worth is the root of the share of flux that lands, within these bounds: at least a
 // twentieth, for what the pilot has missed by chance.
 constexpr double kLeastWorth = 0.05, kMostWorth = 2.0;
@@ -80,75 +78,6 @@ Vec2f spreadPoint(std::uint32_t i) {
     const double x = 0.5 + 0.7548776662466927 * i, y = 0.5 + 0.5698402909980532 * i;
     return {static_cast<float>(x - std::floor(x)), static_cast<float>(y - std::floor(y))};
 }
-
-// Normals of a sphere light's points, mostly in the caps from which casters are seen: those whose
-// cosine to the caster's direction is above t. Within a cap the density grows with that, as what is
-// seen of the caster does. The rest is even.
-class SphereCaps {
-  public:
-    SphereCaps(const SphereShape& sphere, std::span<const Caster> casters,
-               std::span<const float> worth) {
-        float total = 0.0f, even = 0.0f;
-        for (std::size_t i = 0; i < casters.size(); ++i) {
-            const Vec3d to = casters[i].centre - sphere.centre;
-            const double d = length(to);
-            if (sphere.radius - casters[i].radius >= d) continue;  // inside the light
-            const double ratio = casters[i].radius / d;
-            const float share = worth[i] * static_cast<float>(std::min(1.0, ratio * ratio));
-            total += share;
-            if (casters[i].radius - sphere.radius >= d)
-                even += share;  // seen from everywhere
-            else
-                m_caps[m_count++] = {
-                    Vec3f(to / d),
-                    static_cast<float>(std::min(sphere.radius / d - ratio, 1 - 1e-6)), share};
-        }
-        if (!(total > 0.0f)) return;
-        const float scale = (1.0f - kEvenPoints) / total;
-        m_evenShare = kEvenPoints + even * scale;
-        for (std::size_t i = 0; i < m_count; ++i) m_caps[i].share *= scale;
-    }
-
-    // Unit normal; its density over the unit sphere. uChoice: leaves what is left of it, in [0, 1).
-    Vec3f sample(float& uChoice, Vec2f u, float& pdfSolidAngle) const {
-        float share = m_evenShare;
-        std::size_t chosen = m_count;
-        for (std::size_t i = 0; uChoice >= share && i < m_count; ++i) {
-            uChoice -= share;
-            share = m_caps[i].share;
-            chosen = i;
-        }
-        uChoice = std::min(uChoice / share, 1.0f - 0x1p-24f);
-        pdfSolidAngle = m_evenShare / (4.0f * kPi);
-        Vec3f normal;
-        if (chosen == m_count) {
-            normal = sampleUniformSphere(u);
-        } else {
-            const Cap& cap = m_caps[chosen];
-            const float z = cap.t + (1.0f - cap.t) * std::sqrt(u.x);
-            const float r = std::sqrt(std::max(0.0f, 1.0f - z * z));
-            const SinCos phi = sinCosTurns(u.y);
-            normal = normalize(Frame(cap.axis).toWorld({r * phi.cos, r * phi.sin, z}));
-            pdfSolidAngle += cap.share * cap.density(z);
-        }
-        for (std::size_t i = 0; i < m_count; ++i)
-            if (i != chosen)
-                pdfSolidAngle += m_caps[i].share * m_caps[i].density(dot(normal, m_caps[i].axis));
-        return normal;
-    }
-
-  private:
-    struct Cap {
-        Vec3f axis;
-        float t, share;
-        float density(float cosine) const {
-            return cosine > t ? (cosine - t) / (kPi * (1.0f - t) * (1.0f - t)) : 0.0f;
-        }
-    };
-    std::array<Cap, kMostCasters> m_caps;
-    std::size_t m_count = 0;
-    float m_evenShare = 1.0f;
-};
 
 }  // namespace
 
@@ -327,7 +256,7 @@ void AimedEmission::place(std::uint32_t index, float& uCaster, Vec2f uPoint, Ori
     float pdfArea = 1.0f / light.area;
     if (light.kind == Light::Kind::kSphere) {
         const SphereShape sphere = m_scene.sphere(light.shape);
-        const SphereCaps caps(sphere, m_casters, worthOf(index));
+        const AimCaps caps(sphere, m_casters, worthOf(index));
         const Vec3f normal = caps.sample(uCaster, uPoint, pdfArea);
         pdfArea /= static_cast<float>(sphere.radius * sphere.radius);
         surface = m_scene.pointOnSphere(light.shape, Vec3d(normal));

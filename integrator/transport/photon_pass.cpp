@@ -45,8 +45,8 @@ BigVector<Photon> inFocus(std::span<const Photon> photons, const Focus& focus) {
 }
 
 // Where a pilot finds next to nothing, estimates reach a hundredth of what is in focus.
-float fallbackIn(const Focus& focus, float ofScene) {
-    return focus.isEverywhere() ? ofScene : 0.01f / std::sqrt(focus.inverseRadiusSquared);
+float fallbackIn(const Focus& focus) {
+    return 0.01f / std::sqrt(focus.inverseRadiusSquared);
 }
 
 BigVector<Photon> join(std::span<const Photon> first, std::span<const Photon> second) {
@@ -224,6 +224,21 @@ BigVector<Photon> PhotonPass::findCausticRadii(float fallback, Control& control)
     return std::move(pilot.descended);
 }
 
+// Of what is in focus; gather rays read what is beyond, too.
+void PhotonPass::findGlobalRadius(std::span<const Photon> pilot, float fallback,
+                                  const CancelCheck& check) {
+    if (m_focus.isEverywhere()) {
+        const PilotRadius radius(pilot, m_settings.estimatePhotons, fallback, check);
+        m_globalRadius = radius.typical();
+        chooseGatherRays(radius.photons(), check);
+    } else {
+        const PilotRadius radius(inFocus(pilot, m_focus), m_settings.estimatePhotons,
+                                 fallbackIn(m_focus), check);
+        m_globalRadius = radius.typical();
+        chooseGatherRays(PhotonMap(pilot, check), check);
+    }
+}
+
 void PhotonPass::findRadii(Control& control) {
     // Where a pilot finds next to nothing, estimates reach a hundredth of the scene.
     const auto fallback = static_cast<float>(0.01 * m_scene.radius());
@@ -238,15 +253,7 @@ void PhotonPass::findRadii(Control& control) {
         global = std::move(pilot.photons);
     }
     if (m_plan.causticMap) global = join(global, findCausticRadii(fallback, control));
-    if (m_plan.globalMap) {
-        const PilotRadius pilot(inFocus(global, m_focus), m_settings.estimatePhotons,
-                                fallbackIn(m_focus, fallback), check);
-        m_globalRadius = pilot.typical();
-        if (m_focus.isEverywhere())
-            chooseGatherRays(pilot.photons(), check);
-        else
-            chooseGatherRays(PhotonMap(global, check), check);
-    }
+    if (m_plan.globalMap) findGlobalRadius(global, fallback, check);
     // By the sites' radius, so that they know nothing of caustics.
     const bool byCaustics = m_causticRadius && !m_plan.globalMap;
     m_patches = std::make_unique<SurfacePatches>(

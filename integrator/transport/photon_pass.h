@@ -7,6 +7,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "integrator/photons/aimed_emission.h"
@@ -94,6 +95,7 @@ class PhotonPass {
     BigVector<Photon> findCausticRadii(float fallback, Control& control);
     void chooseGatherRays(const PhotonMap& pilot, const CancelCheck& check);
     void findRadii(Control& control);
+    void findGlobalRadius(std::span<const Photon> pilot, float fallback, const CancelCheck& check);
     void buildMaps(std::uint32_t pass, Control& control);
     void count(PhotonKind kind, const PhotonBalance& balance);
 

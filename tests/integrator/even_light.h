@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <fmt/format.h>
+
+#include <vector>
+
+#include "integrator/photons/photon.h"
+#include "tests/integrator/statistics.h"
+
+namespace pm::test {
+
+// Photons that make an irradiance of 1 on a parallelogram, one in each cell of a grid.
+inline void light(std::vector<Photon>& photons, Vec3d p, Vec3d e0, Vec3d e1) {
+    constexpr int kCells = 500;
+    Random random(1);
+    const Vec3d n = cross(e0, e1);
+    const auto flux = static_cast<float>(length(n) / (kCells * kCells));
+    for (int j = 0; j < kCells; ++j)
+        for (int i = 0; i < kCells; ++i) {
+            const Vec2f u = random.next2D();
+            photons.push_back({Vec3f(p + e0 * ((i + static_cast<double>(u.x)) / kCells) +
+                                     e1 * ((j + static_cast<double>(u.y)) / kCells)),
+                               Rgb(flux), PackedNormal(Vec3f(normalize(n)))});
+        }
+}
+
+// Estimates of an irradiance of 1.
+struct Estimates {
+    double corrected = 0, narrow = 0, plain = 0;
+    double worst = 0;  // a corrected one's distance from 1
+};
+
+inline void report(const char* where, const Estimates& e) {
+    fmt::print("    {}: {:.3f} of E, at the narrow radius {:.3f}, uncorrected {:.3f}", where,
+               e.corrected, e.narrow, e.plain);
+    if (e.worst > 0) fmt::print(", worst {:.3f} off", e.worst);
+    fmt::print("\n");
+}
+
+}  // namespace pm::test
