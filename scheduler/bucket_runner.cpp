@@ -178,9 +178,11 @@ class Runner {
     }
 
     void deliver(const OpenBucket& bucket) {
-        m_work.deliver(bucket.cell, bucket.rect, bucket.pixels);
-        m_seconds[bucket.place] =
-            std::chrono::duration<double>(Clock::now() - bucket.begun).count();
+        const auto seconds = [&] {
+            return std::chrono::duration<double>(Clock::now() - bucket.begun).count();
+        };
+        m_work.deliver({bucket.cell, bucket.rect, bucket.pixels, seconds()});
+        m_seconds[bucket.place] = seconds();
         m_done.fetch_add(1, std::memory_order_relaxed);
     }
 

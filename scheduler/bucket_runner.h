@@ -15,6 +15,14 @@
 
 namespace pm {
 
+// A bucket whose atoms are all rendered.
+struct RenderedBucket {
+    std::uint32_t cell{};
+    Rect rect;
+    std::span<const float> pixels;  // as BucketWork::render left them
+    double seconds{};               // wall time since it was drawn
+};
+
 // What is done with each bucket. All functions are called from several workers at once, under
 // FpEnvironment's modes: started and deliver once for each bucket, render for each of its atoms.
 // What they throw stops the run.
@@ -41,8 +49,7 @@ struct BucketWork {
 
     // Takes a finished bucket, on the worker that rendered its last atom; the pixels are valid
     // during the call.
-    std::function<void(std::uint32_t cell, const Rect& rect, std::span<const float> pixels)>
-        deliver;
+    std::function<void(const RenderedBucket& bucket)> deliver;
 };
 
 struct BucketRun {

@@ -28,15 +28,9 @@ void RenderRun::onProgress(void* user, PmrRender, double fraction, double remain
     static_cast<RenderRun*>(user)->m_progress.update(fraction, remainingSeconds);
 }
 
-void RenderRun::onBucketStarted(void* user, PmrRender, const PmrBucketInfo* bucket) {
-    const auto& run = *static_cast<RenderRun*>(user);
-    run.m_bucketTimes->started(*bucket, run.m_log.elapsedSeconds());
-}
-
 void RenderRun::onBucketFinished(void* user, PmrRender, const PmrBucketInfo* bucket) {
     auto& run = *static_cast<RenderRun*>(user);
-    if (run.m_bucketTimes != nullptr)
-        run.m_bucketTimes->finished(*bucket, run.m_log.elapsedSeconds());
+    if (run.m_bucketTimes != nullptr) run.m_bucketTimes->finished(*bucket);
     if (run.m_taker == nullptr || run.m_failure) return;
     try {
         run.m_taker->take(*bucket);
@@ -61,7 +55,6 @@ RenderRun::RenderRun(const PluginScene& scene, const Options& options, const std
     desc.user = this;
     desc.message = onMessage;
     desc.progress = onProgress;
-    if (bucketTimes != nullptr) desc.bucketStarted = onBucketStarted;
     desc.bucketFinished = onBucketFinished;
     desc.finished = onFinished;
     m_context.check(api().createRender(scene.handle(), &desc, &m_handle), "render");

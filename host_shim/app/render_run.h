@@ -66,7 +66,6 @@ class RenderRun : public PictureSource {
     std::string withOption(const std::string& text) const;
     static void onMessage(void* user, PmrRender, int32_t level, int32_t code, const char* text);
     static void onProgress(void* user, PmrRender, double fraction, double remainingSeconds);
-    static void onBucketStarted(void* user, PmrRender, const PmrBucketInfo* bucket);
     static void onBucketFinished(void* user, PmrRender, const PmrBucketInfo* bucket);
     static void onFinished(void* user, PmrRender, PmrStatus status);
 

@@ -375,6 +375,10 @@ typedef struct PmrBucketInfo {
     uint32_t passIndex;   /* the pass that just came, from 0 */
     uint32_t passCount;   /* at most: an error target or a time limit may end a render earlier */
     uint64_t sampleCount; /* camera samples in this bucket and pass */
+    double seconds;       /* wall time, drawn to rendered, of all its passes that follow */
+    uint32_t timedPasses; /* those that this render made: none in bucketStarted and for what came
+                             from a checkpoint */
+    uint32_t reserved;
 } PmrBucketInfo;
 
 #define PMR_CALLBACKS_THREAD 0

@@ -52,10 +52,10 @@ void BucketPasses::renderAtom(const FrameRenderer& renderer, FrameStore& pixels,
     }
 }
 
-void BucketPasses::finish(std::uint32_t cell, const Rect& rect, EventQueue& events) {
-    PmrBucketInfo finished = info(cell, rect);
+void BucketPasses::finish(const RenderedBucket& bucket, EventQueue& events) {
+    PmrBucketInfo finished = info(bucket.cell, bucket.rect);
     const FrameStore& pixels = m_shelf.pixels(finished.bucketIndex);
-    m_errors.add(cell, pixels);
+    m_errors.add(bucket.cell, pixels);
     std::vector<float> counts(static_cast<std::size_t>(pixels.window().area()));
     pixels.readSampleCount(pixels.window(), counts.data(), sizeof(float),
                            static_cast<std::int64_t>(sizeof(float)) * pixels.window().width());
@@ -63,6 +63,8 @@ void BucketPasses::finish(std::uint32_t cell, const Rect& rect, EventQueue& even
     for (const float count : counts) samples += static_cast<double>(count);
     finished.sampleCount = static_cast<std::uint64_t>(samples);
     finished.passIndex = m_frame.settings.passes - 1;
+    finished.seconds = bucket.seconds;
+    finished.timedPasses = m_frame.settings.passes;
     m_shelf.finish(finished, [&events](const PmrBucketInfo& told) { events.bucketFinished(told); });
 }
 
@@ -94,10 +96,10 @@ BucketRun BucketPasses::run(const FrameRenderer& renderer, WorkerArena& arena, d
                        m_scratch[static_cast<std::size_t>(worker)], cancel);
         });
     };
-    work.deliver = [&](std::uint32_t cell, const Rect& rect, std::span<const float>) {
+    work.deliver = [&](const RenderedBucket& bucket) {
         guarded([&] {
-            renderer.forget(rect, m_frame.grid.window());
-            finish(cell, rect, events);
+            renderer.forget(bucket.rect, m_frame.grid.window());
+            finish(bucket, events);
         });
         const double share =
             static_cast<double>(++done) / static_cast<double>(m_frame.order.size());

@@ -59,7 +59,7 @@ class BucketPasses {
     void begin(std::uint32_t cell, const Rect& rect, EventQueue& events);
     void renderAtom(const FrameRenderer& renderer, FrameStore& pixels, const Rect& atom,
                     Scratch& scratch, const Cancel& cancel) const;
-    void finish(std::uint32_t cell, const Rect& rect, EventQueue& events);
+    void finish(const RenderedBucket& bucket, EventQueue& events);
     PmrBucketInfo info(std::uint32_t cell, const Rect& rect) const;
 
     const Frame m_frame;

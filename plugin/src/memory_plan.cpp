@@ -32,6 +32,8 @@ constexpr std::uint32_t kBucketsHeldPerThread = 4;
 constexpr std::uint64_t kTracedBytesPerPhoton = 2 * sizeof(Photon);
 // Of a cell: its place in two orders, and how long it took, in three copies.
 constexpr std::uint64_t kCellBytes = 2 * sizeof(std::uint32_t) + 3 * sizeof(double);
+// And pass by pass, its time so far.
+constexpr std::uint64_t kTimeBytes = 16;
 
 // Code and libraries of pm_host as measured with next to no scene; a host that is larger knows so.
 constexpr std::uint64_t kProgramBytes = std::uint64_t{150} << 20;
@@ -137,7 +139,7 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
     memory.whole = {scene.memoryBytes(), frameBytes(settings, settings.window), mapBytes(plan),
                     threads * bucketSize * bucketSize *
                             static_cast<std::uint64_t>(layout.count + 1) * sizeof(float) +
-                        grid.cellCount() * sizeof(PmrBucketInfo) * 2,
+                        grid.cellCount() * (sizeof(PmrBucketInfo) * 2 + kTimeBytes),
                     kProgramBytes + hostBytes(values)};
     // Without pixels there is no frame, whatever the delivery.
     const bool photonsOnly = values.integer(Setting::kPhotonsOnly) != 0;

@@ -153,22 +153,27 @@ struct RenderWork::PassRun {
     std::atomic<std::uint32_t> done{0};  // buckets, resumed ones included
 };
 
-void RenderWork::deliverBucket(PassRun& run, std::uint32_t cell, const Rect& rect,
-                               std::span<const float> buffer) {
+void RenderWork::deliverBucket(PassRun& run, const RenderedBucket& bucket) {
+    const std::span<const float> buffer = bucket.pixels;
     const auto channels = static_cast<std::size_t>(m_layout.count);
-    const auto area = static_cast<std::size_t>(rect.area());
+    const auto area = static_cast<std::size_t>(bucket.rect.area());
     const auto weights = buffer.subspan(area * channels, area);
-    m_pieces->takeBucket(
-        run.pass, rect, buffer, channels, [&](const Rect& part, std::span<const float> floats) {
-            const auto values = static_cast<std::size_t>(part.area()) * channels;
-            m_frame->addPass(run.pass, part, floats.first(values), floats.subspan(values));
-        });
+    m_pieces->takeBucket(run.pass, bucket.rect, buffer, channels,
+                         [&](const Rect& part, std::span<const float> floats) {
+                             const auto values = static_cast<std::size_t>(part.area()) * channels;
+                             m_frame->addPass(run.pass, part, floats.first(values),
+                                              floats.subspan(values));
+                         });
     if (run.correlated)
-        run.correlated->finished(cell, buffer, channels, static_cast<std::size_t>(m_layout.beauty));
-    PmrBucketInfo info = bucketInfo(cell, rect, run.pass);
+        run.correlated->finished(bucket.cell, buffer, channels,
+                                 static_cast<std::size_t>(m_layout.beauty));
+    PmrBucketInfo info = bucketInfo(bucket.cell, bucket.rect, run.pass);
     double samples = 0;
     for (const float weight : weights) samples += weight;
     info.sampleCount = static_cast<std::uint64_t>(samples);
+    BucketTime& time = m_bucketTimes[bucket.cell];
+    info.seconds = time.seconds += bucket.seconds;
+    info.timedPasses = ++time.passes;
     run.events.bucketFinished(info);
     const ProgressClock::Reading reading =
         m_clock.buckets(run.pass, static_cast<double>(++run.done) / bucketCount());
@@ -203,9 +208,7 @@ double RenderWork::renderBuckets(std::uint32_t pass, const Cancel& cancel, Event
                       std::span<float> buffer) {
         renderAtom(rect, atom, pass, worker, buffer, cancel);
     };
-    work.deliver = [&](std::uint32_t cell, const Rect& rect, std::span<const float> buffer) {
-        deliverBucket(run, cell, rect, buffer);
-    };
+    work.deliver = [&](const RenderedBucket& bucket) { deliverBucket(run, bucket); };
     m_clock.buckets(pass, static_cast<double>(run.done) / bucketCount());
     const BucketRun result = runBuckets(m_arena, m_grid, order, cancel.token, work);
     const double seconds = watch.seconds();

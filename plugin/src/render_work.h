@@ -105,6 +105,11 @@ class RenderWork {
         std::vector<float> pixels;  // of one atom
         std::vector<SampleRun> runs;
     };
+    // Of a bucket, over the passes that were rendered here.
+    struct BucketTime {
+        double seconds = 0;
+        std::uint32_t passes = 0;
+    };
 
     void orderBuckets(const Identity& sceneIdentity, const SettingValues& values);
     void makeRenderer();
@@ -126,8 +131,7 @@ class RenderWork {
     double beginPass(std::uint32_t pass, const Cancel& cancel, EventQueue& events);
     double renderBuckets(std::uint32_t pass, const Cancel& cancel, EventQueue& events);
     struct PassRun;
-    void deliverBucket(PassRun& run, std::uint32_t cell, const Rect& rect,
-                       std::span<const float> buffer);
+    void deliverBucket(PassRun& run, const RenderedBucket& bucket);
     void countBuckets(const BucketRun& result, double seconds, bool ofWholeFrame);
     void renderAtom(const Rect& rect, const Rect& atom, std::uint32_t pass, int worker,
                     std::span<float> buffer, const Cancel& cancel);
@@ -153,6 +157,7 @@ class RenderWork {
     std::shared_ptr<FrameStore> m_frame;      // the whole one
     std::unique_ptr<BucketPasses> m_buckets;  // or, by buckets, these, and no pieces
     std::vector<Scratch> m_scratch;           // one a worker
+    std::vector<BucketTime> m_bucketTimes;    // by cell, each its worker's; pass by pass
     ProgressClock m_clock;
     WarningLog m_warnings;
 

@@ -62,6 +62,8 @@ struct Taker {
     void take(PmrRender render, const PmrBucketInfo& info) {
         finished.push_back(info.bucketIndex);
         EXPECT_EQ(info.passIndex + 1, info.passCount);
+        EXPECT_EQ(info.timedPasses, info.passCount);
+        EXPECT_GT(info.seconds, 0.0);
         samples += static_cast<double>(info.sampleCount);
         const auto width = static_cast<std::size_t>(window.x1 - window.x0);
         for (const auto& [layer, channels] : kChannels) {

@@ -6,7 +6,9 @@
 #include <cmath>
 #include <mutex>
 #include <random>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "tests/abi/host.h"
 
@@ -154,6 +156,35 @@ TEST(Lifecycle, CallbacksFromPolling) {
     EXPECT_EQ(std::this_thread::get_id(), log.finishedOn);
     EXPECT_EQ(PMR_OK, api().destroyRender(render));
     expectRulesHeld(log);
+}
+
+// The library measures them: events that a slow host gets late, merged or not at all take none.
+TEST(Lifecycle, BucketTimesReachAHostThatIsLate) {
+    constexpr std::uint32_t kPasses = 3;
+    struct Told {
+        double seconds = 0;
+        std::vector<std::uint32_t> timedPasses;
+    } told;
+    const BoxHost host;
+    PmrRenderDesc desc = PMR_INIT(PmrRenderDesc);
+    desc.callbackMode = PMR_CALLBACKS_POLL;
+    desc.user = &told;
+    desc.bucketFinished = [](void* user, PmrRender, const PmrBucketInfo* info) {
+        EXPECT_GT(info->seconds, 0.0);
+        static_cast<Told*>(user)->seconds += info->seconds;
+        static_cast<Told*>(user)->timedPasses.push_back(info->timedPasses);
+    };
+    const PmrRender render = host.makeRender(
+        {{"bucketSize", "8"}, {"passes", std::to_string(kPasses)}, {"threads", "2"}}, &desc);
+    const auto begun = std::chrono::steady_clock::now();
+    EXPECT_EQ(PMR_OK, api().startRender(render));
+    EXPECT_EQ(PMR_OK, api().waitRender(render, -1.0));
+    const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - begun;
+    while (api().pollRender(render, 1.0) == PMR_OK) {
+    }
+    EXPECT_EQ(std::vector<std::uint32_t>(9 * 7, kPasses), told.timedPasses);
+    EXPECT_LT(told.seconds, 2 * elapsed.count());  // two workers, a bucket each at a time
+    EXPECT_EQ(PMR_OK, api().destroyRender(render));
 }
 
 TEST(Lifecycle, TwoThreadsPollOneRender) {

@@ -163,8 +163,8 @@ void benchAdministration(Report& report, std::vector<OrderScene>&, int turns, in
             BucketWork work;
             work.floatsPerPixel = 4;
             work.render = [](std::uint32_t, const Rect&, const Rect&, int, std::span<float>) {};
-            work.deliver = [&](std::uint32_t cell, const Rect&, std::span<const float> floats) {
-                if (chooses) choice.finished(cell, floats, 4, 0);
+            work.deliver = [&](const RenderedBucket& bucket) {
+                if (chooses) choice.finished(bucket.cell, bucket.pixels, 4, 0);
             };
             if (chooses) work.choose = [&](int worker) { return choice.next(worker); };
             runBuckets(arena, grid, cells, CancelToken(), work);

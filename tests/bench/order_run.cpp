@@ -152,7 +152,7 @@ BucketTimes OrderScene::render(const BucketSetting& setting) {
         copyInto(target, atom, rect, channels, bucket);
         atoms.at(cell, rect, atom) = threadSeconds() - start;
     };
-    work.deliver = [](std::uint32_t, const Rect&, std::span<const float>) {};
+    work.deliver = [](const RenderedBucket&) {};
     CorrelatedChoice choice(grid, order, setting.threads);
     std::vector<double> choiceSeconds(targets.size());
     if (named.isCorrelated) {
@@ -162,8 +162,9 @@ BucketTimes OrderScene::render(const BucketSetting& setting) {
                 secondsOf([&] { next = choice.next(worker); });
             return next;
         };
-        work.deliver = [&](std::uint32_t cell, const Rect&, std::span<const float> floats) {
-            choice.finished(cell, floats, channels, static_cast<std::size_t>(layout.beauty));
+        work.deliver = [&](const RenderedBucket& bucket) {
+            choice.finished(bucket.cell, bucket.pixels, channels,
+                            static_cast<std::size_t>(layout.beauty));
         };
     }
     const double processorStart = processorSeconds();

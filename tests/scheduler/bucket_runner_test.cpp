@@ -46,7 +46,7 @@ class BucketRunner : public ::testing::Test {
         BucketWork work;
         work.floatsPerPixel = 1;
         work.render = [](std::uint32_t, const Rect&, const Rect&, int, std::span<float>) {};
-        work.deliver = [](std::uint32_t, const Rect&, std::span<const float>) {};
+        work.deliver = [](const RenderedBucket&) {};
         return work;
     }
 };
@@ -66,12 +66,12 @@ TEST_F(BucketRunner, everyBucketOnceWithItsRectangleAndItsPixels) {
             value = static_cast<float>(cell);
         });
     };
-    work.deliver = [&](std::uint32_t cell, const Rect& rect, std::span<const float> pixels) {
-        if (rect != m_grid.cellRect(cell)) ++wrong;
-        for (const float value : pixels) {
-            if (value != static_cast<float>(cell)) ++wrong;
+    work.deliver = [&](const RenderedBucket& bucket) {
+        if (bucket.rect != m_grid.cellRect(bucket.cell)) ++wrong;
+        for (const float value : bucket.pixels) {
+            if (value != static_cast<float>(bucket.cell)) ++wrong;
         }
-        ++delivered[cell];
+        ++delivered[bucket.cell];
     };
     const BucketRun run = runBuckets(arena, m_grid, m_order, m_cancel, work);
     EXPECT_EQ(run.bucketsDone, m_order.size());
@@ -172,9 +172,7 @@ TEST_F(BucketRunner, firstFailureInTheOrderIsRethrown) {
 TEST_F(BucketRunner, failuresOfTheOtherFunctionsPassToo) {
     WorkerArena arena(2);
     BucketWork work = idleWork();
-    work.deliver = [](std::uint32_t, const Rect&, std::span<const float>) {
-        throw Error(Status::kInternal, "deliver");
-    };
+    work.deliver = [](const RenderedBucket&) { throw Error(Status::kInternal, "deliver"); };
     EXPECT_THROW(runBuckets(arena, m_grid, m_order, m_cancel, work), Error);
     work = idleWork();
     work.started = [](std::uint32_t, const Rect&) { throw Error(Status::kInternal, "started"); };
@@ -194,9 +192,9 @@ TEST_F(BucketRunner, cancelStopsAndDropsTheBucketInWork) {
         work.render = [&](std::uint32_t cell, const Rect&, const Rect&, int, std::span<float>) {
             if (cell == canceller) cancel.cancel();
         };
-        work.deliver = [&](std::uint32_t cell, const Rect&, std::span<const float>) {
+        work.deliver = [&](const RenderedBucket& bucket) {
             ++delivered;
-            if (cell == canceller) cancellerDelivered = true;
+            if (bucket.cell == canceller) cancellerDelivered = true;
         };
         const BucketRun run = runBuckets(arena, m_grid, m_order, cancel, work);
         EXPECT_TRUE(run.cancelled);
@@ -226,7 +224,7 @@ TEST_F(BucketRunner, cancelBeforeAndAfter) {
     CancelToken late;
     BucketWork work = idleWork();
     const std::uint32_t one[] = {3};
-    work.deliver = [&](std::uint32_t, const Rect&, std::span<const float>) { late.cancel(); };
+    work.deliver = [&](const RenderedBucket&) { late.cancel(); };
     EXPECT_FALSE(runBuckets(arena, m_grid, one, late, work).cancelled);
 }
 

@@ -38,9 +38,7 @@ class BucketTail : public ::testing::Test {
             ++m_atoms;
             body(atom, worker);
         };
-        work.deliver = [this](std::uint32_t, const Rect&, std::span<const float>) {
-            ++m_delivered;
-        };
+        work.deliver = [this](const RenderedBucket&) { ++m_delivered; };
         return work;
     }
 };

@@ -130,10 +130,10 @@ Picture renderPicture(const Setting& setting, const Rect& readRect,
             const auto [pixels, weights] = split(rect, floats);
             source({pass, cell, rect, atom, worker}, pixels, weights);
         };
-        work.deliver = [&](std::uint32_t cell, const Rect& rect, std::span<const float> floats) {
-            const auto [pixels, weights] = split(rect, floats);
-            frame.addPass(static_cast<std::uint32_t>(pass), rect, pixels, weights);
-            choice.finished(cell, pixels, kChannels, kBeautyFirst);
+        work.deliver = [&](const RenderedBucket& bucket) {
+            const auto [pixels, weights] = split(bucket.rect, bucket.pixels);
+            frame.addPass(static_cast<std::uint32_t>(pass), bucket.rect, pixels, weights);
+            choice.finished(bucket.cell, pixels, kChannels, kBeautyFirst);
         };
         runBuckets(arena, grid, order, CancelToken(), work);
     }
