@@ -134,10 +134,7 @@ TwoRadii IrradianceSites::at(const Vec3f& position, const Vec3f& normal) const {
     cell.place[static_cast<std::size_t>(nearest)] += step;
     site = valueOf(cell);
     if (speaksFor(site)) return site.irradiance;
-    // Any pattern that depends on the point alone.
-    const auto pattern = std::bit_cast<std::uint32_t>(position.x) ^
-                         std::bit_cast<std::uint32_t>(position.y + position.z);
-    return estimate(position, normal, pattern);
+    return estimate(position, normal, patternAt(position));
 }
 
 std::uint64_t IrradianceSites::memoryBytes() const {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "integrator/photons/surface_patches.h"
@@ -80,6 +81,12 @@ float apexHeight(const Scene& scene, const Vec3f& position, const Vec3f& normal,
 
 float liftSeenFrom(const Scene& scene, float height) {
     return std::max(kLift * height, leastLift(scene));
+}
+
+std::uint32_t patternAt(const Vec3f& position) {
+    const auto bits = [](float x) { return std::uint64_t{std::bit_cast<std::uint32_t>(x)}; };
+    return static_cast<std::uint32_t>(
+        combineBits(bits(position.x) << 32 | bits(position.y), bits(position.z)));
 }
 
 SurfaceEstimate::Seen SurfaceEstimate::look(const View& view, float turns,

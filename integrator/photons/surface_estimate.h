@@ -31,6 +31,9 @@ float apexHeight(const Scene& scene, const Vec3f& position, const Vec3f& normal,
 // from an apex so high.
 float liftSeenFrom(const Scene& scene, float height);
 
+// A pattern of rays that depends on the place alone.
+std::uint32_t patternAt(const Vec3f& position);
+
 // Irradiance of a photon map at a point of a surface.
 //
 // Near an edge a part of the estimate's disc is not on the surface. It is found by short rays from

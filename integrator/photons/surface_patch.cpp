@@ -32,6 +32,8 @@ constexpr float kEvenness = 0.05f;
 constexpr float kReachOnGrid = 0.5f;
 // How far off the plane, in radii, surface is looked for that is hidden.
 constexpr float kHiddenHeight = 0.02f;
+// Where in a row, from 0 to 1, chords of a disc stand for it (Gauss-Legendre, two nodes).
+constexpr std::array<float, 2> kGaussNodes{0.21132487f, 0.78867513f};
 
 }  // namespace
 
@@ -141,31 +143,32 @@ bool SurfacePatch::counts(const Scene& scene, const Photon& photon) const {
            sees(scene, photon.position, photon.normal.unpack());
 }
 
-// The part of a disc that lies on the grid stands for all of it. In squares.
+// Beyond the grid all is as at its border: past an edge there is nothing, away from it surface goes
+// on. In squares.
 float SurfacePatch::share(Place middle, float radius) const {
-    constexpr auto side = static_cast<float>(kSquares);
-    const auto first = static_cast<std::int32_t>(std::clamp(middle.y - radius, 0.0f, side));
-    const auto last = static_cast<std::int32_t>(std::clamp(middle.y + radius + 1.0f, 0.0f, side));
+    const auto first = static_cast<std::int32_t>(std::floor(middle.y - radius));
+    const auto last = static_cast<std::int32_t>(std::ceil(middle.y + radius));
     float area = 0.0f, disc = 0.0f;
     for (std::int32_t y = first; y < last; ++y) {
-        const auto& areaUpTo = m_grid->areaUpTo[static_cast<std::size_t>(y)];
+        const auto row = static_cast<std::size_t>(std::clamp(y, 0, kSquares - 1));
+        const auto& areaUpTo = m_grid->areaUpTo[row];
         const auto upTo = [&](float x) {
-            const auto column = std::min(static_cast<std::size_t>(x), std::size_t{kSquares - 1});
+            constexpr auto lastColumn = static_cast<float>(kSquares - 1);
+            const auto column = static_cast<std::size_t>(std::clamp(x, 0.0f, lastColumn));
             return areaUpTo[column] +
                    (x - static_cast<float>(column)) * (areaUpTo[column + 1] - areaUpTo[column]);
         };
-        for (const float inside : {0.25f, 0.75f}) {
-            const float away = static_cast<float>(y) + inside - middle.y;
-            const float halfSquared = radius * radius - away * away;
-            if (!(halfSquared > 0.0f)) continue;
-            const float half = std::sqrt(halfSquared);
-            const float from = std::clamp(middle.x - half, 0.0f, side);
-            const float to = std::clamp(middle.x + half, 0.0f, side);
-            area += upTo(to) - upTo(from);
-            disc += to - from;
+        // At the rim a row is crossed in part.
+        const float top = std::max(static_cast<float>(y), middle.y - radius);
+        const float height = std::min(static_cast<float>(y + 1), middle.y + radius) - top;
+        for (const float inside : kGaussNodes) {
+            const float away = top + inside * height - middle.y;
+            const float half = std::sqrt(std::max(0.0f, radius * radius - away * away));
+            area += height * (upTo(middle.x + half) - upTo(middle.x - half));
+            disc += height * half;
         }
     }
-    return disc > 0.0f ? std::max(kSmallestShare, area / disc) : 1.0f;
+    return disc > 0.0f ? std::max(kSmallestShare, 0.5f * area / disc) : 1.0f;
 }
 
 SurfacePatch::Shares SurfacePatch::shares(const Vec3f& position, float radius) const {

@@ -224,9 +224,7 @@ void PhotonIntegrator::addRefocused(const GatherPoints::Place& place, float clea
     const float probability = std::min(1.0f, share / kLeastRefocused);
     Sampler chance = tree.sampler;  // a copy: maps without photons are to change no bit
     if (!(chance.next1D() < probability)) return;
-    // Any pattern that depends on the place alone.
-    const auto pattern = std::bit_cast<std::uint32_t>(place.position.x) ^
-                         std::bit_cast<std::uint32_t>(place.position.y);
+    const std::uint32_t pattern = patternAt(place.position);
     const TwoRadii irradiance =
         m_maps.points ? m_maps.points->refocusedAt(place, clearance, pattern)
                       : m_maps.refocused->at(place.position, place.geometricNormal, pattern);

@@ -12,9 +12,10 @@
 namespace pm::test {
 
 // Photons that make an irradiance of 1 on a parallelogram, one in each cell of a grid.
-inline void light(std::vector<Photon>& photons, Vec3d p, Vec3d e0, Vec3d e1) {
+inline void light(std::vector<Photon>& photons, Vec3d p, Vec3d e0, Vec3d e1,
+                  std::uint64_t seed = 1) {
     constexpr int kCells = 500;
-    Random random(1);
+    Random random(seed);
     const Vec3d n = cross(e0, e1);
     const auto flux = static_cast<float>(length(n) / (kCells * kCells));
     for (int j = 0; j < kCells; ++j)

@@ -141,7 +141,7 @@ TEST(SurfacePatches, SharesAtTurnedEdges) {
         });
         EXPECT_GT(errors.count, 1200);
         EXPECT_LT(std::abs(errors.mean()), 0.01);
-        EXPECT_LT(errors.wrongShare(), 0.01);
+        EXPECT_LT(errors.wrongShare(), 0.002);
         EXPECT_LT(errors.worst, 0.15);
     }
 }
@@ -154,8 +154,8 @@ TEST(SurfacePatches, SharesAtTurnedCorners) {
             errorsOn(plate, patchRadius, [](Random& random) { return random.next2D(); });
         EXPECT_GT(errors.count, 600);
         EXPECT_LT(std::abs(errors.mean()), 0.02);
-        EXPECT_LT(errors.wrongShare(), 0.02);
-        EXPECT_LT(errors.worst, 0.3);
+        EXPECT_LT(errors.wrongShare(), 0.005);
+        EXPECT_LT(errors.worst, 0.2);
     }
 }
 
@@ -170,7 +170,7 @@ TEST(SurfacePatches, HolesAreFound) {
     });
     EXPECT_GT(errors.count, 600);
     EXPECT_LT(std::abs(errors.mean()), 0.02);
-    EXPECT_LT(errors.wrongShare(), 0.02);
+    EXPECT_LT(errors.wrongShare(), 0.002);
 }
 
 bool takesAsWhole(const Scene& scene, const Vec3f& site) {
