@@ -2,8 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/photons/caustic_map.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "integrator/photons/surface_estimate.h"
@@ -19,18 +21,50 @@ constexpr std::uint32_t kFewestPilotPhotons = 4;
 // thinner than that is too dim to matter, and too wide a disc reaches round corners.
 constexpr float kLargestRadius = 4.0f;
 constexpr float kSmallestRadius = 1e-3f;
+// Photons whose radii are found at a time.
+constexpr std::uint32_t kGrain = 512;
+
+// Of a pilot.
+std::uint32_t countOf(std::uint32_t estimatePhotons) {
+    return std::max(kFewestPilotPhotons, estimatePhotons / PilotRadius::kPilotShare);
+}
 
 }  // namespace
 
 PilotRadius::PilotRadius(std::span<const Photon> pilot, std::uint32_t estimatePhotons,
                          float fallback, const CancelCheck& cancel)
     : m_pilot(pilot, cancel),
-      m_count(std::max(kFewestPilotPhotons, estimatePhotons / kPilotShare)),
-      m_typical(m_pilot.size() > m_count ? m_pilot.typicalRadius(m_count) : fallback) {}
+      m_count(countOf(estimatePhotons)),
+      m_typical(typicalOf(m_pilot, estimatePhotons, fallback)),
+      m_ofPhotons(m_pilot.size()) {
+    const auto size = static_cast<std::uint32_t>(m_pilot.size());
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, size, kGrain), [&](const auto& range) {
+        cancel.throwIfSet("finding the radii of caustics");
+        NearestPhotons scratch;
+        for (std::uint32_t i = range.begin(); i < range.end(); ++i) {
+            const Photon photon = m_pilot.photon(i);
+            m_ofPhotons[i] = m_pilot.radiusOf(
+                {photon.position, photon.normal.unpack(), m_count, kLargestRadius * m_typical, i},
+                scratch);
+        }
+    });
+}
+
+float PilotRadius::typicalOf(const PhotonMap& pilot, std::uint32_t estimatePhotons,
+                             float fallback) {
+    const std::uint32_t count = countOf(estimatePhotons);
+    return pilot.size() > count ? pilot.typicalRadius(count) : fallback;
+}
 
 float PilotRadius::at(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const {
     const float largest = kLargestRadius * m_typical;
-    const float radius = m_pilot.radiusOf({position, normal, m_count, largest}, scratch);
+    const float reach =
+        std::min(m_pilot.radiusOf({position, normal, m_count, largest}, scratch), largest);
+    float radius = reach;
+    m_pilot.visitAccepted(
+        position, normal, reach, scratch, [&](std::uint32_t index, float distanceSquared) {
+            radius = std::min(radius, m_ofPhotons[index] + kSlope * std::sqrt(distanceSquared));
+        });
     // Photons in one point leave no area to divide by.
     return std::clamp(radius, kSmallestRadius * m_typical, largest);
 }
@@ -46,10 +80,7 @@ TwoRadii CausticMap::irradiance(const Vec3f& position, const Vec3f& normal,
         SurfacePatch spare;
         const SurfacePatch& patch = m_patches->at(position, normal, radius, spare);
         if (!patch.speaksFor(scene, position, normal, radius)) {
-            // Any pattern that depends on the place alone.
-            const auto pattern =
-                std::bit_cast<std::uint32_t>(position.x) ^ std::bit_cast<std::uint32_t>(position.y);
-            return SurfaceEstimate(scene, m_map, radius).at(position, normal, pattern);
+            return SurfaceEstimate(scene, m_map, radius).at(position, normal, patternAt(position));
         }
         share = patch.shares(position, radius);
         if (patch.hidesSurface())

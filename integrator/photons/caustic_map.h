@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "integrator/photons/photon_map.h"
 #include "integrator/photons/surface_patches.h"
@@ -17,6 +18,12 @@ namespace pm {
 class PilotRadius {
   public:
     static constexpr std::uint32_t kPilotShare = 4;
+    static constexpr std::uint64_t kHeldBytesPerPhoton =
+        PhotonMap::kHeldBytesPerPhoton + sizeof(float);
+    // Two places' radii differ by no more than this times their distance. With 1, as k-nearest
+    // radii do, all discs beside a bright patch reach into it: in the dark it is blurred over
+    // 1/d^2.
+    static constexpr float kSlope = 0.25f;
 
     // pilot: photons as the map's, 1/kPilotShare as many of them emitted, so that a radius with
     // estimatePhotons / kPilotShare of the pilot's holds about estimatePhotons of the map's.
@@ -27,17 +34,24 @@ class PilotRadius {
 
     // One for all places: what half of the pilot's photons need; scene units, > 0.
     float typical() const { return m_typical; }
+    // That alone, of a pilot's map.
+    static float typicalOf(const PhotonMap& pilot, std::uint32_t estimatePhotons, float fallback);
 
     // From place to place: narrow where light is focused, wide where it is thin; scene units, > 0.
+    // The least of what the place itself needs and of what each photon that it needs for that needs
+    // itself, plus kSlope times the way there.
     float at(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch) const;
 
     const PhotonMap& photons() const { return m_pilot; }
-    std::uint64_t memoryBytes() const { return m_pilot.memoryBytes(); }
+    std::uint64_t memoryBytes() const {
+        return m_pilot.memoryBytes() + m_ofPhotons.size() * sizeof(float);
+    }
 
   private:
     PhotonMap m_pilot;
     std::uint32_t m_count;
     float m_typical;
+    std::vector<float> m_ofPhotons;  // what each needs itself; may be infinite
 };
 
 // Caustics of one pass, estimated straight at the surfaces that the camera sees.

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -132,6 +133,12 @@ class PhotonMap {
     template <typename Accept>
     TwoRadii fluxWithin(const Vec3f& position, const Vec3f& normal, float radius,
                         const Accept& accept) const;
+
+    // Calls visit(index, squared distance) for every accepted photon within radius, in the order of
+    // the tree; faster near the last query by the same `nearest`.
+    template <typename Visit>
+    void visitAccepted(const Vec3f& position, const Vec3f& normal, float radius,
+                       NearestPhotons& nearest, const Visit& visit) const;
 
     // The radius within which half of the photons find count others; of fewer photons, the size of
     // what they cover. Scene units, > 0.
@@ -309,6 +316,25 @@ TwoRadii PhotonMap::fluxWithin(const Vec3f& position, const Vec3f& normal, float
         m_tree.fluxes[leaf].add(found, narrow, sums);
     });
     return radiiOf(sums);
+}
+
+template <typename Visit>
+void PhotonMap::visitAccepted(const Vec3f& position, const Vec3f& normal, float radius,
+                              NearestPhotons& nearest, const Visit& visit) const {
+    const float reach = radius * radius;
+    const PhotonGate gate = this->gate(position, normal);
+    const auto visitLeaf = [&](std::uint32_t leaf) {
+        std::array<float, PhotonLeaf::kSize> distances;
+        std::uint32_t found = m_tree.leaves[leaf].findWithin(gate, reach, distances.data());
+        for (; found != 0; found &= found - 1) {
+            const auto i = static_cast<std::uint32_t>(std::countr_zero(found));
+            visit(leaf * PhotonLeaf::kSize + i, distances[i]);
+        }
+    };
+    if (const NearestPhotons::Leaves* const leaves = leavesAround(position, radius, nearest))
+        std::for_each_n(leaves->numbers.begin(), leaves->count, visitLeaf);
+    else
+        visitWithin(position, reach, visitLeaf);
 }
 
 }  // namespace pm

@@ -29,6 +29,8 @@ constexpr double kGuidePays = 0.5;
 // Radius at which gather rays read caustics, over the typical one of those that are seen: rays blur
 // them anyway.
 constexpr float kRadiusOfGathered = 2.0f;
+// Caustics' radii, which rise slowly beside bright light, are to hold so many times K photons.
+constexpr double kSoughtInCaustics = 1.6;
 
 std::vector<Photon> refocusedOf(std::span<const Photon> descended) {
     std::vector<Photon> found;
@@ -216,11 +218,11 @@ BigVector<Photon> PhotonPass::findCausticRadii(float fallback, Control& control)
     const CancelCheck check(control.cancelled);
     PhotonTraceResult pilot =
         trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), 0, control);
-    m_causticRadius =
-        std::make_unique<PilotRadius>(pilot.photons, m_settings.estimatePhotons, fallback, check);
+    const auto sought = static_cast<std::uint32_t>(kSoughtInCaustics * m_settings.estimatePhotons);
+    m_causticRadius = std::make_unique<PilotRadius>(pilot.photons, sought, fallback, check);
     if (m_plan.descent > 0.0f)
-        m_refocusedRadius = std::make_unique<PilotRadius>(
-            refocusedOf(pilot.descended), m_settings.estimatePhotons, fallback, check);
+        m_refocusedRadius =
+            std::make_unique<PilotRadius>(refocusedOf(pilot.descended), sought, fallback, check);
     return std::move(pilot.descended);
 }
 
@@ -228,13 +230,12 @@ BigVector<Photon> PhotonPass::findCausticRadii(float fallback, Control& control)
 void PhotonPass::findGlobalRadius(std::span<const Photon> pilot, float fallback,
                                   const CancelCheck& check) {
     if (m_focus.isEverywhere()) {
-        const PilotRadius radius(pilot, m_settings.estimatePhotons, fallback, check);
-        m_globalRadius = radius.typical();
-        chooseGatherRays(radius.photons(), check);
+        const PhotonMap map(pilot, check);
+        m_globalRadius = PilotRadius::typicalOf(map, m_settings.estimatePhotons, fallback);
+        chooseGatherRays(map, check);
     } else {
-        const PilotRadius radius(inFocus(pilot, m_focus), m_settings.estimatePhotons,
-                                 fallbackIn(m_focus), check);
-        m_globalRadius = radius.typical();
+        m_globalRadius = PilotRadius::typicalOf(PhotonMap(inFocus(pilot, m_focus), check),
+                                                m_settings.estimatePhotons, fallbackIn(m_focus));
         chooseGatherRays(PhotonMap(pilot, check), check);
     }
 }

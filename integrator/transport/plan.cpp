@@ -284,7 +284,7 @@ std::uint64_t Plan::refocusedLandings() const {
 std::uint64_t Plan::heldMapBytes(std::uint32_t passes) const {
     const std::uint64_t gathered = globalLandings() + descendedLandings();
     const std::uint64_t caustics = causticLandings() + refocusedLandings();
-    std::uint64_t bytes = caustics / PilotRadius::kPilotShare * PhotonMap::kHeldBytesPerPhoton;
+    std::uint64_t bytes = caustics / PilotRadius::kPilotShare * PilotRadius::kHeldBytesPerPhoton;
     for (std::uint32_t pass = 0; pass < passes; ++pass) {
         const float factor = radiusFactor(pass);
         bytes += (gathered + caustics) * PhotonMap::kHeldBytesPerPhoton;

@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -60,6 +62,55 @@ TEST(CausticMap, MeanOfAnEvenlyLitPlane) {
         EXPECT_NEAR(wide.mean(), 1, 4 * error + 0.002);
         EXPECT_NEAR(narrow.mean(), 1, 4 * error + 0.002);
     }
+}
+
+// A disc of light on a dim floor. Discs that hold k photons reach it from everywhere beside it, so
+// that it lights a rim of its surroundings; radii that grow more slowly than the way there don't.
+TEST(CausticMap, ABrightDiscHasNoRimOfLight) {
+    constexpr std::size_t kCount = 400'000;
+    constexpr float kRadius = 0.05f, kDimShare = 1.0f / 32;
+    const auto lit = [](std::size_t count, std::uint64_t seed) {
+        const auto dim = static_cast<std::size_t>(kDimShare * static_cast<float>(count));
+        std::vector<Photon> photons = evenly(dim, seed);
+        const Photon first = photons.front();
+        Random random(seed + 100);
+        while (photons.size() < count) {
+            const Vec2f u = random.next2D();
+            const float r = kRadius * std::sqrt(u.x), angle = 2 * kPi * u.y;
+            photons.push_back({{0.5f + r * std::cos(angle), 0.5f + r * std::sin(angle), 0},
+                               first.flux,
+                               first.normal});
+        }
+        return photons;
+    };
+    const PilotRadius radius(lit(kCount / PilotRadius::kPilotShare, 1), 50, 0.1f);
+    const CausticMap map(lit(kCount, 2), radius, 1);
+    const double inside = (1 / kDimShare - 1) / (std::numbers::pi * kRadius * kRadius);
+    NearestPhotons scratch;
+    Random random(3);
+    // Of the disc's irradiance, at this distance from its middle.
+    const auto shareAt = [&](float distance) {
+        Mean mean;
+        for (int i = 0; i < 4000; ++i) {
+            const float angle = 2 * kPi * random.next2D().x;
+            const Vec3f at{0.5f + distance * std::cos(angle), 0.5f + distance * std::sin(angle), 0};
+            mean.add(static_cast<double>(map.irradiance(at, {0, 0, 1}, scratch).wide.r) / inside);
+        }
+        fmt::print(" {:.4f}", mean.mean());
+        return mean.mean();
+    };
+    const float width = radius.typical() / kRadius;  // of the disc's own estimates
+    fmt::print("    within and at 1, 1.5, 2, 3 typical radii from the edge:");
+    EXPECT_NEAR(shareAt(0.5f * kRadius), 1, 0.02);
+    std::array<double, 4> beside{};
+    std::ranges::transform(std::array{1.0f, 1.5f, 2.0f, 3.0f}, beside.begin(),
+                           [&](float way) { return shareAt(kRadius * (1 + way * width)); });
+    fmt::print(", the floor has {:.4f}\n", 1 / inside);
+    // Further than the widest of the rim's own radii, of 12 photons each, nothing of the disc
+    // counts. As far as k photons reach there would be 0.15, 0.11 and 0.06.
+    EXPECT_LT(beside[1], 0.03);
+    EXPECT_LT(beside[2], 0.002);
+    EXPECT_NEAR(beside[3] * inside, 1, 0.5);  // some 200 photons on the floor, seen in clumps
 }
 
 // What half of the photons need to find k others: k - 1/3 (the median of a gamma distribution) are

@@ -107,7 +107,7 @@ TEST(Passes, SlopesWhereLightIsSmooth) {
     const double truth = std::numbers::pi * lampRadius * lampRadius / (height * height);
     constexpr std::uint32_t kPasses = 32;
     // Few photons to a disc: of many, which are stratified, the count varies less than theory's.
-    const RunningMeans means = estimate(maker.build(), 2000, 75, {{0, 0, 0}}, 200, kPasses);
+    const RunningMeans means = estimate(maker.build(), 2000, 47, {{0, 0, 0}}, 200, kPasses);
     std::vector<double> squaredBias, variance;
     for (std::size_t i = 0; i < kPasses; ++i) {
         const BiasAndVariance m = measure(means, 0, i, truth);
