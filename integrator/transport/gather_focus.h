@@ -10,8 +10,9 @@
 
 namespace pm {
 
-// Where the gather rays of a render end: the ball that holds nine tenths of their ends, where the
-// scene reaches far beyond it; otherwise, everywhere. A function of scene, camera and settings;
+// Where the gather rays of a render end, weighed by what light there is worth to the camera: the
+// ball that holds nine tenths of the nearest quarter of their ends, where the scene reaches far
+// beyond it; otherwise, everywhere. A function of scene, camera and settings;
 // works in parallel in the calling TBB arena. Throws Error(kCancelled) soon after cancel is set.
 Focus findGatherFocus(const Scene& scene, const Camera& camera, const RenderSettings& settings,
                       const CancelCheck& cancel);

@@ -181,6 +181,16 @@ TEST(Focus, IsFoundWhereGatherRaysEnd) {
     EXPECT_LT(length(wide.centre - Vec3f{0, 0.5f, 0}), 1.5f);
     EXPECT_LT(1 / std::sqrt(wide.inverseRadiusSquared), 6.0f);
     EXPECT_GT(1 / std::sqrt(wide.inverseRadiusSquared), 1.0f);
+    // A dome as far away as the ground reaches is met by most rays. It reflects nothing, or little.
+    for (const float reflectance : {0.0f, 0.05f}) {
+        SceneMaker domed = onGround(1000);
+        domed.box({-1000, -1, -1000}, {1000, 1000, 1000},
+                  domed.diffuse(Rgb(reflectance), Rgb(1.0f)), true);
+        const Focus under = focusOf(domed);
+        ASSERT_FALSE(under.isEverywhere()) << reflectance;
+        EXPECT_LT(length(under.centre - Vec3f{0, 0.5f, 0}), 1.5f) << reflectance;
+        EXPECT_LT(1 / std::sqrt(under.inverseRadiusSquared), 6.0f) << reflectance;
+    }
     EXPECT_TRUE(focusOf(onGround(5)).isEverywhere());
     EXPECT_TRUE(focusOf(openRoom()).isEverywhere());
 }
