@@ -53,6 +53,21 @@ float fresnelDielectric(float cosine, float eta) {
     return 0.5f * (parallel * parallel + perpendicular * perpendicular);
 }
 
+namespace {
+
+// Where light from `out`, on the side of n, goes beyond it; eta: index there over that here. False
+// where it is all reflected.
+bool refractBy(const Vec3f& n, const Vec3f& out, float eta, Vec3f& direction) {
+    const float cosine = dot(out, n);
+    const float sin2Inside = (1.0f - cosine * cosine) / (eta * eta);
+    if (sin2Inside >= 1.0f) return false;
+    const float cosineInside = std::sqrt(1.0f - sin2Inside);
+    direction = normalize(n * (cosine / eta - cosineInside) - out * (1.0f / eta));
+    return true;
+}
+
+}  // namespace
+
 Bsdf::Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transport transport,
            const Rgb& carried)
     : m_material(scene.material(surface.material)),
@@ -70,62 +85,81 @@ Bsdf::Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transpo
     // is Lambertian does not ask where it is seen from.
     const bool behindShading = dot(m_out, m_ns) <= 0.0f;
     if (behindShading) m_ns = m_ng;
-    const float opacity = clamp01((1.0f - m_material.transparency) *
-                                  lookUp(scene, m_material.opacityTexture, surface).r);
+    m_opacity = clamp01((1.0f - m_material.transparency) *
+                        lookUp(scene, m_material.opacityTexture, surface).r);
     switch (m_material.kind) {
         case MaterialKind::kSurface:
-            setSurface(scene, surface, opacity);
+            setSurface(scene, surface);
             break;
         case MaterialKind::kMirror:
-            setMirror(scene, surface, opacity);
+            setMirror(scene, surface);
             break;
         case MaterialKind::kDielectric:
-            setDielectric(scene, surface, opacity);
+            setDielectric(scene, surface);
             break;
     }
-    m_reflectance[index(Lobe::kStraight)] = Rgb(1.0f - opacity);
+    m_reflectance[index(Lobe::kStraight)] = Rgb(1.0f - m_opacity);
     // A camera path finds no light there (see evaluate), so a photon from there brings none.
     if (behindShading && transport == Transport::kPhotons)
         m_reflectance[index(Lobe::kDiffuse)] = m_reflectance[index(Lobe::kGlossy)] = Rgb();
-    m_diffuseOnly = m_material.kind == MaterialKind::kSurface && opacity == 1.0f &&
+    m_diffuseOnly = m_material.kind == MaterialKind::kSurface && m_opacity == 1.0f &&
                     isBlack(m_reflectance[index(Lobe::kGlossy)]);
     if (m_diffuseOnly) {
         chooseDiffuse(carried);
         return;
     }
-    limitEnergy();
+    if (m_hasPhotonWays)
+        setPhotonWays();
+    else
+        limitEnergy();
     chooseProbabilities(carried);
 }
 
-void Bsdf::setSurface(const Scene& scene, const Surface& surface, float opacity) {
+void Bsdf::setSurface(const Scene& scene, const Surface& surface) {
     m_reflectance[index(Lobe::kDiffuse)] =
-        clamp01(textured(scene, m_material.diffuse, m_material.diffuseTexture, surface)) * opacity;
+        clamp01(textured(scene, m_material.diffuse, m_material.diffuseTexture, surface)) *
+        m_opacity;
     if (isBlack(m_material.glossy)) return;
     m_reflectance[index(Lobe::kGlossy)] =
-        clamp01(textured(scene, m_material.glossy, m_material.glossyTexture, surface)) * opacity;
+        clamp01(textured(scene, m_material.glossy, m_material.glossyTexture, surface)) * m_opacity;
     m_exponent = std::max(0.0f, m_material.glossyExponent *
                                     lookUp(scene, m_material.glossyExponentTexture, surface).r);
 }
 
-void Bsdf::setMirror(const Scene& scene, const Surface& surface, float opacity) {
-    Rgb colour = clamp01(textured(scene, m_material.glossy, m_material.glossyTexture, surface));
-    const bool rough = m_material.glossyExponent > 0.0f;
-    if (m_material.fresnelMirror && !rough) {
-        // Schlick 1994: the reflectance rises to 1 at grazing angles.
-        const float m = 1.0f - clamp01(dot(m_out, m_ns));
-        colour += (Rgb(1.0f) - colour) * (m * m * m * m * m);
-    }
+void Bsdf::setMirror(const Scene& scene, const Surface& surface) {
+    m_tint = clamp01(textured(scene, m_material.glossy, m_material.glossyTexture, surface));
     m_exponent = m_material.glossyExponent;
-    m_reflectance[index(rough ? Lobe::kGlossy : Lobe::kReflection)] = colour * opacity;
+    if (m_exponent > 0.0f) {
+        m_reflectance[index(Lobe::kGlossy)] = m_tint * m_opacity;
+        return;
+    }
+    m_hasPhotonWays = m_transport == Transport::kPhotons && m_nd != m_ng;
+    m_reflectance[index(Lobe::kReflection)] = mirrorColour(clamp01(dot(m_out, m_ns))) * m_opacity;
 }
 
-void Bsdf::setDielectric(const Scene& scene, const Surface& surface, float opacity) {
+Rgb Bsdf::mirrorColour(float cosine) const {
+    if (!m_material.fresnelMirror) return m_tint;
+    // Schlick 1994: the reflectance rises to 1 at grazing angles.
+    const float m = 1.0f - cosine;
+    return m_tint + (Rgb(1.0f) - m_tint) * (m * m * m * m * m);
+}
+
+void Bsdf::setDielectric(const Scene& scene, const Surface& surface) {
     m_eta = m_frontSide ? m_material.ior : 1.0f / m_material.ior;
     const float reflected = fresnelDielectric(clamp01(dot(m_out, m_ns)), m_eta);
-    const Rgb tint =
+    m_tint =
         clamp01(textured(scene, m_material.transmission, m_material.transmissionTexture, surface));
-    m_reflectance[index(Lobe::kReflection)] = Rgb(reflected * opacity);
-    m_reflectance[index(Lobe::kRefraction)] = tint * ((1.0f - reflected) * opacity);
+    m_hasPhotonWays = m_transport == Transport::kPhotons && m_nd != m_ng;
+    m_reflectance[index(Lobe::kReflection)] = Rgb(reflected * m_opacity);
+    m_reflectance[index(Lobe::kRefraction)] = m_tint * ((1.0f - reflected) * m_opacity);
+}
+
+void Bsdf::setPhotonWays() {
+    for (const Lobe lobe : {Lobe::kReflection, Lobe::kRefraction}) {
+        if (lobe == Lobe::kRefraction && m_material.kind == MaterialKind::kMirror) continue;
+        const std::array<PhotonWay, 2> ways = photonWays(lobe);
+        m_reflectance[index(lobe)] = ways[0].share + ways[1].share;
+    }
 }
 
 void Bsdf::limitEnergy() {
@@ -217,15 +251,59 @@ float Bsdf::pdfSolidAngle(Lobe lobe, const Vec3f& in) const {
 bool Bsdf::refract(Vec3f& direction, float& correction) const {
     // With the shading normal first, with the geometric one where that leads to the wrong side.
     for (const Vec3f& n : {m_ns, m_ng}) {
-        const float cosine = dot(m_out, n);
-        const float sin2Inside = (1.0f - cosine * cosine) / (m_eta * m_eta);
-        if (sin2Inside >= 1.0f) continue;
-        const float cosineInside = std::sqrt(1.0f - sin2Inside);
-        direction = normalize(n * (cosine / m_eta - cosineInside) - m_out * (1.0f / m_eta));
+        if (!refractBy(n, m_out, m_eta, direction)) continue;
         correction = n == m_ns ? adjointCorrection(direction) : 1.0f;
         if (dot(direction, m_ng) < 0.0f) return true;
     }
     return false;
+}
+
+Rgb Bsdf::shareSeenFrom(const Vec3f& eye, Lobe lobe) const {
+    const bool isBeyond = lobe == Lobe::kRefraction;
+    const float side = isBeyond ? -1.0f : 1.0f;
+    const float shading = side * dot(eye, m_nd);
+    const float cosine = clamp01(shading > 0.0f ? shading : side * dot(eye, m_ng));
+    if (m_material.kind == MaterialKind::kMirror) return mirrorColour(cosine) * m_opacity;
+    const float reflected = fresnelDielectric(cosine, isBeyond ? 1.0f / m_eta : m_eta);
+    return isBeyond ? m_tint * ((1.0f - reflected) * m_opacity) : Rgb(reflected * m_opacity);
+}
+
+std::array<Bsdf::PhotonWay, 2> Bsdf::photonWays(Lobe lobe) const {
+    std::array<PhotonWay, 2> ways{};
+    Vec3f &byShading = ways[0].direction, &byGeometric = ways[1].direction;
+    bool isFirst = dot(m_out, m_nd) > 0.0f, isSecond = true;
+    if (lobe == Lobe::kReflection) {
+        byShading = reflect(m_out, m_nd);
+        byGeometric = reflect(m_out, m_ng);
+        isFirst = isFirst && dot(byShading, m_ng) > 0.0f;
+        isSecond = dot(byGeometric, m_nd) <= 0.0f || dot(reflect(byGeometric, m_nd), m_ng) <= 0.0f;
+    } else {
+        isFirst =
+            isFirst && refractBy(m_nd, m_out, m_eta, byShading) && dot(byShading, m_ng) < 0.0f;
+        isSecond = refractBy(m_ng, m_out, m_eta, byGeometric);
+        Vec3f back;
+        if (isSecond && dot(byGeometric, m_nd) < 0.0f)
+            isSecond = refractBy(-m_nd, byGeometric, 1.0f / m_eta, back) && dot(back, m_ng) <= 0.0f;
+    }
+    if (isFirst) {
+        ways[0].share = shareSeenFrom(byShading, lobe);
+        ways[0].correction = adjointCorrection(byShading);
+    }
+    if (isSecond) ways[1].share = shareSeenFrom(byGeometric, lobe);
+    return ways;
+}
+
+bool Bsdf::takePhotonWay(Lobe lobe, float probability, float u, BsdfSample& sample) const {
+    const std::array<PhotonWay, 2> ways = photonWays(lobe);
+    const float first = mean(ways[0].share), second = mean(ways[1].share);
+    if (!(first + second > 0.0f)) return false;
+    const float ofFirst = first / (first + second);
+    const bool takesFirst = u < ofFirst;
+    const PhotonWay& way = ways[takesFirst ? 0 : 1];
+    sample.direction = way.direction;
+    sample.weight =
+        way.share * (way.correction / (probability * (takesFirst ? ofFirst : 1.0f - ofFirst)));
+    return true;
 }
 
 bool Bsdf::sample(float uLobe, Vec2f u, BsdfSample& sample) const {
@@ -262,13 +340,12 @@ bool Bsdf::take(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const
                              dot(sample.direction, m_ns) * adjointCorrection(sample.direction);
             return sample.pdfSolidAngle > 0.0f && isReflection(sample.direction);
         case Lobe::kReflection:
+            if (m_hasPhotonWays) return takePhotonWay(lobe, probability, u.x, sample);
             sample.direction = reflect(m_out, m_ns);
-            if (dot(sample.direction, m_ng) <= 0.0f)
-                sample.direction = reflect(m_out, m_ng);
-            else
-                sample.weight *= adjointCorrection(sample.direction);
+            if (dot(sample.direction, m_ng) <= 0.0f) sample.direction = reflect(m_out, m_ng);
             return true;
         case Lobe::kRefraction: {
+            if (m_hasPhotonWays) return takePhotonWay(lobe, probability, u.x, sample);
             float correction;
             if (!refract(sample.direction, correction)) return false;
             // Radiance is squeezed into a narrower cone of a denser medium; flux is not changed.

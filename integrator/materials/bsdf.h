@@ -66,7 +66,7 @@ class Bsdf {
     // From here on all lobes are followed, in place of one: densities have no choice in them.
     void followAll() { m_followsAll = true; }
     // The same for a lobe that is taken for sure, so that no choice is in the weight. False also
-    // where the surface has no such lobe. u: a delta lobe needs none.
+    // where the surface has no such lobe. u: a delta lobe needs none, but of photons.
     bool follow(Lobe lobe, BsdfSample& sample, Vec2f u = {}) const;
 
     // f |cos| of a lobe that is not delta, for light from `in` (unit, away from the surface).
@@ -94,14 +94,29 @@ class Bsdf {
 
   private:
     static constexpr std::size_t index(Lobe lobe) { return static_cast<std::size_t>(lobe); }
-    void setSurface(const Scene& scene, const Surface& surface, float opacity);
-    void setMirror(const Scene& scene, const Surface& surface, float opacity);
-    void setDielectric(const Scene& scene, const Surface& surface, float opacity);
+    void setSurface(const Scene& scene, const Surface& surface);
+    void setMirror(const Scene& scene, const Surface& surface);
+    void setDielectric(const Scene& scene, const Surface& surface);
     void limitEnergy();
     void chooseDiffuse(const Rgb& carried);
     void chooseProbabilities(const Rgb& carried);
     bool take(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const;
     bool isReflection(const Vec3f& in) const;
+    // The camera goes by the shading normal, and by the geometric one where it sees the surface
+    // from behind the other or would come out on the wrong side. So a photon has no, one or two
+    // ways on by a mirror or glass: those from whose ends the camera comes to where the photon is
+    // from.
+    struct PhotonWay {
+        Vec3f direction;
+        Rgb share;  // of the light there that the camera gets; 0: no way
+        float correction = 1.0f;
+    };
+    std::array<PhotonWay, 2> photonWays(Lobe lobe) const;
+    void setPhotonWays();
+    bool takePhotonWay(Lobe lobe, float probability, float u, BsdfSample& sample) const;
+    // Of the camera that sees the surface from there.
+    Rgb shareSeenFrom(const Vec3f& eye, Lobe lobe) const;
+    Rgb mirrorColour(float cosine) const;
     Rgb evaluateDiffuse(const Vec3f& in) const;
     // correction: of the normal that was used, see adjointCorrection.
     bool refract(Vec3f& direction, float& correction) const;
@@ -112,8 +127,10 @@ class Bsdf {
     Vec3f m_nd, m_ns;  // shading normals, of the diffuse lobe and of all others
     bool m_frontSide;
     bool m_black = false, m_diffuseOnly = false, m_followsAll = false;
+    bool m_hasPhotonWays = false;  // photons, at a mirror or glass whose normals differ
     Transport m_transport;
-    float m_exponent = 0.0f;
+    float m_exponent = 0.0f, m_opacity = 1.0f;
+    Rgb m_tint;          // of a mirror, or of what glass lets through
     float m_eta = 1.0f;  // index on the far side over the index on this side
     std::array<Rgb, kLobeCount> m_reflectance{};
     std::array<float, kLobeCount> m_probability{};

@@ -188,7 +188,8 @@ class PhotonWalk {
             const float share = bsdf.probability(lobe) / all;
             const float survival = all * (share < 0.5f ? std::max(share, kLeastShare) : 1.0f);
             BsdfSample sample;
-            if (!(uSurvival < survival) || !bsdf.follow(lobe, sample)) return false;
+            if (!(uSurvival < survival) || !bsdf.follow(lobe, sample, {uSurvival / survival, 0}))
+                return false;
             next.ray = rayFrom(surface, sample.direction);
             next.flux *= sample.weight * (1.0f / survival);
             next.way.stage = Stage::kSpecular;

@@ -156,6 +156,34 @@ TEST(Agreement, BentShadingNormals) {
     }
 }
 
+// Caustics of a mirror or a pane of glass whose normals lean, so far too that lamp or camera are
+// behind some of them: by one normal alone 1.15 of the mirror's, 1.04 and 1.08 of the pane's.
+TEST(Agreement, BentMirrorsAndGlass) {
+    for (const bool isGlass : {false, true})
+        for (const Vec3d normal : {Vec3d{0.3, 1, 0.2}, Vec3d{0.9, 1, -0.3}}) {
+            SCOPED_TRACE(fmt::format("{} {}", isGlass ? "glass" : "mirror", normal.x));
+            SceneMaker maker = cornellBox();
+            MaterialDescription mirror;
+            mirror.kind = MaterialKind::kMirror;
+            mirror.glossy = Rgb(0.9f);
+            const auto material = maker.material(isGlass ? glass() : mirror);
+            maker.quad({-0.6, -0.4, 0.6}, {1.2, 0, 0}, {0, 0, -1.2}, material);
+            maker.bendNormals(normal);
+            if (isGlass) {
+                maker.quad({-0.6, -0.5, -0.6}, {1.2, 0, 0}, {0, 0, 1.2}, material);
+                maker.bendNormals({0.2, -1, 0.4});
+            }
+            const auto scene = maker.build();
+            RenderSettings settings = smallFrame(24, 24, kPhoton, 8, 4);
+            settings.photons = 60'000;
+            const MeasuredLayers photon = measure(scene, settings);
+            const MeasuredLayers path = measure(scene, smallFrame(24, 24, kPath, 8, 6));
+            EXPECT_TRUE(agree(photon.direct, path.direct, 0));
+            EXPECT_TRUE(agree(photon.indirect, path.indirect, 0));
+            EXPECT_TRUE(agree(photon.caustic, path.caustic, 0.005));
+        }
+}
+
 // Gather rays that start below the surface have no value; the others of the same sample keep
 // theirs. In a furnace, where there is little noise to hide in.
 TEST(Agreement, GatherRaysOverABentFloor) {

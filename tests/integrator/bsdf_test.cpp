@@ -4,8 +4,10 @@
 // of it as the adjoint of the camera's.
 #include "integrator/materials/bsdf.h"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "tests/integrator/scene_maker.h"
@@ -121,6 +123,75 @@ TEST(Bsdf, PhotonsAreTheAdjointOfTheCamera) {
     }
     EXPECT_GT(lit, 5000);
     EXPECT_GT(fringe, 500);
+}
+
+// What a delta lobe brings to parts of the hemisphere, of light from a part of one.
+struct Brought {
+    static constexpr std::size_t kParts = 12;
+    std::array<double, kParts> sums{}, squares{};
+};
+
+// eyesAbove: the camera is on the side of the normals.
+Brought broughtBy(const Bench& bench, Lobe lobe, bool eyesAbove, Transport transport) {
+    constexpr std::uint32_t kCount = 400'000;
+    const bool isPhoton = transport == Transport::kPhotons;
+    const bool startsAbove = eyesAbove != (isPhoton && lobe == Lobe::kRefraction);
+    const auto partOf = [](const Vec3f& d) {
+        const double turn = std::atan2(static_cast<double>(d.y), static_cast<double>(d.x));
+        const auto sector = std::min(5u, static_cast<std::uint32_t>((turn / kPiD + 1) * 3));
+        return 2 * sector + (std::abs(d.z) < 0.4f ? 1 : 0);
+    };
+    // Not from where the correction is cut.
+    const auto isLit = [](const Vec3f& from) { return from.x > -0.2f && std::abs(from.z) > 0.05f; };
+    Random random(6);
+    Brought found;
+    for (std::uint32_t i = 0; i < kCount; ++i) {
+        Vec3f from = above(random);  // even over the hemisphere
+        if (!startsAbove) from.z = -from.z;
+        const Bsdf bsdf = bench.bsdf(from, transport);
+        BsdfSample s;
+        if (!bsdf.follow(lobe, s, random.next2D())) continue;
+        if (!isLit(isPhoton ? from : s.direction)) continue;
+        const auto part = partOf(isPhoton ? s.direction : from);
+        const double flux = static_cast<double>(s.weight.r * std::abs(from.z));
+        found.sums[part] += flux / kCount;
+        found.squares[part] += flux * flux / kCount;
+    }
+    for (std::size_t part = 0; part < Brought::kParts; ++part)
+        found.squares[part] = (found.squares[part] - found.sums[part] * found.sums[part]) / kCount;
+    return found;
+}
+
+// By photons as the camera finds it, whose own way on may go by either normal.
+void expectPhotonsWhereTheCameraLooks(const Bench& bench, Lobe lobe, bool eyesAbove) {
+    const Brought camera = broughtBy(bench, lobe, eyesAbove, Transport::kRadiance);
+    const Brought photons = broughtBy(bench, lobe, eyesAbove, Transport::kPhotons);
+    double all = 0;
+    for (std::size_t part = 0; part < Brought::kParts; ++part) {
+        const double error = std::sqrt(camera.squares[part] + photons.squares[part]);
+        EXPECT_NEAR(photons.sums[part], camera.sums[part], 4 * error + 1e-9) << part;
+        all += camera.sums[part];
+    }
+    EXPECT_GT(all, 0.01);
+}
+
+TEST(Bsdf, PhotonsLeaveAMirrorWhereTheCameraLooks) {
+    MaterialDescription mirror;
+    mirror.kind = MaterialKind::kMirror;
+    mirror.glossy = Rgb(1.0f);
+    expectPhotonsWhereTheCameraLooks(Bench(mirror, {0.7f, 0.2f, 1}), Lobe::kReflection, true);
+    mirror.fresnelMirror = true;
+    mirror.glossy = Rgb(0.2f);
+    expectPhotonsWhereTheCameraLooks(Bench(mirror, {0.7f, 0.2f, 1}), Lobe::kReflection, true);
+}
+
+TEST(Bsdf, PhotonsLeaveGlassWhereTheCameraLooks) {
+    const Bench bench(glass(1.5f), {0.7f, 0.2f, 1});
+    for (const Lobe lobe : {Lobe::kReflection, Lobe::kRefraction})
+        for (const bool eyesAbove : {true, false}) {
+            SCOPED_TRACE(fmt::format("{} {}", lobe == Lobe::kReflection, eyesAbove));
+            expectPhotonsWhereTheCameraLooks(bench, lobe, eyesAbove);
+        }
 }
 
 TEST(Bsdf, MakesNoEnergy) {
