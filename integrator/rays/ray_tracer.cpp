@@ -94,9 +94,24 @@ void setHit(RTCRayHit& rayHit, double t, std::uint32_t shape, std::uint32_t prim
     rayHit.hit.Ng_y = rayHit.hit.Ng_z = 0.0f;
 }
 
+// What a ray that looks for all its hits tells of each; they are then passed over.
+struct AllHits {
+    RTCIntersectContext context;  // first: Embree hands a pointer to it back
+    void (*visit)(const void* user, const RayHit& hit);
+    const void* user;
+};
+
+void passOver(const RTCFilterFunctionNArguments* args) {
+    if (args->valid[0] != -1) return;
+    const auto& all = *reinterpret_cast<const AllHits*>(args->context);
+    all.visit(all.user, {RTCHitN_geomID(args->hit, 1, 0), RTCHitN_primID(args->hit, 1, 0),
+                         RTCRayN_tfar(args->ray, 1, 0)});
+    args->valid[0] = 0;
+}
+
 // Rays are traced one by one, so N is 1 and the packet is a plain RTCRayHit.
 void sphereIntersect(const RTCIntersectFunctionNArguments* args) {
-    if (args->valid[0] != -1) return;
+    if (args->valid[0] != -1 || args->context->filter == passOver) return;
     auto& rayHit = *reinterpret_cast<RTCRayHit*>(args->rayhit);
     const double t =
         intersectRtcRay(*static_cast<const Sphere*>(args->geometryUserPtr), rayHit.ray);
@@ -146,7 +161,13 @@ void trianglesIntersect(const RTCIntersectFunctionNArguments* args) {
     const auto& of = *static_cast<const ExactTriangles*>(args->geometryUserPtr);
     const ExactTriangle& triangle = of.triangles[args->primID];
     const double t = intersectRtcRay(triangle, rayHit.ray);
-    if (t >= 0.0) setHit(rayHit, t, of.shape, triangle.primitive);
+    if (t < static_cast<double>(rayHit.ray.tnear)) return;
+    if (args->context->filter == passOver) {
+        const auto& all = *reinterpret_cast<const AllHits*>(args->context);
+        all.visit(all.user, {of.shape, triangle.primitive, static_cast<float>(t)});
+        return;
+    }
+    setHit(rayHit, t, of.shape, triangle.primitive);
 }
 
 void trianglesOccluded(const RTCOccludedFunctionNArguments* args) {
@@ -256,7 +277,8 @@ RayTracer::RayTracer(const std::string& isa) : m_impl(std::make_unique<Impl>()) 
         },
         m_impl.get());
     m_impl->scene = rtcNewScene(m_impl->device);
-    rtcSetSceneFlags(m_impl->scene, RTC_SCENE_FLAG_ROBUST);
+    // A filter only comes with rays that look for all their hits; others pay nothing for it.
+    rtcSetSceneFlags(m_impl->scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
     m_impl->check("creating a scene");
 }
 
@@ -330,6 +352,19 @@ bool RayTracer::occluded(const Ray& ray) const {
     rtcInitIntersectContext(&context);
     rtcOccluded1(m_impl->scene, &context, &rtcRay);
     return rtcRay.tfar < 0.0f;
+}
+
+void RayTracer::visitHits(const Ray& ray, float tMin, HitVisitor visit, const void* user) const {
+    if (!usable(ray)) return;
+    alignas(16) RTCRayHit rayHit;
+    fill(rayHit.ray, ray);
+    rayHit.ray.tnear = std::max(0.0f, tMin);
+    rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    AllHits all{{}, visit, user};
+    rtcInitIntersectContext(&all.context);
+    all.context.filter = passOver;
+    rtcIntersect1(m_impl->scene, &all.context, &rayHit);
 }
 
 const std::string& RayTracer::isa() const {

@@ -67,12 +67,24 @@ class RayTracer {
     // Threads: any, at once, after commit.
     bool intersect(const Ray& ray, RayHit& hit) const;
     bool occluded(const Ray& ray) const;
+    // Calls visit(hit) for every triangle that the ray meets beyond tMin, in no order. Spheres are
+    // left out.
+    template <typename Visit>
+    void forEachHit(const Ray& ray, float tMin, const Visit& visit) const {
+        visitHits(
+            ray, tMin,
+            [](const void* user, const RayHit& hit) { (*static_cast<const Visit*>(user))(hit); },
+            &visit);
+    }
 
     // What "best" came to; part of a render's identity.
     const std::string& isa() const;
     std::uint64_t memoryBytes() const;
 
   private:
+    using HitVisitor = void (*)(const void* user, const RayHit& hit);
+    void visitHits(const Ray& ray, float tMin, HitVisitor visit, const void* user) const;
+
     struct Impl;
     std::unique_ptr<Impl> m_impl;
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrator/scene/coincident_faces.h"
 #include "integrator/scene/shape_record.h"
 
 namespace pm {
@@ -88,6 +89,7 @@ std::uint64_t Scene::memoryBytes() const {
                      record.mesh->triangles.size() * (sizeof(TriangleMesh::Corners) + 8);
     }
     if (m_environment) bytes += m_environment->memoryBytes();
+    if (m_coincident) bytes += m_coincident->memoryBytes();
     return bytes + m_lights.size() * sizeof(Light);
 }
 

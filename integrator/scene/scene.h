@@ -90,6 +90,7 @@ class Scene {
   private:
     struct ShapeRecord;
     class Builder;
+    class CoincidentFaces;
     Scene(SceneDescription description, const std::string& isa, const CancelCheck& cancel);
 
     // A triangle's first vertex and the edges from it.
@@ -116,6 +117,7 @@ class Scene {
     double m_triangleArea = 0;  // of all
     bool m_isFlat = false;
     RayTracer m_tracer;  // last: it refers to the shapes' arrays and is destroyed before them
+    std::unique_ptr<const CoincidentFaces> m_coincident;  // null where there are none
 };
 
 }  // namespace pm

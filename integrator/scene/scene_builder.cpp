@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "integrator/scene/coincident_faces.h"
 #include "integrator/scene/huge_triangles.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/shape_record.h"
@@ -81,6 +82,7 @@ class Scene::Builder {
         m_scene.m_isFlat = m_scene.findFlat(m_cancel);
         addToTracer();
         for (std::uint32_t i = 0; i < m_scene.m_shapes.size(); ++i) findLights(i);
+        m_scene.m_coincident = CoincidentFaces::find(m_scene, m_scene.m_notices, m_cancel);
         addPointLights(m_scene.m_description, m_scene.m_centre, m_scene.m_lights, m_scene.m_beams);
         m_scene.m_nearLightCount = m_scene.m_lights.size();
         addDirectionalLights(m_scene.m_description, m_scene.m_halfSize, m_scene.m_lights,

@@ -9,6 +9,7 @@
 
 #include "integrator/sampling/pinned_math.h"
 #include "integrator/sampling/warps.h"
+#include "integrator/scene/coincident_faces.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/shape_record.h"
 
@@ -106,6 +107,7 @@ Scene::Facet::Facet(const Corner& corner, bool mirrored, bool exact) {
 bool Scene::intersect(const Ray& ray, Surface& surface) const {
     RayHit hit;
     if (!m_tracer.intersect(ray, hit)) return false;
+    if (m_coincident) hit = m_coincident->chosen(ray, hit);
     const ShapeRecord& record = m_shapes[hit.shape];
     surface.shape = hit.shape;
     if (record.mesh) {

@@ -123,7 +123,7 @@ typedef struct PmrMergeHandle* PmrMerge; /* parts of one picture, put together *
 #define PMR_MESSAGE_NO_CAUSTIC_PHOTONS 102  /* specular surfaces, but an empty caustic map */
 #define PMR_MESSAGE_BAD_VALUES 103          /* NaN or infinite samples were replaced by 0 */
 #define PMR_MESSAGE_LOST_PHOTONS 104        /* photons ended for a numerical reason */
-#define PMR_MESSAGE_DEGENERATE_GEOMETRY 105 /* zero-area triangles or unusable normals dropped */
+#define PMR_MESSAGE_DEGENERATE_GEOMETRY 105 /* zero-area or doubled triangles, unusable normals */
 #define PMR_MESSAGE_TEXTURE 106             /* a texture look-up failed */
 #define PMR_MESSAGE_NOT_COVERED 107         /* a class of light paths that no estimator covers */
 #define PMR_MESSAGE_CHECKPOINT 108 /* a checkpoint was torn, or can't be written any more */

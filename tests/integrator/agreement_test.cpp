@@ -184,6 +184,24 @@ TEST(Agreement, BentMirrorsAndGlass) {
         }
 }
 
+// A block of glass that stands exactly on the floor, and a lamp in the ceiling's plane. Where
+// chance told which one a ray met, path lost all of the caustic and had 1.11 of the indirect light.
+TEST(Agreement, GlassOnTheFloorAndALampInTheCeiling) {
+    SceneMaker maker = cornellBox();
+    maker.description.instances.pop_back();  // its lamp
+    maker.quad({-0.5, 1, -0.5}, {1, 0, 0}, {0, 0, 1}, maker.diffuse({}, Rgb(8.0f)));
+    maker.box({-0.5, -1, -0.5}, {0.3, -0.3, 0.3}, maker.material(glass()), false);
+    const auto scene = maker.build();
+    RenderSettings settings = smallFrame(24, 24, kPhoton, 8, 4);
+    settings.photons = 60'000;
+    const MeasuredLayers photon = measure(scene, settings);
+    const MeasuredLayers path = measure(scene, smallFrame(24, 24, kPath, 8, 6));
+    EXPECT_TRUE(agree(photon.direct, path.direct, 0));
+    EXPECT_TRUE(agree(photon.emission, path.emission, 0));
+    EXPECT_TRUE(agree(photon.indirect, path.indirect, 0.005));
+    EXPECT_TRUE(agree(photon.caustic, path.caustic, 0.005));
+}
+
 // Gather rays that start below the surface have no value; the others of the same sample keep
 // theirs. In a furnace, where there is little noise to hide in.
 TEST(Agreement, GatherRaysOverABentFloor) {

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "integrator/scene/coincident_faces.h"
+
+#include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_reduce.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "integrator/sampling/warps.h"
+#include "integrator/scene/shape_record.h"
+
+namespace pm {
+
+namespace {
+
+// Faces that are looked at before the next look whether to go on.
+constexpr std::size_t kGrain = 1024;
+// Points of all faces together, where that is enough, and the most of one.
+constexpr std::size_t kPoints = 1 << 16;
+constexpr std::uint32_t kMostPoints = 256;
+// A hit is another one too where they are no farther apart than this times what either may be off.
+constexpr float kWindow = 4.0f;
+// Of the way along a ray, beside what its end may be off.
+constexpr float kRoundings = 4 * 0x1p-24f;
+
+// Additive recurrence of the plastic number, in [0, 1).
+Vec2f pointInSquare(std::uint32_t i) {
+    const double x = 0.5 + 0.7548776662466927 * i, y = 0.5 + 0.5698402909980532 * i;
+    return {static_cast<float>(x - std::floor(x)), static_cast<float>(y - std::floor(y))};
+}
+
+}  // namespace
+
+// What is found on some faces.
+struct Scene::CoincidentFaces::Found {
+    std::vector<Face> faces;
+    std::size_t doubledLamps = 0, doubledGlass = 0;
+
+    void join(const Found& other) {
+        faces.insert(faces.end(), other.faces.begin(), other.faces.end());
+        doubledLamps += other.doubledLamps;
+        doubledGlass += other.doubledGlass;
+    }
+};
+
+Scene::CoincidentFaces::Rank Scene::CoincidentFaces::rankOf(const Scene& scene, const Face& face) {
+    const ShapeRecord& record = scene.m_shapes[face.shape];
+    if (record.lightOf(face.primitive) != kNoLight) return Rank::kShining;
+    const MaterialDescription& material = scene.material(record.materialOf(face.primitive));
+    return material.kind == MaterialKind::kDielectric ? Rank::kGlass : Rank::kOpaque;
+}
+
+// Whether a face on whose side a point of another was found lies in that one's plane, as far as
+// rays can tell.
+bool Scene::CoincidentFaces::isOn(const Scene& scene, const Face& face, const Surface& point) {
+    const ShapeRecord& record = scene.m_shapes[face.shape];
+    const Facet& facet = record.facets[face.primitive];
+    if (std::abs(dot(facet.normal, point.geometricNormal)) < 0.9f) return false;
+    const Vec3d way = Vec3d(point.position) - record.corner(face.primitive).vertex;
+    const float off = point.offset + surfaceOffset(point.position, facet.reach);
+    return std::abs(dot(way, Vec3d(facet.normal))) <= 2.0 * static_cast<double>(off);
+}
+
+void Scene::CoincidentFaces::search(const Scene& scene, const Face& face, std::uint32_t points,
+                                    Found& found) {
+    const ShapeRecord& record = scene.m_shapes[face.shape];
+    const Corner corner = record.corner(face.primitive);
+    if (!(lengthSquared(cross(corner.e1, corner.e2)) > 0)) return;
+    const Rank rank = rankOf(scene, face);
+    bool isAmong = false, isDoubled = false;
+    for (std::uint32_t i = 0; i < points; ++i) {
+        // The first one is the middle.
+        const Vec2f b = i == 0 ? Vec2f{1.0f / 3, 1.0f / 3} : sampleTriangle(pointInSquare(i));
+        Surface point;
+        scene.surfaceOnTriangle(record, face.primitive, corner, static_cast<double>(b.x),
+                                static_cast<double>(b.y), point);
+        const float reach =
+            kWindow * surfaceOffset(point.position, static_cast<float>(scene.m_radius));
+        const Vec3f& normal = point.geometricNormal;
+        const Ray through{point.position + normal * reach, -normal, 2 * reach};
+        scene.m_tracer.forEachHit(through, 0.0f, [&](const RayHit& hit) {
+            const Face other{hit.shape, hit.primitive};
+            if (other == face || !isOn(scene, other, point)) return;
+            found.faces.push_back(other);
+            isAmong = true;
+            const bool facesAlike =
+                dot(normal, scene.m_shapes[other.shape].facets[other.primitive].normal) > 0.0f;
+            isDoubled |= rankOf(scene, other) == rank && (rank == Rank::kGlass || facesAlike);
+        });
+    }
+    if (isAmong) found.faces.push_back(face);
+    if (isDoubled) ++(rank == Rank::kGlass ? found.doubledGlass : found.doubledLamps);
+}
+
+void Scene::CoincidentFaces::addNotices(const Found& found, std::vector<Notice>& notices) {
+    if (found.doubledLamps > 0)
+        notices.push_back(
+            {NoticeCode::kDegenerateGeometry,
+             fmt::format("{} triangles that shine lie on others that shine the same way: they "
+                         "light twice and are seen once; leave one of each out",
+                         found.doubledLamps)});
+    if (found.doubledGlass > 0)
+        notices.push_back(
+            {NoticeCode::kDegenerateGeometry,
+             fmt::format("{} triangles of glass lie on others of glass: light is bent by one of "
+                         "each two only; leave a gap, or one of each out",
+                         found.doubledGlass)});
+}
+
+std::unique_ptr<const Scene::CoincidentFaces> Scene::CoincidentFaces::find(
+    const Scene& scene, std::vector<Notice>& notices, const CancelCheck& cancel) {
+    std::vector<Face> special;
+    for (std::uint32_t shape = 0; shape < scene.m_shapes.size(); ++shape) {
+        const ShapeRecord& record = scene.m_shapes[shape];
+        if (!record.mesh) continue;
+        const bool mayBe = std::ranges::any_of(record.materials, [&](std::uint32_t m) {
+            return scene.material(m).kind == MaterialKind::kDielectric ||
+                   !isBlack(scene.material(m).emission);
+        });
+        if (!mayBe) continue;
+        for (std::uint32_t i = 0; i < record.mesh->triangles.size(); ++i)
+            if (rankOf(scene, {shape, i}) != Rank::kOpaque) special.push_back({shape, i});
+    }
+    if (special.empty()) return nullptr;
+    const auto points = static_cast<std::uint32_t>(
+        std::clamp<std::size_t>(kPoints / special.size(), 1, kMostPoints));
+    Found all = tbb::parallel_reduce(
+        tbb::blocked_range<std::size_t>(0, special.size(), kGrain), Found{},
+        [&](const auto& range, Found found) {
+            cancel.throwIfSet("looking for faces that lie on others");
+            for (std::size_t i = range.begin(); i < range.end(); ++i)
+                search(scene, special[i], points, found);
+            return found;
+        },
+        [](Found a, const Found& b) {
+            a.join(b);
+            return a;
+        });
+    addNotices(all, notices);
+    if (all.faces.empty()) return nullptr;
+    return std::unique_ptr<const CoincidentFaces>(new CoincidentFaces(scene, all.faces));
+}
+
+Scene::CoincidentFaces::CoincidentFaces(const Scene& scene, const std::vector<Face>& faces)
+    : m_scene(scene), m_isAmong(scene.m_shapes.size()) {
+    for (const Face& face : faces) {
+        auto& ofShape = m_isAmong[face.shape];
+        if (ofShape.empty()) ofShape.resize(scene.m_shapes[face.shape].mesh->triangles.size());
+        ofShape[face.primitive] = true;
+    }
+}
+
+RayHit Scene::CoincidentFaces::chosen(const Ray& ray, const RayHit& nearest) const {
+    const auto& isAmong = m_isAmong[nearest.shape];
+    if (isAmong.empty() || !isAmong[nearest.primitive]) return nearest;
+    const Facet& facet = m_scene.m_shapes[nearest.shape].facets[nearest.primitive];
+    const float slope = std::abs(dot(facet.normal, ray.direction));
+    const float offset = surfaceOffset(ray.origin + ray.direction * nearest.t, facet.reach);
+    const float window = kWindow * (offset / slope + kRoundings * nearest.t);
+    if (!(window < nearest.t)) return nearest;  // along the face, or from it
+    RayHit best = nearest;
+    auto bestOrder = orderFor(ray, {nearest.shape, nearest.primitive});
+    m_scene.m_tracer.forEachHit({ray.origin, ray.direction, nearest.t + window}, nearest.t - window,
+                                [&](const RayHit& hit) {
+                                    const Face face{hit.shape, hit.primitive};
+                                    const auto order = orderFor(ray, face);
+                                    if (!(order < bestOrder)) return;
+                                    bestOrder = order;
+                                    best = hit;
+                                });
+    return best;
+}
+
+std::pair<int, Scene::CoincidentFaces::Face> Scene::CoincidentFaces::orderFor(
+    const Ray& ray, const Face& face) const {
+    Rank rank = rankOf(m_scene, face);
+    const Vec3f& normal = m_scene.m_shapes[face.shape].facets[face.primitive].normal;
+    // Lamps shine from their fronts only.
+    if (rank == Rank::kShining && dot(normal, ray.direction) >= 0.0f) rank = Rank::kOpaque;
+    return {-static_cast<int>(rank), face};
+}
+
+std::uint64_t Scene::CoincidentFaces::memoryBytes() const {
+    std::uint64_t bytes = m_isAmong.size() * sizeof(m_isAmong[0]);
+    for (const std::vector<bool>& one : m_isAmong) bytes += one.size() / 8;
+    return bytes;
+}
+
+}  // namespace pm
