@@ -79,11 +79,11 @@ void addNumbers(std::string_view word, std::string_view rest, std::size_t wanted
         if (!parseNumber(number, value) || !std::isfinite(value)) finite = false;
         numbers.emplace_back(number);
     }
-    if (!finite || numbers.empty()) {
+    // A colour of one number is grey; of two, two channels are anybody's guess.
+    if (!finite || (numbers.size() != 1 && numbers.size() != wanted)) {
         section.notUnderstood.insert_or_assign(std::string(word), whole);
         return;
     }
-    // A colour of one number is grey.
     numbers.resize(wanted, numbers.front());
     section.cleaned.append(word);
     for (const std::string& number : numbers) section.cleaned.append(" ").append(number);

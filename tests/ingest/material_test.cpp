@@ -85,6 +85,9 @@ TEST(Material, valuesOutOfRangeAreClampedWithTheLine) {
     const Result r = read("Kd 1.5 -0.5 0.5\n");
     EXPECT_EQ(r.material.diffuse, (Colour{1, 0, 0.5f}));
     EXPECT_TRUE(r.heard.has(Warning::kMaterialValue, "a.mtl:2: material m: Kd 1.5 -0.5 0.5"));
+    EXPECT_TRUE(
+        read("Kd 0.5 0.2 # two\n").heard.has(Warning::kMaterialValue, "'Kd 0.5 0.2 # two'"));
+    EXPECT_EQ(read("Kd 0.5\n").material.diffuse, (Colour{0.5f, 0.5f, 0.5f}));
     EXPECT_TRUE(read("Kd nan 0 0\n").heard.has(Warning::kMaterialValue, "'Kd nan 0 0'"));
     EXPECT_EQ(read("Ke -1 2 3\n").material.emission, (Colour{0, 2, 3}));
     EXPECT_TRUE(read("Ke -1 2 3\n").heard.has(Warning::kMaterialValue, "Ke -1 is not in [0, "));
