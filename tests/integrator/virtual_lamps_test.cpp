@@ -17,13 +17,14 @@
 #include "integrator/sampling/warps.h"
 #include "integrator/transport/final_gather.h"
 #include "tests/integrator/scene_maker.h"
+#include "tests/integrator/statistics.h"
 
 namespace pm::test {
 namespace {
 
 constexpr double kReflectance = 0.6, kIrradiance = 2.0;
 constexpr std::uint32_t kRays = 64;
-constexpr int kReplicates = 400;
+constexpr std::uint32_t kReplicates = 400;
 
 // A rectangle of the floor z = 0 that photons light evenly.
 struct Patch {
@@ -74,21 +75,19 @@ std::shared_ptr<const Scene> threeWalls(bool withScreen = false, double scale = 
     return maker.build();
 }
 
-struct Found {
-    double mean = 0, standardError = 0;
-    double spread = 0;  // of one, over the mean
-};
+// Of one number, over the mean.
+double spreadOf(const Moments& moments) {
+    return std::sqrt(moments.variance) / moments.mean;
+}
 
 // Irradiance at a place, by sets of rays. lamps: null: `sites`, which then hold the caustics,
 // alone.
-Found gather(const Scene& scene, const IrradianceSites& sites, const VirtualLamps* lamps,
-             const VirtualLamps::Place& place) {
+Moments gather(const Scene& scene, const IrradianceSites& sites, const VirtualLamps* lamps,
+               const VirtualLamps::Place& place) {
     const Frame frame(place.shadingNormal);
     const GatherEnds ends{sites, lamps, kRays};
-    double sum = 0, squares = 0;
-    for (int replicate = 0; replicate < kReplicates; ++replicate) {
+    return momentsOf(kReplicates, [&](std::uint64_t sequence) {
         double irradiance = 0;
-        const auto sequence = static_cast<std::uint64_t>(replicate);
         for (std::uint32_t i = 0; i < kRays; ++i) {
             Sampler sampler(7, 0, sequence, i);
             const Vec3f direction =
@@ -102,13 +101,8 @@ Found gather(const Scene& scene, const IrradianceSites& sites, const VirtualLamp
         if (lamps)
             irradiance += static_cast<double>(
                 lamps->sampled(place, kRays, Sampler(8, 0, sequence, 0).next1D()).g);
-        sum += irradiance, squares += irradiance * irradiance;
-    }
-    Found found{sum / kReplicates};
-    const double variance = squares / kReplicates - found.mean * found.mean;
-    found.standardError = std::sqrt(variance / kReplicates);
-    found.spread = std::sqrt(variance) / found.mean;
-    return found;
+        return irradiance;
+    });
 }
 
 VirtualLamps::Place placeAt(const Vec3f& position, const Vec3f& normal) {
@@ -142,15 +136,15 @@ TEST(VirtualLamps, WithGatherRaysTheyBringAllThereIs) {
         const float radius = static_cast<float>(3 * (c.patch.x1 - c.patch.x0) / c.patch.cells);
         const VirtualLamps lamps(*scene, caustics, radius, nullptr, 1.0f, 5);
         const IrradianceSites sites(*scene, caustics, radius);
-        const Found found = gather(*scene, empty, &lamps, c.place);
-        const Found alone = gather(*scene, sites, nullptr, c.place);
+        const Moments found = gather(*scene, empty, &lamps, c.place);
+        const Moments alone = gather(*scene, sites, nullptr, c.place);
         const double want = c.patch.irradianceAt(c.place.position, c.place.shadingNormal);
         fmt::print("    {}: {:.4f} of all +- {:.4f}, spread {:.4f}, of gather rays alone {:.4f}\n",
-                   c.what, found.mean / want, found.standardError / want, found.spread,
-                   alone.spread);
+                   c.what, found.mean / want, found.standardError / want, spreadOf(found),
+                   spreadOf(alone));
         EXPECT_NEAR(found.mean / want, 1, 4 * found.standardError / want + c.bias) << c.what;
-        EXPECT_LT(found.spread, c.mostSpread) << c.what;
-        EXPECT_GT(alone.spread, c.leastGain * found.spread) << c.what;
+        EXPECT_LT(spreadOf(found), c.mostSpread) << c.what;
+        EXPECT_GT(spreadOf(alone), c.leastGain * spreadOf(found)) << c.what;
     }
 }
 
