@@ -134,7 +134,7 @@ void Bsdf::setMirror(const Scene& scene, const Surface& surface) {
         return;
     }
     m_hasPhotonWays = m_transport == Transport::kPhotons && m_nd != m_ng;
-    m_reflectance[index(Lobe::kReflection)] = mirrorColour(clamp01(dot(m_out, m_ns))) * m_opacity;
+    m_reflectance[index(Lobe::kReflection)] = shareSeenFrom(m_out, Lobe::kReflection);
 }
 
 Rgb Bsdf::mirrorColour(float cosine) const {

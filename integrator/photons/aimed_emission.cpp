@@ -73,12 +73,6 @@ double worthOfShare(double share) {
     return std::clamp(std::sqrt(share), kLeastWorth, kMostWorth);
 }
 
-// Points of the unit square, evenly spread: the generalised golden ratio (Roberts 2018).
-Vec2f spreadPoint(std::uint32_t i) {
-    const double x = 0.5 + 0.7548776662466927 * i, y = 0.5 + 0.5698402909980532 * i;
-    return {static_cast<float>(x - std::floor(x)), static_cast<float>(y - std::floor(y))};
-}
-
 }  // namespace
 
 AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights,

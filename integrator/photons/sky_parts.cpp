@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "integrator/sampling/pinned_math.h"
+#include "integrator/sampling/warps.h"
 
 namespace pm {
 
@@ -19,16 +20,6 @@ struct Candidate {
     Vec2f u;
     float worth;
 };
-
-// u moved by i steps of an even sequence, the generalised golden ratio (Roberts 2018), round the
-// unit square.
-Vec2f moved(Vec2f u, std::uint32_t i) {
-    const auto around = [](double v) {
-        return std::min(static_cast<float>(v - std::floor(v)), 1.0f - 0x1p-24f);
-    };
-    return {around(static_cast<double>(u.x) + 0.7548776662466927 * i),
-            around(static_cast<double>(u.y) + 0.5698402909980532 * i)};
-}
 
 }  // namespace
 
@@ -46,7 +37,7 @@ float SkyParts::choose(const Environment& environment, float& uChoice, Vec2f& uD
     float total = 0.0f;
     for (std::uint32_t i = 0; i < kDirections; ++i) {
         Candidate& candidate = candidates[i];
-        candidate.u = moved(uDirection, i);
+        candidate.u = spreadPoint(i, uDirection);
         float pdf;
         candidate.worth = m_worth[partOf(environment.sample(candidate.u, pdf))];
         total += candidate.worth;

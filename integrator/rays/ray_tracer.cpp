@@ -200,6 +200,13 @@ void fill(RTCRay& out, const Ray& ray) {
     out.flags = 0;
 }
 
+// That has met nothing yet.
+void fill(RTCRayHit& out, const Ray& ray) {
+    fill(out.ray, ray);
+    out.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    out.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+}
+
 }  // namespace
 
 double intersectSphere(const Vec3d& origin, const Vec3d& direction, double tMax,
@@ -333,9 +340,7 @@ void RayTracer::commit(const CancelCheck& cancel) {
 bool RayTracer::intersect(const Ray& ray, RayHit& hit) const {
     if (!usable(ray)) return false;
     alignas(16) RTCRayHit rayHit;
-    fill(rayHit.ray, ray);
-    rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    fill(rayHit, ray);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcIntersect1(m_impl->scene, &context, &rayHit);
@@ -357,10 +362,8 @@ bool RayTracer::occluded(const Ray& ray) const {
 void RayTracer::visitHits(const Ray& ray, float tMin, HitVisitor visit, const void* user) const {
     if (!usable(ray)) return;
     alignas(16) RTCRayHit rayHit;
-    fill(rayHit.ray, ray);
+    fill(rayHit, ray);
     rayHit.ray.tnear = std::max(0.0f, tMin);
-    rayHit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    rayHit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
     AllHits all{{}, visit, user};
     rtcInitIntersectContext(&all.context);
     all.context.filter = passOver;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 
 #include "integrator/sampling/pinned_math.h"
@@ -73,6 +74,16 @@ inline Vec2f sampleTriangle(Vec2f u) {
 inline float oneMinusCosOfSphere(double r2, double d2) {
     const double sin2 = r2 / d2;
     return static_cast<float>(sin2 / (1.0 + std::sqrt(1.0 - sin2)));
+}
+
+// Points of the unit square, [0,1), evenly spread: `start` moved by i steps of the generalised
+// golden ratio (Roberts 2018), round the square.
+inline Vec2f spreadPoint(std::uint32_t i, Vec2f start = {0.5f, 0.5f}) {
+    const auto around = [](double v) {
+        return std::min(static_cast<float>(v - std::floor(v)), 1.0f - 0x1p-24f);
+    };
+    return {around(static_cast<double>(start.x) + 0.7548776662466927 * i),
+            around(static_cast<double>(start.y) + 0.5698402909980532 * i)};
 }
 
 // Weight of the strategy with density a against the one with density b: the power heuristic.

@@ -27,12 +27,6 @@ constexpr float kWindow = 4.0f;
 // Of the way along a ray, beside what its end may be off.
 constexpr float kRoundings = 4 * 0x1p-24f;
 
-// Additive recurrence of the plastic number, in [0, 1).
-Vec2f pointInSquare(std::uint32_t i) {
-    const double x = 0.5 + 0.7548776662466927 * i, y = 0.5 + 0.5698402909980532 * i;
-    return {static_cast<float>(x - std::floor(x)), static_cast<float>(y - std::floor(y))};
-}
-
 }  // namespace
 
 // What is found on some faces.
@@ -54,8 +48,8 @@ Scene::CoincidentFaces::Rank Scene::CoincidentFaces::rankOf(const Scene& scene, 
     return material.kind == MaterialKind::kDielectric ? Rank::kGlass : Rank::kOpaque;
 }
 
-// Whether a face on whose side a point of another was found lies in that one's plane, as far as
-// rays can tell.
+// Whether a point of another face lies in a face's plane, and both lie alike, as far as rays can
+// tell.
 bool Scene::CoincidentFaces::isOn(const Scene& scene, const Face& face, const Surface& point) {
     const ShapeRecord& record = scene.m_shapes[face.shape];
     const Facet& facet = record.facets[face.primitive];
@@ -74,7 +68,7 @@ void Scene::CoincidentFaces::search(const Scene& scene, const Face& face, std::u
     bool isAmong = false, isDoubled = false;
     for (std::uint32_t i = 0; i < points; ++i) {
         // The first one is the middle.
-        const Vec2f b = i == 0 ? Vec2f{1.0f / 3, 1.0f / 3} : sampleTriangle(pointInSquare(i));
+        const Vec2f b = i == 0 ? Vec2f{1.0f / 3, 1.0f / 3} : sampleTriangle(spreadPoint(i));
         Surface point;
         scene.surfaceOnTriangle(record, face.primitive, corner, static_cast<double>(b.x),
                                 static_cast<double>(b.y), point);

@@ -156,6 +156,16 @@ TEST(Agreement, BentShadingNormals) {
     }
 }
 
+struct PhotonAndPath {
+    MeasuredLayers photon, path;
+};
+
+PhotonAndPath photonAndPath(const std::shared_ptr<const Scene>& scene) {
+    RenderSettings settings = smallFrame(24, 24, kPhoton, 8, 4);
+    settings.photons = 60'000;
+    return {measure(scene, settings), measure(scene, smallFrame(24, 24, kPath, 8, 6))};
+}
+
 // Caustics of a mirror or a pane of glass whose normals lean, so far too that lamp or camera are
 // behind some of them: by one normal alone 1.15 of the mirror's, 1.04 and 1.08 of the pane's.
 TEST(Agreement, BentMirrorsAndGlass) {
@@ -173,11 +183,7 @@ TEST(Agreement, BentMirrorsAndGlass) {
                 maker.quad({-0.6, -0.5, -0.6}, {1.2, 0, 0}, {0, 0, 1.2}, material);
                 maker.bendNormals({0.2, -1, 0.4});
             }
-            const auto scene = maker.build();
-            RenderSettings settings = smallFrame(24, 24, kPhoton, 8, 4);
-            settings.photons = 60'000;
-            const MeasuredLayers photon = measure(scene, settings);
-            const MeasuredLayers path = measure(scene, smallFrame(24, 24, kPath, 8, 6));
+            const auto [photon, path] = photonAndPath(maker.build());
             EXPECT_TRUE(agree(photon.direct, path.direct, 0));
             EXPECT_TRUE(agree(photon.indirect, path.indirect, 0));
             EXPECT_TRUE(agree(photon.caustic, path.caustic, 0.005));
@@ -191,11 +197,7 @@ TEST(Agreement, GlassOnTheFloorAndALampInTheCeiling) {
     maker.description.instances.pop_back();  // its lamp
     maker.quad({-0.5, 1, -0.5}, {1, 0, 0}, {0, 0, 1}, maker.diffuse({}, Rgb(8.0f)));
     maker.box({-0.5, -1, -0.5}, {0.3, -0.3, 0.3}, maker.material(glass()), false);
-    const auto scene = maker.build();
-    RenderSettings settings = smallFrame(24, 24, kPhoton, 8, 4);
-    settings.photons = 60'000;
-    const MeasuredLayers photon = measure(scene, settings);
-    const MeasuredLayers path = measure(scene, smallFrame(24, 24, kPath, 8, 6));
+    const auto [photon, path] = photonAndPath(maker.build());
     EXPECT_TRUE(agree(photon.direct, path.direct, 0));
     EXPECT_TRUE(agree(photon.emission, path.emission, 0));
     EXPECT_TRUE(agree(photon.indirect, path.indirect, 0.005));
