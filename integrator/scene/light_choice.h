@@ -32,8 +32,15 @@ class LightChoice {
     // far ones still gets its photons.
     static constexpr double kEvenShare = 0.1;
 
+    // As many cells of [0, 1] as lights: the one that a number lies in says about where to look.
+    std::size_t cellOf(float u) const {
+        const auto cell = static_cast<double>(u) * static_cast<double>(m_cumulative.size());
+        return std::min(static_cast<std::size_t>(cell), m_cumulative.size() - 1);
+    }
+
     std::vector<float> m_cumulative;  // of the probabilities, last is 1
     std::vector<float> m_probabilities;
+    std::vector<std::uint32_t> m_firsts;  // of each cell: the light in whose share it begins
 };
 
 inline LightChoice::LightChoice(std::span<const double> weights) {
@@ -56,12 +63,21 @@ inline LightChoice::LightChoice(std::span<const double> weights) {
         m_cumulative.push_back(static_cast<float>(rounded));
         before = rounded;
     }
+    m_firsts.assign(weights.size() + 1, static_cast<std::uint32_t>(weights.size() - 1));
+    // Down to the light in whose share a cell begins or that begins within it.
+    for (std::size_t i = weights.size(); i-- > 0;) {
+        const float begin = i > 0 ? m_cumulative[i - 1] : 0.0f;
+        for (std::size_t cell = cellOf(begin); cell <= cellOf(m_cumulative[i]); ++cell)
+            m_firsts[cell] = static_cast<std::uint32_t>(i);
+    }
 }
 
 inline std::uint32_t LightChoice::choose(float u, float& probability) const {
-    const auto it = std::upper_bound(m_cumulative.begin(), m_cumulative.end(), u);
-    const auto index = static_cast<std::size_t>(std::min<std::ptrdiff_t>(
-        it - m_cumulative.begin(), static_cast<std::ptrdiff_t>(m_cumulative.size()) - 1));
+    const std::size_t cell = cellOf(u);
+    const auto first = m_cumulative.begin();
+    // The last light that is looked at need not be compared with.
+    const auto index = static_cast<std::size_t>(
+        std::upper_bound(first + m_firsts[cell], first + m_firsts[cell + 1], u) - first);
     probability = m_probabilities[index];
     return static_cast<std::uint32_t>(index);
 }

@@ -83,16 +83,24 @@ bool LightSampler::emitFromAfar(const Light& light, float probability, Vec2f uPo
 bool LightSampler::emit(float uLight, Vec2f uPoint, Vec2f uDirection, EmittedPhoton& photon) const {
     if (empty()) return false;
     float probability;
-    const Light& light = m_scene.lights()[m_choice.choose(uLight, probability)];
+    const std::size_t index = m_choice.choose(uLight, probability);
+    const LampTriangle& lamp = m_scene.lampTriangle(index);
+    // Uniform area density 1/A and direction density cos/pi leave the radiance times pi A.
+    const auto emitFrom = [&](const LampPoint& point, const Rgb& radiance, float area) {
+        const Frame frame(point.normal);
+        photon.ray = {point.position + point.normal * point.offset,
+                      frame.toWorld(sampleCosineHemisphere(uDirection))};
+        photon.flux = radiance * (kPi * area / probability);
+        return !isBlack(photon.flux);
+    };
+    if (lamp)
+        return emitFrom(lamp.point(uPoint), m_scene.material(lamp.material).emission, lamp.area);
+    const Light& light = m_scene.lights()[index];
     if (light.isAtPoint()) return emitFromPoint(light, probability, uDirection, photon);
     if (light.isFar()) return emitFromAfar(light, probability, uPoint, uDirection, photon);
     const Surface point = m_scene.pointOnLight(light, uPoint);
-    const Frame frame(point.geometricNormal);
-    const Vec3f direction = frame.toWorld(sampleCosineHemisphere(uDirection));
-    photon.ray = {rayOrigin(point, point.geometricNormal), direction};
-    // Uniform area density 1/A and direction density cos/pi leave the radiance times pi A.
-    photon.flux = frontRadiance(point) * (kPi * light.area / probability);
-    return !isBlack(photon.flux);
+    return emitFrom({point.position, point.offset, point.geometricNormal}, frontRadiance(point),
+                    light.area);
 }
 
 }  // namespace pm

@@ -15,7 +15,7 @@ namespace {
 // A leaf holds at least half as many places.
 constexpr std::size_t kPlacesOfALeaf = 4;
 // Shadow rays to a cluster from the places of a leaf.
-constexpr std::uint32_t kLooks = 4;
+constexpr std::uint32_t kLooks = 2;
 // ... or one, to those from which less than this share of the mean may be expected.
 constexpr float kLittle = 0.3f;
 // What is known of a cluster from the cell above counts for so many of them.

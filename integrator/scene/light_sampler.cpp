@@ -176,10 +176,9 @@ void LightSampler::chooseGuided(const Receiver& receiver, std::span<ChosenLight>
         one.u.x = toBelowOne(descents[i].u);
         one.light = descents[i].node;
         one.probability = descents[i].probability;
-        if (kMost > 1) __builtin_prefetch(&m_scene.lights()[one.light]);
+        // Of one alone there is no time to fetch anything in.
+        if (kMost > 1) __builtin_prefetch(&m_scene.lampTriangle(one.light));
     }
-    if (kMost == 1) return;  // no time to fetch anything in
-    for (const ChosenLight& one : chosen) m_scene.prefetch(m_scene.lights()[one.light]);
 }
 
 float LightSampler::probability(const Surface& surface, const Vec3f& side,
@@ -218,12 +217,20 @@ bool LightSampler::sample(const Surface& surface, const Vec3f& side, Vec2f uPoin
 
 bool LightSampler::sample(const ChosenLight& chosen, const Surface& surface,
                           LightSample& sample) const {
-    const Light& light = m_scene.lights()[chosen.light];
     const float probability = chosen.probability;
     const Vec2f uPoint = chosen.u;
+    if (const LampTriangle& lamp = m_scene.lampTriangle(chosen.light)) {
+        sample.radiance = m_scene.material(lamp.material).emission;
+        return sampleTriangle(surface, lamp.point(uPoint), probability, lamp.area, sample);
+    }
+    const Light& light = m_scene.lights()[chosen.light];
     switch (light.kind) {
-        case Light::Kind::kTriangle:
-            return sampleTriangle(surface, light, probability, uPoint, sample);
+        case Light::Kind::kTriangle: {
+            const Surface point = m_scene.pointOnLight(light, uPoint);
+            sample.radiance = frontRadiance(point);
+            return sampleTriangle(surface, {point.position, point.offset, point.geometricNormal},
+                                  probability, light.area, sample);
+        }
         case Light::Kind::kSphere:
             return sampleSphere(surface, light, probability, uPoint, sample);
         case Light::Kind::kPoint:
@@ -236,20 +243,19 @@ bool LightSampler::sample(const ChosenLight& chosen, const Surface& surface,
     return false;
 }
 
-bool LightSampler::sampleTriangle(const Surface& surface, const Light& light, float probability,
-                                  Vec2f u, LightSample& sample) const {
-    const Surface point = m_scene.pointOnLight(light, u);
+// All of a sample but its radiance, by a point uniform over the area of a triangle.
+bool LightSampler::sampleTriangle(const Surface& surface, const LampPoint& point, float probability,
+                                  float area, LightSample& sample) const {
     const Vec3f toLight = point.position - surface.position;
     const float d2 = lengthSquared(toLight);
     if (!(d2 > 0.0f)) return false;
     sample.direction = toLight / std::sqrt(d2);
-    const float cosine = -dot(sample.direction, point.geometricNormal);
+    const float cosine = -dot(sample.direction, point.normal);
     if (!(cosine > 0.0f)) return false;
-    sample.radiance = emittedRadiance(point, -sample.direction);
-    sample.pdfSolidAngle = probability * d2 / (light.area * cosine);
+    sample.pdfSolidAngle = probability * d2 / (area * cosine);
     sample.isPoint = false;
     sample.shadowRay = shadowSegment(rayOrigin(surface, sample.direction), point.position,
-                                     point.geometricNormal, point.offset);
+                                     point.normal, point.offset);
     return true;
 }
 

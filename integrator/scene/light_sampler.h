@@ -137,8 +137,8 @@ class LightSampler {
     std::vector<Sighting> look(std::span<const LitPlace> places, std::uint64_t key,
                                const CancelCheck& cancel) const;
     std::optional<Sighting> lookFrom(const LitPlace& place, std::uint32_t node, Vec2f u) const;
-    bool sampleTriangle(const Surface& surface, const Light& light, float probability, Vec2f u,
-                        LightSample& sample) const;
+    bool sampleTriangle(const Surface& surface, const LampPoint& point, float probability,
+                        float area, LightSample& sample) const;
     bool sampleSphere(const Surface& surface, const Light& light, float probability, Vec2f u,
                       LightSample& sample) const;
     bool samplePoint(const Surface& surface, const Light& light, float probability,

@@ -17,7 +17,7 @@ namespace {
 
 // With more lights than a processor's near memory has nodes for, a leaf holds a run of lights ...
 constexpr std::size_t kMostSingle = 4096;
-constexpr std::size_t kRun = 6;
+constexpr std::size_t kRun = 12;
 // ... and a longer one with very many: nodes are no more than about twice this, some 32 MB.
 constexpr std::size_t kMostLeaves = 1 << 16;
 // A node is divided in the middle of its longest axis, unless one part then has less than this
@@ -317,7 +317,7 @@ std::uint32_t LightTree::end(std::uint32_t leaf) const {
 void LightTree::choose(const Receiver& receiver, std::span<LightDescent> descents) const {
     for (LightDescent& descent : descents) {
         descent.node = m_entries[descent.node];
-        if ((descent.node & kLeaf) == 0) __builtin_prefetch(&m_quads[descent.node]);
+        prefetch(descent.node);
     }
     for (bool any = true; any;) {
         any = false;
@@ -325,10 +325,21 @@ void LightTree::choose(const Receiver& receiver, std::span<LightDescent> descent
             if ((descent.node & kLeaf) != 0) continue;
             const LightQuad& quad = m_quads[descent.node];
             descent.node = quad.next[quad.choose(receiver, descent.u, descent.probability)];
+            prefetch(descent.node);
             any = true;
         }
     }
     for (LightDescent& descent : descents) chooseInLeaf(descent);
+}
+
+// Whether it is a leaf or not no branch can foresee.
+void LightTree::prefetch(std::uint32_t entry) const {
+    const bool isLeaf = (entry & kLeaf) != 0;
+    const void* const at = isLeaf ? static_cast<const void*>(&m_cumulative[entry & ~kLeaf])
+                                  : static_cast<const void*>(&m_quads[entry]);
+    __builtin_prefetch(at);
+    __builtin_prefetch(static_cast<const char*>(at) + 64);
+    __builtin_prefetch(static_cast<const char*>(at) + 128);
 }
 
 void LightTree::chooseInLeaf(LightDescent& descent) const {

@@ -85,6 +85,7 @@ class LightTree {
 
     void makeQuads();
     std::uint32_t end(std::uint32_t leaf) const;
+    void prefetch(std::uint32_t entry) const;
     void chooseInLeaf(LightDescent& descent) const;
 
     const Scene* m_scene = nullptr;

@@ -90,7 +90,7 @@ std::uint64_t Scene::memoryBytes() const {
     }
     if (m_environment) bytes += m_environment->memoryBytes();
     if (m_coincident) bytes += m_coincident->memoryBytes();
-    return bytes + m_lights.size() * sizeof(Light);
+    return bytes + m_lights.size() * (sizeof(Light) + sizeof(LampTriangle));
 }
 
 }  // namespace pm

@@ -11,6 +11,7 @@
 
 #include "integrator/rays/ray_tracer.h"
 #include "integrator/scene/environment.h"
+#include "integrator/scene/lamp_triangle.h"
 #include "integrator/scene/light.h"
 #include "integrator/scene/scene_description.h"
 #include "integrator/scene/surface.h"
@@ -73,8 +74,9 @@ class Scene {
     Surface pointOnLight(const Light& light, Vec2f u) const;
     // The point of a sphere shape that lies in a direction (of any length) from its centre.
     Surface pointOnSphere(std::uint32_t shape, const Vec3d& direction) const;
-    // Asks for what pointOnLight() reads first to be at hand soon.
-    void prefetch(const Light& light) const;
+    // Of the light of that number; says no of one that is no triangle, has a texture, or is
+    // intersected in double.
+    const LampTriangle& lampTriangle(std::size_t light) const { return m_lampTriangles[light]; }
     // The sphere of a sphere light (or of any sphere shape), scene's own coordinates.
     SphereShape sphere(std::uint32_t shape) const;
 
@@ -106,6 +108,7 @@ class Scene {
     SceneDescription m_description;
     std::vector<ShapeRecord> m_shapes;
     std::vector<Light> m_lights;
+    std::vector<LampTriangle> m_lampTriangles;  // of the lights
     std::size_t m_nearLightCount = 0;
     std::vector<Beam> m_beams;
     std::unique_ptr<const Environment> m_environment;

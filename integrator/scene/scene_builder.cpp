@@ -88,6 +88,7 @@ class Scene::Builder {
         addDirectionalLights(m_scene.m_description, m_scene.m_halfSize, m_scene.m_lights,
                              m_scene.m_beams);
         addEnvironment();
+        addLampTriangles();
         if (m_scene.m_lights.empty())
             m_scene.m_notices.push_back(
                 {NoticeCode::kNoLight, "nothing in the scene emits light: the picture is black"});
@@ -337,6 +338,26 @@ class Scene::Builder {
         light.powerMean = environment->integral() * area;
         m_scene.m_environment = std::move(environment);
         m_scene.m_lights.push_back(light);
+    }
+
+    void addLampTriangles() {
+        m_scene.m_lampTriangles.resize(m_scene.m_lights.size());
+        for (std::size_t i = 0; i < m_scene.m_lights.size(); ++i) {
+            goOn();
+            const Light& light = m_scene.m_lights[i];
+            if (light.kind != Light::Kind::kTriangle ||
+                m_scene.material(light.material).emissionTexture != kNoTexture)
+                continue;
+            const ShapeRecord& record = m_scene.m_shapes[light.shape];
+            if (record.exactOf(light.primitive)) continue;
+            LampTriangle& lamp = m_scene.m_lampTriangles[i];
+            for (std::size_t k = 0; k < 3; ++k)
+                lamp.vertices[k] = record.positions[record.mesh->triangles[light.primitive][k]];
+            lamp.normal = record.facets[light.primitive].normal;
+            lamp.reach = record.facets[light.primitive].reach;
+            lamp.area = light.area;
+            lamp.material = light.material;
+        }
     }
 
     static constexpr double kPiDouble = 3.14159265358979323846;

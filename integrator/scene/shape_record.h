@@ -39,14 +39,17 @@ struct Scene::ShapeRecord {
         return mesh ? materials[mesh->materials.empty() ? 0 : mesh->materials[primitive]]
                     : materials[0];
     }
+    // Null where it is not intersected in double.
+    const ExactTriangle* exactOf(std::uint32_t primitive) const {
+        if (exact.empty()) return nullptr;
+        const auto found =
+            std::ranges::lower_bound(exact, primitive, {}, &ExactTriangle::primitive);
+        return found != exact.end() && found->primitive == primitive ? &*found : nullptr;
+    }
     Corner corner(std::uint32_t primitive) const {
-        if (!exact.empty()) {
-            const auto found =
-                std::ranges::lower_bound(exact, primitive, {}, &ExactTriangle::primitive);
-            if (found != exact.end() && found->primitive == primitive)
-                return {found->corners[0], found->corners[1] - found->corners[0],
-                        found->corners[2] - found->corners[0]};
-        }
+        if (const ExactTriangle* const found = exactOf(primitive))
+            return {found->corners[0], found->corners[1] - found->corners[0],
+                    found->corners[2] - found->corners[0]};
         const auto& triangle = mesh->triangles[primitive];
         const Vec3d v0(positions[triangle[0]]);
         return {v0, Vec3d(positions[triangle[1]]) - v0, Vec3d(positions[triangle[2]]) - v0};

@@ -187,14 +187,6 @@ Surface Scene::pointOnSphere(std::uint32_t shape, const Vec3d& direction) const 
     return surface;
 }
 
-void Scene::prefetch(const Light& light) const {
-    if (light.kind != Light::Kind::kTriangle) return;
-    const ShapeRecord& record = m_shapes[light.shape];
-    __builtin_prefetch(&record.mesh->triangles[light.primitive]);
-    __builtin_prefetch(&record.facets[light.primitive]);
-    __builtin_prefetch(&record.lightOfPrimitive[light.primitive]);
-}
-
 SphereShape Scene::sphere(std::uint32_t shape) const {
     return m_shapes[shape].sphere;
 }

@@ -108,6 +108,45 @@ TEST(LightSampler, SphereDensity) {
     EXPECT_LT(test.pValue(sample, density(5)), kSignificance);
 }
 
+// The record of a triangle that shines says what its shape, facet and light do, to the bit, and
+// there is none of other lights. A huge one is intersected in double, and its vertices aren't
+// rounded: of it there is none either.
+TEST(LightSampler, TrianglesThatShineHaveTheirPoints) {
+    SceneMaker maker;
+    const auto lamp = maker.diffuse({}, {1, 2, 3});
+    maker.quad({-1, -1, 2}, {0, 2, 0.5}, {2, 0, 0}, lamp);
+    maker.meshSphere({3, 1, 2}, 0.4, maker.diffuse({}, {4, 1, 1}), false, 6);
+    // Turned inside out by its transform.
+    maker.description.instances.back().transform[0] = -1;
+    maker.sphere({3, 0, 1}, 0.7, lamp);
+    maker.pointLight({0, 0, 1}, Rgb(1.0f));
+    maker.quad({-1e7, -1e7, -1}, {2e7, 0, 3e6}, {0, 2e7, 1e6}, lamp);
+    const auto scene = maker.build();
+    Random random(7);
+    int triangles = 0, others = 0;
+    for (std::size_t i = 0; i < scene->lights().size(); ++i) {
+        const Light& light = scene->lights()[i];
+        const LampTriangle& record = scene->lampTriangle(i);
+        const bool isHuge = light.area > 1e6f;
+        ASSERT_EQ(static_cast<bool>(record), light.kind == Light::Kind::kTriangle && !isHuge) << i;
+        if (!record) {
+            ++others;
+            continue;
+        }
+        ++triangles;
+        EXPECT_EQ(record.area, light.area);
+        EXPECT_EQ(record.material, light.material);
+        const Vec2f u = random.next2D();
+        const LampPoint found = record.point(u);
+        const Surface expected = scene->pointOnLight(light, u);
+        EXPECT_EQ(found.position, expected.position);
+        EXPECT_EQ(found.offset, expected.offset);
+        EXPECT_EQ(found.normal, expected.geometricNormal);
+    }
+    EXPECT_GT(triangles, 100);
+    EXPECT_EQ(others, 4);
+}
+
 // On a triangle by the point met, in (b1, b2/(1-b1)), so that no bin straddles its edge.
 TEST(LightSampler, TriangleDensity) {
     const Lamps lamps;

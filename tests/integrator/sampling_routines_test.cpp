@@ -111,6 +111,40 @@ TEST(SamplingRoutines, LobesAreChosenByWhatTheyCarry) {
         }
 }
 
+// The light in whose share the number lies, whatever cell of the table the search begins with: also
+// at the shares' very borders, and where many lights share a cell.
+TEST(SamplingRoutines, LightsAreFoundWhereTheirSharesLie) {
+    Random random(5);
+    for (const std::size_t count :
+         {std::size_t{1}, std::size_t{2}, std::size_t{37}, std::size_t{5000}}) {
+        std::vector<double> weights(count);
+        for (double& weight : weights) {
+            const auto u = static_cast<double>(random.next());
+            weight = u * u * u * u;
+        }
+        weights[count / 2] += 1000;
+        const LightChoice choice(weights);
+        std::vector<float> ends;
+        double sum = 0;
+        for (std::size_t i = 0; i < count; ++i) {
+            sum += static_cast<double>(choice.probability(i));
+            ends.push_back(static_cast<float>(sum));
+        }
+        ASSERT_EQ(ends.back(), 1.0f);
+        const auto check = [&](float u) {
+            float stated;
+            const std::uint32_t light = choice.choose(u, stated);
+            ASSERT_GE(u, light > 0 ? ends[light - 1] : 0.0f) << count << " " << u;
+            ASSERT_LT(u, ends[light]) << count << " " << u;
+        };
+        for (const float end : ends) {
+            if (end < 1.0f) check(end);
+            check(std::nextafter(end, 0.0f));
+        }
+        for (int n = 0; n < 20'000; ++n) check(random.next());
+    }
+}
+
 // The choice among lights and what is left of the random number: together uniform over their
 // shares.
 TEST(SamplingRoutines, LightsAndWhatIsLeftOfTheNumber) {
