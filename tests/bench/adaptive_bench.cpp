@@ -233,7 +233,6 @@ void AdaptiveBench::measure(const AdaptiveScene& adaptive) {
 }
 
 void AdaptiveBench::run() {
-    m_report.paragraph(machineLine());
     m_report.table(
         fmt::format("Processor time of fixed level 3 over that of adaptive samples and of the "
                     "oracles, to the same true relMSE: {0} x {0} pixels, {1} seeds, 95 % intervals",

@@ -255,7 +255,6 @@ void EstimateBench::judgePeers(const NeutralScene& neutral) {
 }
 
 void EstimateBench::run() {
-    m_report.paragraph(machineLine());
     m_report.table(
         fmt::format("Estimated over true relMSE, {0} x {0} pixels, {1} seeds, {2:.0f} samples a "
                     "pixel and pass",

@@ -313,7 +313,6 @@ void PlanBench::measure(const PlanScene& planScene) {
 }
 
 void PlanBench::run() {
-    m_report.paragraph(machineLine());
     m_report.table(
         fmt::format("Processor time to an error over that of the plan as it is, {0} x {0} pixels: "
                     "mean of {1} seeds (least to most)",

@@ -119,7 +119,6 @@ int runProgram(int argc, char** argv) {
     try {
         if (quick) turns = std::min(turns, 3);
         Report report("pm_bench_progress");
-        report.paragraph(machineLine());
         report.table(fmt::format("Remaining time that is told over the true one, {} pixels, {} "
                                  "renders of each kind: median and quartiles",
                                  size, turns),
