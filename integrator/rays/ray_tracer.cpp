@@ -215,13 +215,17 @@ double intersectSphere(const Vec3d& origin, const Vec3d& direction, double tMax,
     const double a = lengthSquared(direction);
     if (!(a > 0.0)) return -1.0;
     const double b = -dot(f, direction);
+    const double f2 = lengthSquared(f), c = f2 - radius * radius;
+    // Most misses need no division: the sphere lies behind, or the line passes it by more than
+    // these few terms' roundings, 2^-52 each of a f2, can amount to.
+    if (b < 0.0 && c > 0.0) return -1.0;
+    if (a * c - b * b > 0x1p-46 * a * f2) return -1.0;
     // The squared distance of the ray's line from the centre, without cancellation for far spheres.
     const Vec3d nearest = f + direction * (b / a);
     const double discriminant = radius * radius - lengthSquared(nearest);
     if (discriminant < 0.0) return -1.0;
     const double q = b + std::copysign(std::sqrt(a * discriminant), b);
     if (q == 0.0) return -1.0;  // the origin is on the sphere and the ray touches it
-    const double c = lengthSquared(f) - radius * radius;
     double t0 = c / q, t1 = q / a;
     if (t0 > t1) std::swap(t0, t1);
     const double t = t0 > 0.0 ? t0 : t1;

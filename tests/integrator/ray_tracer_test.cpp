@@ -96,6 +96,50 @@ TEST(IntersectSphere, FromFarAway) {
     }
 }
 
+// The same hits and misses as by the formula in long double, near and far, from inside and out,
+// where the line passes the sphere's limb by more than a few roundings.
+TEST(IntersectSphere, AsInLongDouble) {
+    using Real = long double;
+    Random random(3);
+    int hits = 0, misses = 0, doubtful = 0;
+    for (int i = 0; i < 200'000; ++i) {
+        const double radius = std::exp(10.0 * static_cast<double>(random.next()) - 5.0);
+        const double away = radius * std::exp(14.0 * static_cast<double>(random.next()) - 2.0);
+        const Vec3d origin = Vec3d(sampleUniformSphere(random.next2D())) * away;
+        // To a point about the limb, or anywhere.
+        const double aside = radius * (1 + 0.5 * (static_cast<double>(random.next()) - 0.5));
+        const Vec3d at = Vec3d(sampleUniformSphere(random.next2D())) * aside;
+        const Vec3d direction = (at - origin) * (random.next() < 0.2f ? -1e-3 : 3.0);
+        const Real f2 =
+            Real(origin.x) * origin.x + Real(origin.y) * origin.y + Real(origin.z) * origin.z;
+        const Real a = Real(direction.x) * direction.x + Real(direction.y) * direction.y +
+                       Real(direction.z) * direction.z;
+        const Real b = -(Real(origin.x) * direction.x + Real(origin.y) * direction.y +
+                         Real(origin.z) * direction.z);
+        const Real c = f2 - Real(radius) * radius, discriminant = b * b - a * c;
+        if (std::abs(discriminant) < 1e-12L * a * f2) {
+            ++doubtful;
+            continue;
+        }
+        Real expected = -1;
+        if (discriminant > 0) {
+            const Real q = b + std::copysign(std::sqrt(discriminant), b);
+            const Real t0 = std::min(c / q, q / a), t1 = std::max(c / q, q / a);
+            expected = t0 > 0 ? t0 : t1;
+        }
+        const double t = intersectSphere(origin, direction, 1e300, Vec3d(0.0), radius);
+        ASSERT_EQ(t > 0, expected > 0) << i;
+        (expected > 0 ? hits : misses) += 1;
+        if (!(expected > 0)) continue;
+        // Roundings of 2^-53 beneath a root of 1e-12 and more.
+        ASSERT_NEAR(t, static_cast<double>(expected), 1e-9 * static_cast<double>(std::sqrt(f2 / a)))
+            << i;
+    }
+    EXPECT_GT(hits, 20'000);
+    EXPECT_GT(misses, 20'000);
+    EXPECT_LT(doubtful, 20'000);
+}
+
 TEST(IntersectSphere, RootsInRange) {
     const Vec3d c{0, 0, 0};
     EXPECT_NEAR(intersectSphere({0, 0, 0}, {0, 0, 1}, 10, c, 2), 2, 1e-15);     // from inside
