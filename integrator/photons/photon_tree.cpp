@@ -48,8 +48,8 @@ struct Box {
     }
 };
 
+// entries: at least one.
 Box boxOf(std::span<const Entry> entries) {
-    if (entries.empty()) return {};
 #if defined(__SSE2__)
     // The fourth numbers are indices, and what becomes of them is not looked at. Two boxes, as each
     // minimum waits for the one before.
@@ -145,7 +145,7 @@ class Builder {
         const Box box = boxOfPart(whole);
         m_tree.lo = box.lo;
         m_tree.hi = box.hi;
-        split(whole, box);
+        split(whole);
         // Giving back that much memory takes the system a while, too.
         tbb::parallel_invoke([&] { m_entries[0].reset(); }, [&] { m_entries[1].reset(); });
     }
@@ -270,46 +270,28 @@ class Builder {
         return pivot;
     }
 
-    // What holds either half of a part.
-    struct Halves {
-        Box left, right;
-
-        void add(const Halves& other) {
-            left.add(other.left);
-            right.add(other.right);
-        }
-    };
-
     // Into the other list: what precedes the pivot, then the rest, each in the order it was in.
-    // Looks at where a chunk went while that is at hand.
-    Halves partition(const Part& part, const Pivot& pivot, std::size_t leftCount, Lefts& lefts) {
+    void partition(const Part& part, const Pivot& pivot, std::size_t leftCount, Lefts& lefts) {
         const Entry* const from = m_entries[part.list].get();
         Entry* const to = m_entries[1 - part.list].get();
-        PerChunk<Halves> halves(part.chunks());
         forChunks(part, [&, pivot](std::size_t chunk, std::size_t begin, std::size_t end) {
-            const std::size_t firstLeft = part.begin + lefts[chunk];
-            const std::size_t firstRight = begin + leftCount - lefts[chunk];
-            std::size_t left = firstLeft, right = firstRight;
+            std::size_t left = part.begin + lefts[chunk];
+            std::size_t right = begin + leftCount - lefts[chunk];
             for (std::size_t i = begin; i < end; ++i) {
                 const std::size_t isLeft = pivot.follows(from[i]);
                 to[isLeft ? left : right] = from[i];
                 left += isLeft;
                 right += 1 - isLeft;
             }
-            halves[chunk] = {boxOf({to + firstLeft, left - firstLeft}),
-                             boxOf({to + firstRight, right - firstRight})};
         });
-        Halves all = halves[0];
-        for (std::size_t c = 1; c < part.chunks(); ++c) all.add(halves[c]);
-        return all;
     }
 
-    // box: of the part.
-    void split(const Part& part, const Box& box) {
+    void split(const Part& part) {
         if (part.leafCount == 1) {
             fillLeaf(part);
             return;
         }
+        const Box box = boxOfPart(part);
         const Vec3f size = box.hi - box.lo;
         const int axis = size.x >= size.y ? (size.x >= size.z ? 0 : 2) : (size.y >= size.z ? 1 : 2);
         const std::uint32_t leftLeaves = PhotonTree::leftLeaves(part.leafCount);
@@ -318,7 +300,7 @@ class Builder {
         const Pivot pivot =
             select(part, axis, Buckets(box.lo[axis], box.hi[axis], part.size()), leftCount, lefts);
         m_tree.nodes[part.node] = {pivot.position, static_cast<std::uint32_t>(axis)};
-        const Halves boxes = partition(part, pivot, leftCount, lefts);
+        partition(part, pivot, leftCount, lefts);
         const std::size_t middle = part.begin + leftCount;
         const Part left{2 * part.node + 1, part.firstLeaf, leftLeaves,
                         part.begin,        middle,         1 - part.list};
@@ -329,15 +311,13 @@ class Builder {
                          part.end,
                          1 - part.list};
         if (part.size() > kParallelSize) {
-            tbb::parallel_invoke([&] { split(left, boxes.left); },
-                                 [&] { split(right, boxes.right); });
+            tbb::parallel_invoke([&] { split(left); }, [&] { split(right); });
             return;
         }
-        for (const bool isLeft : {true, false}) {
-            const Part& half = isLeft ? left : right;
+        for (const Part& half : {left, right}) {
             if (part.leafCount > kPrefetchedLeaves && half.leafCount <= kPrefetchedLeaves)
                 prefetch(half);
-            split(half, isLeft ? boxes.left : boxes.right);
+            split(half);
         }
     }
 
