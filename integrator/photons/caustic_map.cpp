@@ -83,7 +83,9 @@ TwoRadii CausticMap::irradiance(const Vec3f& position, const Vec3f& normal,
             return SurfaceEstimate(scene, m_map, radius).at(position, normal, patternAt(position));
         }
         share = patch.shares(position, radius);
-        if (patch.hidesSurface())
+        if (patch.isBesideSheets())
+            flux = m_map.fluxInPlane(position, normal, radius);
+        else if (patch.hidesSurface())
             flux = m_map.fluxWithin(position, normal, radius, [&](std::uint32_t index) {
                 return patch.counts(scene, m_map.photon(index));
             });

@@ -30,11 +30,16 @@ struct PhotonGate {
     static constexpr float kRounding = 8.0f * 0x1p-24f;
 
     Vec3f position, normal;
-    float planeToleranceSquared = 0.0f;  // what rounding may lift a photon off its plane
+    float planeToleranceSquared = 0.0f;             // what rounding may lift a photon off its plane
+    float flatnessSquared = kFlatness * kFlatness;  // 0: of photons in the plane alone
 
+    bool isInPlane(const Vec3f& fromPoint) const {
+        const float height = dot(fromPoint, normal);
+        return height * height <= planeToleranceSquared;
+    }
     bool isNearPlane(const Vec3f& fromPoint, float distanceSquared) const {
         const float height = dot(fromPoint, normal);
-        return height * height <= kFlatness * kFlatness * distanceSquared + planeToleranceSquared;
+        return height * height <= flatnessSquared * distanceSquared + planeToleranceSquared;
     }
     // Whether photons `fromPoint` from the gate's point, on a surface of this normal, count.
     bool accepts(const Vec3f& fromPoint, const Vec3f& surfaceNormal) const {
@@ -131,6 +136,7 @@ class LeafTest {
           m_ny(_mm_set1_ps(gate.normal.y)),
           m_nz(_mm_set1_ps(gate.normal.z)),
           m_tolerance(_mm_set1_ps(gate.planeToleranceSquared)),
+          m_flatness(_mm_set1_ps(gate.flatnessSquared)),
           m_reach(_mm_set1_ps(reach)) {}
 
     // Which photons lie near the plane and within reach, and their squared distances.
@@ -141,9 +147,7 @@ class LeafTest {
         d2 = _mm_add_ps(_mm_add_ps(_mm_mul_ps(dx, dx), _mm_mul_ps(dy, dy)), _mm_mul_ps(dz, dz));
         const __m128 height = _mm_add_ps(_mm_add_ps(_mm_mul_ps(dx, m_nx), _mm_mul_ps(dy, m_ny)),
                                          _mm_mul_ps(dz, m_nz));
-        const __m128 highest =
-            _mm_add_ps(_mm_mul_ps(_mm_set1_ps(PhotonGate::kFlatness * PhotonGate::kFlatness), d2),
-                       m_tolerance);
+        const __m128 highest = _mm_add_ps(_mm_mul_ps(m_flatness, d2), m_tolerance);
         return _mm_and_ps(_mm_cmple_ps(d2, m_reach),
                           _mm_cmple_ps(_mm_mul_ps(height, height), highest));
     }
@@ -176,7 +180,7 @@ class LeafTest {
         return _mm_load_si128(reinterpret_cast<const __m128i*>(&leaf.normals[i]));
     }
 
-    __m128 m_px, m_py, m_pz, m_nx, m_ny, m_nz, m_tolerance, m_reach;
+    __m128 m_px, m_py, m_pz, m_nx, m_ny, m_nz, m_tolerance, m_flatness, m_reach;
 };
 
 inline std::uint32_t PhotonLeaf::findWithin(const PhotonGate& gate, float reach,

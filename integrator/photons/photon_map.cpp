@@ -154,14 +154,23 @@ void PhotonMap::findNearest(const PhotonQuery& query, NearestPhotons& nearest) c
     nearest.m_lastReach = found.front().distanceSquared;
 }
 
-TwoRadii PhotonMap::fluxWithin(const Vec3f& position, const Vec3f& normal, float radius) const {
+TwoRadii PhotonMap::fluxWithin(const PhotonGate& gate, float radius) const {
     FluxSums sums;
     const float reach = radius * radius;
-    const PhotonGate gate = this->gate(position, normal);
-    visitWithin(position, reach, [&](std::uint32_t leaf) {
+    visitWithin(gate.position, reach, [&](std::uint32_t leaf) {
         m_tree.leaves[leaf].addWithin(gate, reach, m_tree.fluxes[leaf], sums);
     });
     return radiiOf(sums);
+}
+
+TwoRadii PhotonMap::fluxWithin(const Vec3f& position, const Vec3f& normal, float radius) const {
+    return fluxWithin(gate(position, normal), radius);
+}
+
+TwoRadii PhotonMap::fluxInPlane(const Vec3f& position, const Vec3f& normal, float radius) const {
+    PhotonGate plane = gate(position, normal);
+    plane.flatnessSquared = 0.0f;
+    return fluxWithin(plane, radius);
 }
 
 // The leaves within a ball that holds the one of this radius; null where they are too many to keep.

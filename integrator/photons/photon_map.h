@@ -129,6 +129,8 @@ class PhotonMap {
     // The same bits; faster near the last query by the same `nearest`.
     TwoRadii fluxWithin(const Vec3f& position, const Vec3f& normal, float radius,
                         NearestPhotons& nearest) const;
+    // Of photons in the point's plane alone, to rounding.
+    TwoRadii fluxInPlane(const Vec3f& position, const Vec3f& normal, float radius) const;
     // accept(index): whether the photon of this index counts, too.
     template <typename Accept>
     TwoRadii fluxWithin(const Vec3f& position, const Vec3f& normal, float radius,
@@ -157,6 +159,7 @@ class PhotonMap {
         };
         return {rgb(sums.wide), rgb(sums.narrow)};
     }
+    TwoRadii fluxWithin(const PhotonGate& gate, float radius) const;
     const NearestPhotons::Leaves* leavesAround(const Vec3f& position, float radius,
                                                NearestPhotons& nearest) const;
     std::size_t findDistances(const PhotonQuery& query, float reach,

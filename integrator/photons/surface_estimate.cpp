@@ -94,19 +94,21 @@ SurfaceEstimate::Seen SurfaceEstimate::look(const View& view, float turns,
     const SinCos phi = sinCosTurns(turns - std::floor(turns));
     const Vec3f inPlane =
         (view.tangent * phi.cos + view.bitangent * phi.sin) * (std::sqrt(radiusSquared) * m_radius);
-    const SeenArea seen =
-        lookFor(m_scene, m_map.gate(view.position, view.normal), view.apex, inPlane);
+    const PhotonGate gate = m_map.gate(view.position, view.normal);
+    const SeenArea seen = lookFor(m_scene, gate, view.apex, inPlane);
     const float distanceSquared = lengthSquared(seen.fromPoint);
     if (distanceSquared > m_radius * m_radius) return {};
-    return {seen.area, distanceSquared};
+    return {seen.area, distanceSquared, gate.isInPlane(seen.fromPoint)};
 }
 
-bool SurfaceEstimate::isWhole(const View& view) const {
+bool SurfaceEstimate::isWhole(const View& view, bool& isPlane) const {
+    isPlane = true;
     for (std::uint32_t i = 0; i < kRimRays; ++i) {
         // Opposite sides first: an edge is on one of them.
         const std::uint32_t j = (i % 2) * (kRimRays / 2) + i / 2;
-        const float area = look(view, view.turn + static_cast<float>(j) / kRimRays, 0.9f).area;
-        if (!(std::abs(area - 1.0f) < kFlatTolerance)) return false;
+        const Seen seen = look(view, view.turn + static_cast<float>(j) / kRimRays, 0.9f);
+        if (!(std::abs(seen.area - 1.0f) < kFlatTolerance)) return false;
+        isPlane = isPlane && seen.isInPlane;
     }
     return true;
 }
@@ -180,7 +182,9 @@ std::optional<SurfaceEstimate::Shares> SurfaceEstimate::askPatch(const Vec3f& po
     const SurfacePatch& patch = m_patches->at(position, normal, m_radius, spare);
     if (!patch.speaksFor(m_scene, position, normal, m_radius)) return std::nullopt;
     const SurfacePatch::Shares shares = patch.shares(position, m_radius);
-    if (patch.hidesSurface())
+    if (patch.isBesideSheets())
+        flux = m_map.fluxInPlane(position, normal, m_radius);
+    else if (patch.hidesSurface())
         flux = m_map.fluxWithin(position, normal, m_radius, [&](std::uint32_t index) {
             return patch.counts(m_scene, m_map.photon(index));
         });
@@ -201,7 +205,11 @@ SurfaceEstimate::Shares SurfaceEstimate::askRays(const Vec3f& position, const Ve
                     frame.bitangent,
                     toUnitFloat(static_cast<std::uint32_t>(random)),
                     toUnitFloat(static_cast<std::uint32_t>(random >> 32))};
-    if (isWhole(view)) return {};
+    bool isPlane;
+    if (isWhole(view, isPlane)) {
+        if (isPlane && m_scene.hasSheets()) flux = m_map.fluxInPlane(position, normal, m_radius);
+        return {};
+    }
     const Shares share = shares(view);
     if (share.wide < least || !(share.wide > 0.0f)) return share;
     const float lift = liftSeenFrom(m_scene, height);

@@ -51,6 +51,10 @@ class SurfaceEstimate {
         : m_scene(scene), m_map(map), m_radius(radius), m_patches(patches) {}
 
     float radius() const { return m_radius; }
+    // Which photons count for a point, distance aside.
+    PhotonGate gate(const Vec3f& position, const Vec3f& normal) const {
+        return m_map.gate(position, normal);
+    }
     // The same at another radius.
     SurfaceEstimate withRadius(float radius) const { return {m_scene, m_map, radius, m_patches}; }
 
@@ -65,6 +69,7 @@ class SurfaceEstimate {
     // What a ray found: area as SeenArea has it, 0 beyond the radius.
     struct Seen {
         float area = 0.0f, distanceSquared = 0.0f;
+        bool isInPlane = false;  // of the point
     };
     // The point, what is above it, and how the rays are turned.
     struct View {
@@ -81,7 +86,8 @@ class SurfaceEstimate {
                    TwoRadii& flux) const;
     TwoRadii irradiance(const TwoRadii& flux, const Shares& share) const;
     Seen look(const View& view, float turns, float radiusSquared) const;
-    bool isWhole(const View& view) const;
+    // isPlane: where it is, whether what tells so lies in the point's plane.
+    bool isWhole(const View& view, bool& isPlane) const;
     Shares shares(const View& view) const;
 
     const Scene& m_scene;

@@ -35,6 +35,11 @@ constexpr float kHiddenHeight = 0.02f;
 // Where in a row, from 0 to 1, chords of a disc stand for it (Gauss-Legendre, two nodes).
 constexpr std::array<float, 2> kGaussNodes{0.21132487f, 0.78867513f};
 
+PhotonGate gateAt(const Scene& scene, const Vec3f& position, const Vec3f& normal) {
+    const float tolerance = PhotonGate::kRounding * static_cast<float>(scene.radius());
+    return {position, normal, tolerance * tolerance};
+}
+
 }  // namespace
 
 bool SurfacePatch::Place::isInside() const {
@@ -53,8 +58,7 @@ SurfacePatch::SurfacePatch(const Scene& scene, const Vec3f& position, const Vec3
     const Frame frame(normal);
     m_grid->tangent = frame.tangent;
     m_grid->bitangent = frame.bitangent;
-    const float tolerance = PhotonGate::kRounding * static_cast<float>(scene.radius());
-    const PhotonGate gate{position, normal, tolerance * tolerance};
+    const PhotonGate gate = gateAt(scene, position, normal);
     if (looksWhole(scene, gate)) {
         m_grid.reset();
     } else if (!measure(scene, gate, pattern)) {
@@ -90,7 +94,8 @@ bool SurfacePatch::bendsEvenly(const Vec3f& way, const Vec3f& normal, float with
     return height * height <= within * within * lengthSquared(way) + tolerance * tolerance;
 }
 
-bool SurfacePatch::looksWhole(const Scene& scene, const PhotonGate& gate) const {
+bool SurfacePatch::looksWhole(const Scene& scene, const PhotonGate& gate) {
+    bool isPlane = true;
     for (const Circle& circle : kCircles) {
         const float reach = circle.radius * kSquaresPerRadius;
         for (int i = 0; i < circle.rays; ++i) {
@@ -102,8 +107,10 @@ bool SurfacePatch::looksWhole(const Scene& scene, const PhotonGate& gate) const 
             const SeenArea seen = lookFor(scene, gate, m_apex, inPlane(place));
             if (!(seen.area > 0.0f) || !bendsEvenly(seen.fromPoint, seen.normal, kEvenness))
                 return false;
+            isPlane = isPlane && gate.isInPlane(seen.fromPoint);
         }
     }
+    m_isBesideSheets = isPlane && scene.hasSheets();
     return true;
 }
 
@@ -131,6 +138,8 @@ bool SurfacePatch::speaksFor(const Scene& scene, const Vec3f& position, const Ve
     if (!(dot(normal, m_normal) >= PhotonGate::kNormalCosine) ||
         !bendsEvenly(position - m_position, normal, kFlatness))
         return false;
+    if (m_isBesideSheets)
+        return gateAt(scene, m_position, m_normal).isInPlane(position - m_position);
     if (isWhole()) return true;
     const Place place = placeOf(position);
     const float reach = kReachOnGrid * radius / m_radius * kSquaresPerRadius;

@@ -38,6 +38,9 @@ class SurfacePatch {
                    float radius) const;
     // No edge, fold or obstacle within reach: all discs are whole, all photons count.
     bool isWhole() const { return !m_grid; }
+    // Whole, in one plane, and another sheet may lie closer than that tells of: photons count that
+    // lie in the plane.
+    bool isBesideSheets() const { return m_isBesideSheets; }
     // Photons may lie where surface is not seen, beyond a wall or under a ball: see counts().
     bool hidesSurface() const { return m_grid && m_grid->hasHidden; }
     // Of a disc around a point that this speaks for; at least kSmallestShare. radius: scene units.
@@ -74,7 +77,7 @@ class SurfacePatch {
     Seen look(const Scene& scene, const PhotonGate& gate, Place towards) const;
     // Whether the surface bends evenly from the site to a place, on a way from the site.
     bool bendsEvenly(const Vec3f& way, const Vec3f& normal, float within) const;
-    bool looksWhole(const Scene& scene, const PhotonGate& gate) const;
+    bool looksWhole(const Scene& scene, const PhotonGate& gate);
     bool measure(const Scene& scene, const PhotonGate& gate, std::uint64_t pattern);
     bool hides(const Scene& scene, const PhotonGate& gate, Place place) const;
     bool isInner(Place place) const;
@@ -83,6 +86,7 @@ class SurfacePatch {
 
     Vec3f m_position, m_normal, m_apex;  // the normal is 0 where this speaks for no point
     float m_radius = 0.0f, m_height = 0.0f;
+    bool m_isBesideSheets = false;
     std::unique_ptr<Grid> m_grid;
 };
 

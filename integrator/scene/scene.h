@@ -70,6 +70,10 @@ class Scene {
     // so that no light goes from one surface by way of another.
     bool isFlat() const { return m_isFlat; }
 
+    // Whether something in it isSheet(): photons may lie on two surfaces that are as close as can
+    // be.
+    bool hasSheets() const { return m_hasSheets; }
+
     // A point on an area light's primitive, uniform over its area, as a Surface.
     Surface pointOnLight(const Light& light, Vec2f u) const;
     // The point of a sphere shape that lies in a direction (of any length) from its centre.
@@ -118,7 +122,7 @@ class Scene {
     double m_radius = 0;
     std::uint64_t m_triangleCount = 0;
     double m_triangleArea = 0;  // of all
-    bool m_isFlat = false;
+    bool m_isFlat = false, m_hasSheets = false;
     RayTracer m_tracer;  // last: it refers to the shapes' arrays and is destroyed before them
     std::unique_ptr<const CoincidentFaces> m_coincident;  // null where there are none
 };

@@ -80,6 +80,7 @@ class Scene::Builder {
             addShape(instance);
         findHuge();
         m_scene.m_isFlat = m_scene.findFlat(m_cancel);
+        m_scene.m_hasSheets = findSheets();
         addToTracer();
         for (std::uint32_t i = 0; i < m_scene.m_shapes.size(); ++i) findLights(i);
         m_scene.m_coincident = CoincidentFaces::find(m_scene, m_scene.m_notices, m_cancel);
@@ -295,6 +296,15 @@ class Scene::Builder {
         }
         m_cancel.throwIfSet("building the scene");
         m_scene.m_tracer.commit(m_cancel);
+    }
+
+    bool findSheets() const {
+        const auto isOne = [&](std::uint32_t material) {
+            return isSheet(m_scene.material(material));
+        };
+        return std::ranges::any_of(m_scene.m_shapes, [&](const ShapeRecord& record) {
+            return std::ranges::any_of(record.materials, isOne);
+        });
     }
 
     void findLights(std::uint32_t shape) {

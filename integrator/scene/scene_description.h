@@ -65,6 +65,13 @@ inline bool mayHaveDelta(const MaterialDescription& material) {
            material.opacityTexture != kNoTexture;
 }
 
+// Whether the material lets some light straight on and scatters some, as half-transparent sheets
+// do.
+inline bool isSheet(const MaterialDescription& material) {
+    return material.kind == MaterialKind::kSurface && mayHaveDelta(material) &&
+           !isBlack(material.diffuse);
+}
+
 // Whether light that meets the material goes nowhere from there, whatever its textures.
 inline bool isBlackBody(const MaterialDescription& material) {
     return isDiffuseAtMost(material) && isBlack(material.diffuse);

@@ -204,6 +204,25 @@ TEST(Agreement, GlassOnTheFloorAndALampInTheCeiling) {
     EXPECT_TRUE(agree(photon.caustic, path.caustic, 0.005));
 }
 
+// A half-transparent sheet closely above a plate: photons that came through it to the plate counted
+// on its upper side as well, which had five times its caustic light.
+TEST(Agreement, ASheetCloselyAboveAPlate) {
+    for (const double gap : {0.0003, 0.003}) {
+        SceneMaker maker;
+        MaterialDescription sheet;
+        sheet.diffuse = Rgb(0.6f);
+        sheet.transparency = 0.2f;
+        maker.quad({-0.5, 0, 0.5}, {1, 0, 0}, {0, 0, -1}, maker.material(sheet));
+        maker.quad({-0.5, -gap, 0.5}, {1, 0, 0}, {0, 0, -1}, maker.diffuse(Rgb(0.6f)));
+        maker.quad({-0.3, 1, -0.3}, {0.6, 0, 0}, {0, 0, 0.6}, maker.diffuse({}, Rgb(8.0f)));
+        maker.camera({0, 0.8, 0.01}, {0, 0, 0}, {0, 0, -1}, 40);
+        const auto [photon, path] = photonAndPath(maker.build());
+        EXPECT_TRUE(agree(photon.direct, path.direct, 0)) << gap;
+        EXPECT_TRUE(agree(photon.indirect, path.indirect, 0.02)) << gap;
+        EXPECT_TRUE(agree(photon.caustic, path.caustic, 0.005)) << gap;
+    }
+}
+
 // Gather rays that start below the surface have no value; the others of the same sample keep
 // theirs. In a furnace, where there is little noise to hide in.
 TEST(Agreement, GatherRaysOverABentFloor) {
