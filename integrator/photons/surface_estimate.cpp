@@ -80,7 +80,8 @@ float apexHeight(const Scene& scene, const Vec3f& position, const Vec3f& normal,
 }
 
 float liftSeenFrom(const Scene& scene, float height) {
-    return std::max(kLift * height, leastLift(scene));
+    // Not above a sheet that lies closely over it.
+    return scene.hasSheets() ? leastLift(scene) : std::max(kLift * height, leastLift(scene));
 }
 
 std::uint32_t patternAt(const Vec3f& position) {
@@ -206,8 +207,8 @@ SurfaceEstimate::Shares SurfaceEstimate::askRays(const Vec3f& position, const Ve
                     toUnitFloat(static_cast<std::uint32_t>(random)),
                     toUnitFloat(static_cast<std::uint32_t>(random >> 32))};
     bool isPlane;
-    if (isWhole(view, isPlane)) {
-        if (isPlane && m_scene.hasSheets()) flux = m_map.fluxInPlane(position, normal, m_radius);
+    if (isWhole(view, isPlane) && (isPlane || !m_scene.hasSheets())) {
+        if (m_scene.hasSheets()) flux = m_map.fluxInPlane(position, normal, m_radius);
         return {};
     }
     const Shares share = shares(view);

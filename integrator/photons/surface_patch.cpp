@@ -30,6 +30,8 @@ constexpr float kFlatness = 0.2f, kRounding = 1e-3f;
 constexpr float kEvenness = 0.05f;
 // Of a disc's radius, so much lies on the grid at least; what is beyond is not known.
 constexpr float kReachOnGrid = 0.5f;
+// Of the same plane or one beside it.
+constexpr float kSameNormal = 0.99999f;
 // How far off the plane, in radii, surface is looked for that is hidden.
 constexpr float kHiddenHeight = 0.02f;
 // Where in a row, from 0 to 1, chords of a disc stand for it (Gauss-Legendre, two nodes).
@@ -53,6 +55,7 @@ SurfacePatch::SurfacePatch(const Scene& scene, const Vec3f& position, const Vec3
       m_normal(normal),
       m_radius(radius),
       m_height(apexHeight(scene, position, normal, radius)),
+      m_isAmongSheets(scene.hasSheets()),
       m_grid(std::make_unique<Grid>()) {
     m_apex = position + normal * m_height;
     const Frame frame(normal);
@@ -110,7 +113,7 @@ bool SurfacePatch::looksWhole(const Scene& scene, const PhotonGate& gate) {
             isPlane = isPlane && gate.isInPlane(seen.fromPoint);
         }
     }
-    m_isBesideSheets = isPlane && scene.hasSheets();
+    m_isBesideSheets = isPlane && m_isAmongSheets;
     return true;
 }
 
@@ -138,17 +141,19 @@ bool SurfacePatch::speaksFor(const Scene& scene, const Vec3f& position, const Ve
     if (!(dot(normal, m_normal) >= PhotonGate::kNormalCosine) ||
         !bendsEvenly(position - m_position, normal, kFlatness))
         return false;
-    if (m_isBesideSheets)
-        return gateAt(scene, m_position, m_normal).isInPlane(position - m_position);
+    // Of two sheets that lie as close as can be, one knows nothing of the other.
+    if (m_isAmongSheets && (m_isBesideSheets || dot(normal, m_normal) > kSameNormal) &&
+        !gateAt(scene, m_position, m_normal).isInPlane(position - m_position))
+        return false;
     if (isWhole()) return true;
     const Place place = placeOf(position);
     const float reach = kReachOnGrid * radius / m_radius * kSquaresPerRadius;
     return std::max(std::abs(place.x - kMiddle), std::abs(place.y - kMiddle)) <= kMiddle - reach &&
-           (isInner(place) || sees(scene, position, normal));
+           ((!m_isAmongSheets && isInner(place)) || sees(scene, position, normal));
 }
 
 bool SurfacePatch::counts(const Scene& scene, const Photon& photon) const {
-    return isInner(placeOf(photon.position)) ||
+    return (!m_isAmongSheets && isInner(placeOf(photon.position))) ||
            sees(scene, photon.position, photon.normal.unpack());
 }
 

@@ -42,7 +42,10 @@ class SurfacePatch {
     // lie in the plane.
     bool isBesideSheets() const { return m_isBesideSheets; }
     // Photons may lie where surface is not seen, beyond a wall or under a ball: see counts().
-    bool hidesSurface() const { return m_grid && m_grid->hasHidden; }
+    // In scenes with sheets under one, too, wherever all is not one plane.
+    bool hidesSurface() const {
+        return m_isAmongSheets ? !m_isBesideSheets : m_grid && m_grid->hasHidden;
+    }
     // Of a disc around a point that this speaks for; at least kSmallestShare. radius: scene units.
     Shares shares(const Vec3f& position, float radius) const;
     // Whether a photon, within a disc around a point that this speaks for, is to be counted.
@@ -86,7 +89,7 @@ class SurfacePatch {
 
     Vec3f m_position, m_normal, m_apex;  // the normal is 0 where this speaks for no point
     float m_radius = 0.0f, m_height = 0.0f;
-    bool m_isBesideSheets = false;
+    bool m_isAmongSheets = false, m_isBesideSheets = false;
     std::unique_ptr<Grid> m_grid;
 };
 

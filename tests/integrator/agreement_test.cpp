@@ -213,9 +213,10 @@ TEST(Agreement, ASheetCloselyAboveAPlate) {
         sheet.diffuse = Rgb(0.6f);
         sheet.transparency = 0.2f;
         maker.quad({-0.5, 0, 0.5}, {1, 0, 0}, {0, 0, -1}, maker.material(sheet));
-        maker.quad({-0.5, -gap, 0.5}, {1, 0, 0}, {0, 0, -1}, maker.diffuse(Rgb(0.6f)));
+        // Beyond the sheet's edges as well.
+        maker.quad({-1, -gap, 1}, {2, 0, 0}, {0, 0, -2}, maker.diffuse(Rgb(0.6f)));
         maker.quad({-0.3, 1, -0.3}, {0.6, 0, 0}, {0, 0, 0.6}, maker.diffuse({}, Rgb(8.0f)));
-        maker.camera({0, 0.8, 0.01}, {0, 0, 0}, {0, 0, -1}, 40);
+        maker.camera({0, 0.8, 0.01}, {0, 0, 0}, {0, 0, -1}, 70);
         const auto [photon, path] = photonAndPath(maker.build());
         EXPECT_TRUE(agree(photon.direct, path.direct, 0)) << gap;
         EXPECT_TRUE(agree(photon.indirect, path.indirect, 0.02)) << gap;
