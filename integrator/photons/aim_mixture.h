@@ -12,7 +12,9 @@
 
 namespace pm {
 
-inline constexpr std::size_t kMostCasters = 64;
+// Of a scene, and of balls that stand for a part of one.
+inline constexpr std::size_t kMostFound = 64, kMostBalls = 16;
+inline constexpr std::size_t kMostCasters = kMostFound + kMostBalls;
 inline constexpr std::uint32_t kNoCaster = ~0u;
 
 // Directions from one point of emission: most of them within the cones towards casters, each as

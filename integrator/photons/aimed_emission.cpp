@@ -36,17 +36,45 @@ constexpr float kUnaimedShareOfFocus = 0.25f;
 
 constexpr const char* kAiming = "aiming photons";
 
+double radiusOf(const Focus& focus) {
+    return 1.0 / std::sqrt(static_cast<double>(focus.inverseRadiusSquared));
+}
+
 // The balls of a focus, as many as it takes to hold the scene.
 std::vector<Caster> ballsAround(const Focus& focus, double sceneRadius) {
     std::vector<Caster> balls;
     const Vec3d centre(focus.centre);
-    double radius = 1.0 / std::sqrt(static_cast<double>(focus.inverseRadiusSquared));
     const double whole = length(centre) + sceneRadius;
-    for (; balls.size() < kMostCasters; radius *= 2) {
+    for (double radius = radiusOf(focus); balls.size() < kMostCasters; radius *= 2) {
         balls.push_back({centre, radius});
         if (radius >= whole) break;
     }
     return balls;
+}
+
+// Those balls of a focus that a wider caster reaches into.
+std::vector<Caster> ballsInside(std::span<const Caster> casters, const Focus& focus) {
+    std::vector<Caster> balls;
+    if (focus.isEverywhere()) return balls;
+    const Vec3d centre(focus.centre);
+    const auto isWider = [&](double radius) {
+        return std::ranges::any_of(casters, [&](const Caster& caster) {
+            return caster.radius > radius &&
+                   length(caster.centre - centre) < caster.radius + radius;
+        });
+    };
+    for (double radius = radiusOf(focus); balls.size() < kMostBalls && isWider(radius); radius *= 2)
+        balls.push_back({centre, radius});
+    return balls;
+}
+
+// Mean over the viewpoints, sr.
+double meanSolidAngle(const Caster& caster, std::span<const EmissionPoint> viewpoints) {
+    double sum = 0;
+    AimCone cone;
+    for (const EmissionPoint& point : viewpoints)
+        if (cone.aim(caster, point)) sum += static_cast<double>(cone.solidAngle);
+    return sum / static_cast<double>(viewpoints.size());
 }
 
 // Flux, and in how many photons, of a pilot.
@@ -75,7 +103,7 @@ double worthOfShare(double share) {
 
 }  // namespace
 
-AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights,
+AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights, const Focus& seen,
                              const CancelCheck& cancel)
     : m_scene(scene), m_lights(lights) {
     const auto& all = scene.lights();
@@ -91,6 +119,7 @@ AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights,
     }
     m_casters = findCasters(scene, viewpoints, cancel);
     if (m_casters.empty()) return;
+    addBalls(seen, viewpoints);
     groupLights(cancel);
     m_guess.resize(all.size());
     tbb::parallel_for(std::size_t{0}, all.size(), [&](std::size_t i) {
@@ -100,12 +129,18 @@ AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights,
     m_choice = LightChoice(m_guess);
 }
 
-AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights, const Focus& focus,
-                             const CancelCheck& cancel)
-    : m_scene(scene), m_lights(lights), m_focus(focus), m_unaimedShare(kUnaimedShareOfFocus) {
-    if (lights.empty() || focus.isEverywhere()) return;
-    m_casters = ballsAround(focus, scene.radius());
-    const std::size_t count = scene.lights().size(), balls = m_casters.size();
+AimedEmission AimedEmission::atFocus(const Scene& scene, const LightSampler& lights,
+                                     const Focus& focus, const CancelCheck& cancel) {
+    AimedEmission aimed(scene, lights, Unaimed{});
+    aimed.m_focus = focus;
+    aimed.m_unaimedShare = kUnaimedShareOfFocus;
+    if (!lights.empty() && !focus.isEverywhere()) aimed.aimAtFocus(cancel);
+    return aimed;
+}
+
+void AimedEmission::aimAtFocus(const CancelCheck& cancel) {
+    m_casters = ballsAround(m_focus, m_scene.radius());
+    const std::size_t count = m_scene.lights().size(), balls = m_casters.size();
     m_group.assign(count, 0);
     m_guess.assign(count, 0.0);
     std::vector<double> flux(count);
@@ -126,6 +161,20 @@ AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights, con
         for (std::size_t i = 0; all > 0 && i < count; ++i) m_guess[i] += share * flux[i] / all;
     }
     m_choice = LightChoice(m_guess);
+}
+
+// From where most light comes the balls together fill as much as what casts.
+void AimedEmission::addBalls(const Focus& seen, std::span<const EmissionPoint> viewpoints) {
+    const std::vector<Caster> balls = ballsInside(m_casters, seen);
+    double whole = 0;
+    for (const Caster& caster : m_casters) whole += meanSolidAngle(caster, viewpoints);
+    m_prior.assign(m_casters.size(), 1.0);
+    for (const Caster& ball : balls) {
+        const double solidAngle = meanSolidAngle(ball, viewpoints);
+        if (!(solidAngle > 0)) continue;
+        m_casters.push_back(ball);
+        m_prior.push_back(whole / (solidAngle * static_cast<double>(balls.size())));
+    }
 }
 
 EmissionPoint AimedEmission::pointLightView(const Light& light) const {
@@ -195,7 +244,8 @@ void AimedEmission::groupLights(const CancelCheck& cancel) {
         places[i] = viewpoint(static_cast<std::uint32_t>(i), {0.5f, 0.5f}).position;
     });
     m_group = groupByPlace(places, kGroups, cancel);
-    m_worth.assign(kGroups * m_casters.size(), 1.0f);
+    for (std::size_t group = 0; group < kGroups; ++group)
+        for (const double prior : m_prior) m_worth.push_back(static_cast<float>(prior));
 }
 
 void AimedEmission::refine(std::span<const EmissionRecord> pilot) {
@@ -214,7 +264,8 @@ void AimedEmission::refine(std::span<const EmissionRecord> pilot) {
     refineSky(pilot);
     const double overall = total.landed / total.emitted;
     for (std::size_t i = 0; i < m_worth.size(); ++i)
-        m_worth[i] = static_cast<float>(worthOfShare(casters[i].share(overall)));
+        m_worth[i] = static_cast<float>(m_prior[i % m_casters.size()] *
+                                        worthOfShare(casters[i].share(overall)));
     std::vector<double> weights(m_guess);
     for (std::size_t i = 0; i < weights.size(); ++i)
         weights[i] *= worthOfShare(lights[i].share(groups[m_group[i]].share(overall)));
@@ -320,7 +371,8 @@ bool AimedEmission::emitParallel(const Light& light, float probability, float uC
 }
 
 std::uint64_t AimedEmission::memoryBytes() const {
-    return m_casters.size() * sizeof(Caster) + m_worth.size() * sizeof(float) +
+    return m_casters.size() * sizeof(Caster) + m_prior.size() * sizeof(double) +
+           m_worth.size() * sizeof(float) +
            m_group.size() * (sizeof(std::uint8_t) + sizeof(double) + 2 * sizeof(float)) +
            (m_sky.empty() ? 0 : SkyParts::kCount * sizeof(float));
 }

@@ -49,14 +49,17 @@ struct EmissionRecord {
 // Threads: const functions from any, at once.
 class AimedEmission {
   public:
-    // Finds the casters. lights: of this scene; both must outlive this. Runs in parallel in the
-    // calling TBB arena. Throws Error(kCancelled) soon after cancel is set.
-    AimedEmission(const Scene& scene, const LightSampler& lights, const CancelCheck& cancel = {});
+    // Finds the casters. Into a caster that reaches far beyond what is seen, a ground of glass,
+    // half of the photons go by way of balls around that. lights: of this scene; both must outlive
+    // this. Runs in parallel in the calling TBB arena. Throws Error(kCancelled) soon after cancel
+    // is set.
+    AimedEmission(const Scene& scene, const LightSampler& lights, const Focus& seen = {},
+                  const CancelCheck& cancel = {});
 
     // Emission of global photons towards a focus: the same with balls around it for casters, out to
     // where they hold the scene; there is nothing to refine.
-    AimedEmission(const Scene& scene, const LightSampler& lights, const Focus& focus,
-                  const CancelCheck& cancel = {});
+    static AimedEmission atFocus(const Scene& scene, const LightSampler& lights, const Focus& focus,
+                                 const CancelCheck& cancel = {});
 
     // Nothing to aim from or at: emit() has no photon to give.
     bool empty() const { return m_casters.empty() || m_choice.empty(); }
@@ -95,6 +98,12 @@ class AimedEmission {
         Vec3f rayStart;
     };
 
+    struct Unaimed {};
+    AimedEmission(const Scene& scene, const LightSampler& lights, Unaimed)
+        : m_scene(scene), m_lights(lights) {}
+
+    void addBalls(const Focus& seen, std::span<const EmissionPoint> viewpoints);
+    void aimAtFocus(const CancelCheck& cancel);
     EmissionPoint viewpoint(std::uint32_t light, Vec2f uPoint) const;
     EmissionPoint pointLightView(const Light& light) const;
     EmissionPoint farView(const Light& light, Vec2f uDirection) const;
@@ -114,6 +123,7 @@ class AimedEmission {
     const Scene& m_scene;
     const LightSampler& m_lights;
     std::vector<Caster> m_casters;
+    std::vector<double> m_prior;        // of each caster: its worth before anything is learned
     std::vector<std::uint8_t> m_group;  // of each light
     std::vector<float> m_worth;         // of each group and caster
     std::vector<double> m_guess;        // flux that each light sends to casters, unhidden, W

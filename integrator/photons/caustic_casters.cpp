@@ -173,7 +173,7 @@ class CasterTree {
                const CancelCheck& cancel)
         : m_items(std::move(items)), m_viewpoints(viewpoints), m_cancel(cancel) {
         addNode(0, m_items.size());
-        for (std::size_t leaves = 1; leaves < kMostCasters; ++leaves)
+        for (std::size_t leaves = 1; leaves < kMostFound; ++leaves)
             if (!divideLargest()) break;
     }
 

@@ -16,7 +16,7 @@ inline bool castsCaustics(const MaterialDescription& material) {
     return !isDiffuseAtMost(material);
 }
 
-// Casters that together hold every surface of the scene that casts caustics, at most kMostCasters:
+// Casters that together hold every surface of the scene that casts caustics, at most kMostFound:
 // as many as make the solid angle they fill, seen from the viewpoints, clearly smaller. Empty when
 // nothing casts. Time: about that of sorting the casting triangles by place. Throws
 // Error(kCancelled) soon after cancel is set.

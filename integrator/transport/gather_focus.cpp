@@ -27,19 +27,23 @@ constexpr double kNearShare = 0.25, kShareInFocus = 0.9;
 // Scenes less wide than so many times the focus have light enough in it anyway.
 constexpr float kFarBeyond = 8.0f;
 
-// A diffuse surface that light is gathered from.
+// A diffuse surface that light is gathered from, or seen at.
 struct End {
     Vec3f position;
-    float way;      // from where it is gathered at, scene units
+    float way;      // from where it is gathered at, or from the camera, scene units
     double weight;  // the share of the light there that reaches the camera, > 0
 };
+
+double weightOf(const Rgb& share) {
+    return double{share.r} + double{share.g} + double{share.b};
+}
 
 void addEndsOfRaysFrom(const Scene& scene, const PathStop& stop, std::vector<End>& ends) {
     const Rgb reflected = stop.throughput * stop.bsdf.diffuse();
     const Frame frame(stop.bsdf.facingShadingNormal());
     const auto addEnd = [&](const PathStop& met) {
         const Rgb share = reflected * met.throughput * met.bsdf.diffuse();
-        const double weight = double{share.r} + double{share.g} + double{share.b};
+        const double weight = weightOf(share);
         const Vec3f way = met.surface.position - stop.surface.position;
         if (weight > 0) ends.push_back({met.surface.position, length(way), weight});
         return met.next != Lobe::kDiffuse;
@@ -51,15 +55,17 @@ void addEndsOfRaysFrom(const Scene& scene, const PathStop& stop, std::vector<End
     }
 }
 
-// Of the rays from the first diffuse surface of each path.
-std::vector<End> endsOfGatherRays(const Scene& scene, const Camera& camera,
-                                  const RenderSettings& settings, const CancelCheck& cancel) {
+// Of the first diffuse surface of each path, or of the rays from there. addEnds: of one such.
+template <typename AddEnds>
+std::vector<End> endsOfPaths(const Scene& scene, const Camera& camera,
+                             const RenderSettings& settings, const CancelCheck& cancel,
+                             const AddEnds& addEnds) {
     const FrameLattice lattice = FrameLattice::fixed(settings, kColumns, kRows);
     std::vector<std::vector<End>> endsOf(lattice.size());
     followPilotPaths(scene, camera, lattice, combineBits(settings.seed, kSeed), cancel,
                      [&](std::size_t path, const PathStop& stop) {
                          if (stop.next != Lobe::kDiffuse) return true;
-                         addEndsOfRaysFrom(scene, stop, endsOf[path]);
+                         addEnds(stop, endsOf[path]);
                          return false;
                      });
     std::vector<End> ends;
@@ -81,11 +87,8 @@ float quantile(const std::vector<End>& ends, double share, const ValueOf& valueO
     return weighed.back().first;
 }
 
-}  // namespace
-
-Focus findGatherFocus(const Scene& scene, const Camera& camera, const RenderSettings& settings,
-                      const CancelCheck& cancel) {
-    std::vector<End> ends = endsOfGatherRays(scene, camera, settings, cancel);
+// The ball that holds most of what is near.
+Focus focusOf(std::vector<End> ends, float sceneRadius) {
     if (ends.size() < kFewestEnds) return {};
     // What is far may be seen from everywhere: it needs no more photons than its part of the view
     // has. What is near needs them close together.
@@ -97,9 +100,33 @@ Focus findGatherFocus(const Scene& scene, const Camera& camera, const RenderSett
             quantile(ends, 0.5, [&](const End& end) { return end.position[axis]; });
     const float radius = quantile(
         ends, kShareInFocus, [&](const End& end) { return length(end.position - focus.centre); });
-    if (!(radius > 0.0f) || kFarBeyond * radius > static_cast<float>(scene.radius())) return {};
+    if (!(radius > 0.0f) || kFarBeyond * radius > sceneRadius) return {};
     focus.inverseRadiusSquared = 1.0f / (radius * radius);
     return focus;
+}
+
+}  // namespace
+
+Focus findGatherFocus(const Scene& scene, const Camera& camera, const RenderSettings& settings,
+                      const CancelCheck& cancel) {
+    return focusOf(endsOfPaths(scene, camera, settings, cancel,
+                               [&](const PathStop& stop, std::vector<End>& ends) {
+                                   addEndsOfRaysFrom(scene, stop, ends);
+                               }),
+                   static_cast<float>(scene.radius()));
+}
+
+Focus findSeenFocus(const Scene& scene, const Camera& camera, const RenderSettings& settings,
+                    const CancelCheck& cancel) {
+    return focusOf(endsOfPaths(scene, camera, settings, cancel,
+                               [&](const PathStop& stop, std::vector<End>& ends) {
+                                   const double weight =
+                                       weightOf(stop.throughput * stop.bsdf.diffuse());
+                                   const Vec3f& at = stop.surface.position;
+                                   if (weight > 0)
+                                       ends.push_back({at, std::abs(camera.depth(at)), weight});
+                               }),
+                   static_cast<float>(scene.radius()));
 }
 
 }  // namespace pm

@@ -17,4 +17,9 @@ namespace pm {
 Focus findGatherFocus(const Scene& scene, const Camera& camera, const RenderSettings& settings,
                       const CancelCheck& cancel);
 
+// Likewise of what the camera sees itself: where its paths find the first diffuse surface, the
+// nearest quarter by depth.
+Focus findSeenFocus(const Scene& scene, const Camera& camera, const RenderSettings& settings,
+                    const CancelCheck& cancel);
+
 }  // namespace pm

@@ -176,13 +176,16 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
 void PhotonPass::findFocus(const CancelCheck& check) {
     const Focus focus = findGatherFocus(m_scene, m_camera, m_settings, check);
     if (!focus.isEverywhere())
-        m_focused = std::make_unique<AimedEmission>(m_scene, m_lights, focus, check);
+        m_focused = std::make_unique<AimedEmission>(
+            AimedEmission::atFocus(m_scene, m_lights, focus, check));
 }
 
 // What light is sent to which casters of caustics: a geometric guess, and a pilot that finds what
 // is hidden.
 void PhotonPass::aim(Control& control) {
-    m_aim = std::make_unique<AimedEmission>(m_scene, m_lights, CancelCheck(control.cancelled));
+    const CancelCheck check(control.cancelled);
+    m_aim = std::make_unique<AimedEmission>(
+        m_scene, m_lights, findSeenFocus(m_scene, m_camera, m_settings, check), check);
     if (m_aim->empty()) return;
     // A pass's number that the pilot of the radii doesn't have.
     const PhotonTraceRequest request{

@@ -238,7 +238,7 @@ TEST(CausticCasters, AsManyAsTheyAreWorth) {
     for (int i = 0; i < 1000; ++i)
         many.sphere({1.0 * (i % 10), 1.0 * (i / 10 % 10), 1.0 * (i / 100)}, 0.05, m);
     many.pointLight({-2, 0, 0}, Rgb(1.0f));
-    EXPECT_LE(castersOf(many).size(), kMostCasters);
+    EXPECT_LE(castersOf(many).size(), kMostFound);
 }
 
 // Every corner of what casts, under a transform, lies in some caster.

@@ -124,7 +124,7 @@ TEST(Focus, LandsTheFluxOfTheUnaimed) {
         const auto scene = maker.build();
         const LightSampler lights(*scene);
         const Focus focus = focusOn(*scene, {0, 0.5, 0}, 2);
-        const AimedEmission aim(*scene, lights, focus);
+        const AimedEmission aim = AimedEmission::atFocus(*scene, lights, focus);
         ASSERT_FALSE(aim.empty()) << lamp.name;
         std::array<std::array<std::array<double, kSums>, kReplicates>, 2> all;
         std::array<std::size_t, 2> inFocus{};
@@ -215,6 +215,63 @@ TEST(Focus, IndirectLightOnAHugeGround) {
     expectAgreement(wholeFrames(photon), wholeFrames(path), kIndirect, 0.01, 4, "huge ground");
     const Replicated whole = spread(wholeFrames(photon), 0, kIndirect, 1);
     EXPECT_LT(whole.standardError, 0.02 * whole.mean);
+}
+
+// What casts reaches a thousand times as far as what it lights is wide.
+TEST(Focus, CausticsOfAHugeMirror) {
+    struct Case {
+        const char* name;
+        std::function<void(SceneMaker&)> add;
+        double error;  // of the mean of 5 renders, over it, at most
+    };
+    const auto ground = [](SceneMaker& maker, const MaterialDescription& material) {
+        maker.quad({-400, -1, 400}, {800, 0, 0}, {0, 0, -800}, maker.material(material));
+    };
+    const Case cases[] = {
+        {"mirror, sun",
+         [&](SceneMaker& m) {
+             ground(m, mirror(0.8f));
+             m.sun({0, -1, -1}, Rgb(3.0f), 0.2);
+         },
+         0.05},
+        {"glass, sky",
+         [&](SceneMaker& m) {
+             ground(m, glass());
+             m.sky(Rgb(1.0f));
+         },
+         0.15},
+        {"mirror, lamp",
+         [&](SceneMaker& m) {
+             ground(m, mirror(0.8f));
+             m.sphere({0, 0.5, 1}, 0.3, m.diffuse({}, Rgb(5.0f)));
+         },
+         0.05},
+    };
+    for (const Case& c : cases) {
+        SceneMaker maker;
+        c.add(maker);
+        maker.quad({-0.4, -0.95, 0}, {0.8, 0, 0}, {0, 0.6, 0}, maker.diffuse(Rgb(0.5f)));
+        maker.camera({0, -0.65, 1.5}, {0, -0.65, 0}, {0, 1, 0}, 25);
+        const auto scene = maker.build();
+        const auto regions = squares(32, 32, 32);
+        const auto renders = [&](IntegratorKind kind, std::uint32_t passes, std::uint32_t level,
+                                 std::uint64_t firstSeed) {
+            return replicate(5, [&](std::uint64_t seed) {
+                RenderSettings settings = smallFrame(32, 32, kind, passes, level);
+                settings.seed = seed + firstSeed;
+                return render(scene, settings, regions);
+            });
+        };
+        const auto path = renders(IntegratorKind::kPath, 2, 5, 100);
+        const auto photon = renders(IntegratorKind::kPhoton, 4, 3, 0);
+        // Blur over the edge of the little surface takes a hundredth or two.
+        expectAgreement(photon, path, kCaustic, 0.03, 4, c.name);
+        const Replicated whole = spread(photon, 0, kCaustic, 1);
+        fmt::print("    {}: {:.4f} of path's, standard error {:.4f}\n", c.name,
+                   whole.mean / spread(path, 0, kCaustic, 1).mean,
+                   whole.standardError / whole.mean);
+        EXPECT_LT(whole.standardError, c.error * whole.mean) << c.name;
+    }
 }
 
 // Photons of one view, for others.
