@@ -18,6 +18,9 @@ namespace pm {
 namespace {
 
 constexpr std::size_t kColumns = 24, kRows = 24, kRays = 8;
+// Where something is found, but little, the lattice is made finer, to so many times as many paths
+// across and down.
+constexpr std::size_t kFinest = 8;
 constexpr std::uint64_t kSeed = 0x666f637573706172ull;
 // Fewer ends tell nothing.
 constexpr std::size_t kFewestEnds = 32;
@@ -60,16 +63,20 @@ template <typename AddEnds>
 std::vector<End> endsOfPaths(const Scene& scene, const Camera& camera,
                              const RenderSettings& settings, const CancelCheck& cancel,
                              const AddEnds& addEnds) {
-    const FrameLattice lattice = FrameLattice::fixed(settings, kColumns, kRows);
-    std::vector<std::vector<End>> endsOf(lattice.size());
-    followPilotPaths(scene, camera, lattice, combineBits(settings.seed, kSeed), cancel,
-                     [&](std::size_t path, const PathStop& stop) {
-                         if (stop.next != Lobe::kDiffuse) return true;
-                         addEnds(stop, endsOf[path]);
-                         return false;
-                     });
     std::vector<End> ends;
-    for (const std::vector<End>& some : endsOf) ends.insert(ends.end(), some.begin(), some.end());
+    for (std::size_t finer = 1; finer <= kFinest; finer *= 2) {
+        const FrameLattice lattice = FrameLattice::fixed(settings, finer * kColumns, finer * kRows);
+        std::vector<std::vector<End>> endsOf(lattice.size());
+        followPilotPaths(scene, camera, lattice, combineBits(settings.seed, kSeed), cancel,
+                         [&](std::size_t path, const PathStop& stop) {
+                             if (stop.next != Lobe::kDiffuse) return true;
+                             addEnds(stop, endsOf[path]);
+                             return false;
+                         });
+        ends.clear();
+        for (const auto& some : endsOf) ends.insert(ends.end(), some.begin(), some.end());
+        if (ends.empty() || ends.size() >= kFewestEnds) break;
+    }
     return ends;
 }
 

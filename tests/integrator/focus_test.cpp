@@ -191,6 +191,15 @@ TEST(Focus, IsFoundWhereGatherRaysEnd) {
         EXPECT_LT(length(under.centre - Vec3f{0, 0.5f, 0}), 1.5f) << reflectance;
         EXPECT_LT(1 / std::sqrt(under.inverseRadiusSquared), 6.0f) << reflectance;
     }
+    // What few camera paths meet, a leaf seen from its edge, is looked at again by more.
+    SceneMaker leaf;
+    leaf.quad({-650, -1, 650}, {1300, 0, 0}, {0, 0, -1300}, leaf.diffuse(Rgb(0.5f)));
+    leaf.quad({0.06, 0.04, -0.34}, {-0.76, 0.6, -0.66}, {0.53, -0.7, 0.96},
+              leaf.diffuse(Rgb(0.4f)));
+    leaf.camera({0, 0.05, 3.5}, {0.08, -0.13, 0}, {0, 1, 0}, 45);
+    const Focus onLeaf = focusOf(leaf);
+    ASSERT_FALSE(onLeaf.isEverywhere());
+    EXPECT_LT(length(onLeaf.centre - Vec3f{0.1f, -0.3f, 0.1f}), 1.0f);
     EXPECT_TRUE(focusOf(onGround(5)).isEverywhere());
     EXPECT_TRUE(focusOf(openRoom()).isEverywhere());
 }
