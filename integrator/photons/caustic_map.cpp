@@ -83,12 +83,7 @@ TwoRadii CausticMap::irradiance(const Vec3f& position, const Vec3f& normal,
             return SurfaceEstimate(scene, m_map, radius).at(position, normal, patternAt(position));
         }
         share = patch.shares(position, radius);
-        if (patch.isBesideSheets())
-            flux = m_map.fluxInPlane(position, normal, radius);
-        else if (patch.hidesSurface())
-            flux = m_map.fluxWithin(position, normal, radius, [&](std::uint32_t index) {
-                return patch.counts(scene, m_map.photon(index));
-            });
+        flux = patch.countedFlux(scene, m_map, position, normal, radius, flux);
     }
     const float discArea = kPi * radius * radius;
     return {flux.wide / (discArea * share.wide), flux.narrow / (0.5f * discArea * share.narrow)};

@@ -19,8 +19,6 @@ constexpr float kCellSize = 0.6f;
 constexpr float kSiteCosine = 0.8f;
 // ... and evenly: then the way is at right angles to the sum of both normals, within this.
 constexpr float kSiteFlatness = 0.2f;
-// Of the same plane or one beside it.
-constexpr float kSameNormal = 0.99999f;
 constexpr std::size_t kFewestSlots = 1 << 16, kMostSlots = 1 << 22, kMostProbes = 16;
 // Slots of a photon in the first pass: of evenly lit rooms a quarter to a third was in use there,
 // and as radii shrink, sites grow in number. Later passes have up to three times as many.
@@ -50,7 +48,6 @@ IrradianceSites::IrradianceSites(const Scene& scene, const PhotonMap& map, float
                                  const SurfacePatches* patches, float radiusFactor,
                                  const Focus& focus)
     : m_estimate(scene, map, radius, patches),
-      m_hasSheets(scene.hasSheets()),
       m_cells(scene, kCellSize * radius, originOf(map, radius), focus),
       m_slotCount(slotsFor(map.size(), radiusFactor)),
       m_slots(makeBigZeroedArray<Slot>(m_slotCount)) {}
@@ -112,9 +109,8 @@ TwoRadii IrradianceSites::at(const Vec3f& position, const Vec3f& normal) const {
     const float cellSize = m_cells.cellSize(cell.level);
     const auto speaksFor = [&](const Value& site) {
         const Vec3f way = position - site.position;
-        // Of two sheets that lie as close as can be, one knows nothing of the other.
-        if (m_hasSheets && dot(site.normal, normal) > kSameNormal &&
-            !m_estimate.gate(position, normal).isInPlane(way))
+        if (m_estimate.scene().hasSheets() &&
+            m_estimate.gate(position, normal).isBesidePlane(way, site.normal))
             return false;
         const float height = dot(way, site.normal + normal);
         const float tolerance = 1e-4f * cellSize;

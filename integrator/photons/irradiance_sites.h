@@ -71,7 +71,6 @@ class IrradianceSites {
     Value valueOf(const Cell& cell) const;
 
     SurfaceEstimate m_estimate;
-    bool m_hasSheets;
     SurfaceCells m_cells;
     // Open addressing by the cell's hash; all zero where nobody has asked yet. Slots are asked for
     // in no order: hence large pages.

@@ -37,6 +37,12 @@ struct PhotonGate {
         const float height = dot(fromPoint, normal);
         return height * height <= planeToleranceSquared;
     }
+    // Whether something `fromPoint` from the gate's point, of this normal, lies in a plane beside
+    // the point's: of two sheets as close as can be, one knows nothing of the other.
+    bool isBesidePlane(const Vec3f& fromPoint, const Vec3f& surfaceNormal) const {
+        constexpr float kSameNormal = 0.99999f;
+        return dot(surfaceNormal, normal) > kSameNormal && !isInPlane(fromPoint);
+    }
     bool isNearPlane(const Vec3f& fromPoint, float distanceSquared) const {
         const float height = dot(fromPoint, normal);
         return height * height <= flatnessSquared * distanceSquared + planeToleranceSquared;

@@ -183,12 +183,7 @@ std::optional<SurfaceEstimate::Shares> SurfaceEstimate::askPatch(const Vec3f& po
     const SurfacePatch& patch = m_patches->at(position, normal, m_radius, spare);
     if (!patch.speaksFor(m_scene, position, normal, m_radius)) return std::nullopt;
     const SurfacePatch::Shares shares = patch.shares(position, m_radius);
-    if (patch.isBesideSheets())
-        flux = m_map.fluxInPlane(position, normal, m_radius);
-    else if (patch.hidesSurface())
-        flux = m_map.fluxWithin(position, normal, m_radius, [&](std::uint32_t index) {
-            return patch.counts(m_scene, m_map.photon(index));
-        });
+    flux = patch.countedFlux(m_scene, m_map, position, normal, m_radius, flux);
     return Shares{shares.wide, shares.narrow};
 }
 

@@ -50,6 +50,7 @@ class SurfaceEstimate {
                     const SurfacePatches* patches = nullptr)
         : m_scene(scene), m_map(map), m_radius(radius), m_patches(patches) {}
 
+    const Scene& scene() const { return m_scene; }
     float radius() const { return m_radius; }
     // Which photons count for a point, distance aside.
     PhotonGate gate(const Vec3f& position, const Vec3f& normal) const {

@@ -30,8 +30,6 @@ constexpr float kFlatness = 0.2f, kRounding = 1e-3f;
 constexpr float kEvenness = 0.05f;
 // Of a disc's radius, so much lies on the grid at least; what is beyond is not known.
 constexpr float kReachOnGrid = 0.5f;
-// Of the same plane or one beside it.
-constexpr float kSameNormal = 0.99999f;
 // How far off the plane, in radii, surface is looked for that is hidden.
 constexpr float kHiddenHeight = 0.02f;
 // Where in a row, from 0 to 1, chords of a disc stand for it (Gauss-Legendre, two nodes).
@@ -141,10 +139,11 @@ bool SurfacePatch::speaksFor(const Scene& scene, const Vec3f& position, const Ve
     if (!(dot(normal, m_normal) >= PhotonGate::kNormalCosine) ||
         !bendsEvenly(position - m_position, normal, kFlatness))
         return false;
-    // Of two sheets that lie as close as can be, one knows nothing of the other.
-    if (m_isAmongSheets && (m_isBesideSheets || dot(normal, m_normal) > kSameNormal) &&
-        !gateAt(scene, m_position, m_normal).isInPlane(position - m_position))
-        return false;
+    if (m_isAmongSheets) {
+        const PhotonGate gate = gateAt(scene, m_position, m_normal);
+        const Vec3f way = position - m_position;
+        if (m_isBesideSheets ? !gate.isInPlane(way) : gate.isBesidePlane(way, normal)) return false;
+    }
     if (isWhole()) return true;
     const Place place = placeOf(position);
     const float reach = kReachOnGrid * radius / m_radius * kSquaresPerRadius;
@@ -155,6 +154,14 @@ bool SurfacePatch::speaksFor(const Scene& scene, const Vec3f& position, const Ve
 bool SurfacePatch::counts(const Scene& scene, const Photon& photon) const {
     return (!m_isAmongSheets && isInner(placeOf(photon.position))) ||
            sees(scene, photon.position, photon.normal.unpack());
+}
+
+TwoRadii SurfacePatch::countedFlux(const Scene& scene, const PhotonMap& map, const Vec3f& position,
+                                   const Vec3f& normal, float radius, const TwoRadii& all) const {
+    if (m_isBesideSheets) return map.fluxInPlane(position, normal, radius);
+    if (!hidesSurface()) return all;
+    return map.fluxWithin(position, normal, radius,
+                          [&](std::uint32_t index) { return counts(scene, map.photon(index)); });
 }
 
 // Beyond the grid all is as at its border: past an edge there is nothing, away from it surface goes

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "integrator/photons/photon_leaf.h"
+#include "integrator/photons/photon_map.h"
 #include "integrator/scene/scene.h"
 
 namespace pm {
@@ -38,9 +38,6 @@ class SurfacePatch {
                    float radius) const;
     // No edge, fold or obstacle within reach: all discs are whole, all photons count.
     bool isWhole() const { return !m_grid; }
-    // Whole, in one plane, and another sheet may lie closer than that tells of: photons count that
-    // lie in the plane.
-    bool isBesideSheets() const { return m_isBesideSheets; }
     // Photons may lie where surface is not seen, beyond a wall or under a ball: see counts().
     // In scenes with sheets under one, too, wherever all is not one plane.
     bool hidesSurface() const {
@@ -50,6 +47,11 @@ class SurfacePatch {
     Shares shares(const Vec3f& position, float radius) const;
     // Whether a photon, within a disc around a point that this speaks for, is to be counted.
     bool counts(const Scene& scene, const Photon& photon) const;
+    // The flux of those of a map's photons that count, W, at a radius and at that over sqrt(2), of
+    // a disc around a point that this speaks for. all: PhotonMap::fluxWithin there. radius: scene
+    // units.
+    TwoRadii countedFlux(const Scene& scene, const PhotonMap& map, const Vec3f& position,
+                         const Vec3f& normal, float radius, const TwoRadii& all) const;
 
     std::uint64_t memoryBytes() const { return sizeof(*this) + (m_grid ? sizeof(Grid) : 0); }
 
@@ -89,6 +91,8 @@ class SurfacePatch {
 
     Vec3f m_position, m_normal, m_apex;  // the normal is 0 where this speaks for no point
     float m_radius = 0.0f, m_height = 0.0f;
+    // Of a scene with sheets; and whole there, in one plane, where another sheet may lie closer
+    // than that tells of: photons count that lie in the plane.
     bool m_isAmongSheets = false, m_isBesideSheets = false;
     std::unique_ptr<Grid> m_grid;
 };

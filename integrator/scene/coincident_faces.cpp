@@ -32,11 +32,12 @@ constexpr float kRoundings = 4 * 0x1p-24f;
 // What is found on some faces.
 struct Scene::CoincidentFaces::Found {
     std::vector<Face> faces;
-    std::size_t doubledLamps = 0, doubledGlass = 0;
+    std::size_t doubledLamps = 0, hiddenSheets = 0, doubledGlass = 0;
 
     void join(const Found& other) {
         faces.insert(faces.end(), other.faces.begin(), other.faces.end());
         doubledLamps += other.doubledLamps;
+        hiddenSheets += other.hiddenSheets;
         doubledGlass += other.doubledGlass;
     }
 };
@@ -45,7 +46,8 @@ Scene::CoincidentFaces::Rank Scene::CoincidentFaces::rankOf(const Scene& scene, 
     const ShapeRecord& record = scene.m_shapes[face.shape];
     if (record.lightOf(face.primitive) != kNoLight) return Rank::kShining;
     const MaterialDescription& material = scene.material(record.materialOf(face.primitive));
-    return material.kind == MaterialKind::kDielectric ? Rank::kGlass : Rank::kOpaque;
+    if (material.kind == MaterialKind::kDielectric) return Rank::kGlass;
+    return isSheet(material) ? Rank::kSheet : Rank::kOpaque;
 }
 
 // Whether a point of another face lies in a face's plane, and both lie alike, as far as rays can
@@ -65,7 +67,7 @@ void Scene::CoincidentFaces::search(const Scene& scene, const Face& face, std::u
     const Corner corner = record.corner(face.primitive);
     if (!(lengthSquared(cross(corner.e1, corner.e2)) > 0)) return;
     const Rank rank = rankOf(scene, face);
-    bool isAmong = false, isDoubled = false;
+    bool isAmong = false, isLost = false;
     for (std::uint32_t i = 0; i < points; ++i) {
         // The first one is the middle.
         const Vec2f b = i == 0 ? Vec2f{1.0f / 3, 1.0f / 3} : sampleTriangle(spreadPoint(i));
@@ -83,11 +85,16 @@ void Scene::CoincidentFaces::search(const Scene& scene, const Face& face, std::u
             isAmong = true;
             const bool facesAlike =
                 dot(normal, scene.m_shapes[other.shape].facets[other.primitive].normal) > 0.0f;
-            isDoubled |= rankOf(scene, other) == rank && (rank == Rank::kGlass || facesAlike);
+            const Rank ofOther = rankOf(scene, other);
+            isLost |= (ofOther == rank && (rank != Rank::kShining || facesAlike)) ||
+                      (rank == Rank::kSheet && ofOther > rank);
         });
     }
     if (isAmong) found.faces.push_back(face);
-    if (isDoubled) ++(rank == Rank::kGlass ? found.doubledGlass : found.doubledLamps);
+    if (isLost)
+        ++(rank == Rank::kGlass   ? found.doubledGlass
+           : rank == Rank::kSheet ? found.hiddenSheets
+                                  : found.doubledLamps);
 }
 
 void Scene::CoincidentFaces::addNotices(const Found& found, std::vector<Notice>& notices) {
@@ -97,6 +104,12 @@ void Scene::CoincidentFaces::addNotices(const Found& found, std::vector<Notice>&
              fmt::format("{} triangles that shine lie on others that shine the same way: they "
                          "light twice and are seen once; leave one of each out",
                          found.doubledLamps)});
+    if (found.hiddenSheets > 0)
+        notices.push_back(
+            {NoticeCode::kDegenerateGeometry,
+             fmt::format("{} half-transparent triangles lie on others that are opaque or "
+                         "half-transparent too: one of each two is not seen; leave a gap",
+                         found.hiddenSheets)});
     if (found.doubledGlass > 0)
         notices.push_back(
             {NoticeCode::kDegenerateGeometry,
@@ -112,8 +125,9 @@ std::unique_ptr<const Scene::CoincidentFaces> Scene::CoincidentFaces::find(
         const ShapeRecord& record = scene.m_shapes[shape];
         if (!record.mesh) continue;
         const bool mayBe = std::ranges::any_of(record.materials, [&](std::uint32_t m) {
-            return scene.material(m).kind == MaterialKind::kDielectric ||
-                   !isBlack(scene.material(m).emission);
+            const MaterialDescription& material = scene.material(m);
+            return material.kind == MaterialKind::kDielectric || isSheet(material) ||
+                   !isBlack(material.emission);
         });
         if (!mayBe) continue;
         for (std::uint32_t i = 0; i < record.mesh->triangles.size(); ++i)

@@ -14,8 +14,9 @@ namespace pm {
 
 // Lamps that lie in their ceiling's plane, glass that stands exactly on a floor: rays meet both
 // within roundings, and which one is told would be chance. Here it is a rule: a lamp that shines
-// towards the ray before what is opaque, that before glass, so that light that has come through
-// glass is on the floor and not beyond it; of two alike the first in the scene.
+// towards the ray before what is opaque, that before what is half transparent, and that before
+// glass, so that light that has come through glass is on the floor and not beyond it; of two alike
+// the first in the scene.
 //
 // Opaque faces that lie on opaque ones are not looked for.
 class Scene::CoincidentFaces {
@@ -38,7 +39,7 @@ class Scene::CoincidentFaces {
         auto operator<=>(const Face&) const = default;
     };
     struct Found;
-    enum class Rank : std::uint8_t { kGlass, kOpaque, kShining };
+    enum class Rank : std::uint8_t { kGlass, kSheet, kOpaque, kShining };
 
     CoincidentFaces(const Scene& scene, const std::vector<Face>& faces);
     static Rank rankOf(const Scene& scene, const Face& face);

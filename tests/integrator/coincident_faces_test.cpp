@@ -98,6 +98,30 @@ TEST(CoincidentFaces, GlassOnAFloorIsMetAsTheFloor) {
         }
 }
 
+TEST(CoincidentFaces, ASheetOnAFloorIsMetAsTheFloor) {
+    for (const Frame3& at : frames())
+        for (const bool sheetFirst : {false, true}) {
+            SceneMaker maker;
+            const auto white = maker.diffuse(Rgb(0.7f));
+            MaterialDescription description;
+            description.diffuse = Rgb(0.3f);
+            description.transparency = 0.9f;
+            const auto sheet = maker.material(description);
+            if (sheetFirst) square(maker, at, 0.5, true, sheet, 3);
+            square(maker, at, 2, true, white, 2);
+            if (!sheetFirst) square(maker, at, 0.5, true, sheet, 3);
+            const auto scene = maker.build();
+            int wrong = 0;
+            for (const double side : {1.0, -1.0})
+                shoot(*scene, at, side,
+                      [&](const Surface& surface, double) { wrong += surface.material != white; });
+            EXPECT_EQ(0, wrong) << "of " << 2 * kRays << ", " << at.origin.x << " " << sheetFirst;
+            EXPECT_TRUE(std::ranges::any_of(scene->notices(), [](const Notice& notice) {
+                return notice.text.starts_with("18 half-transparent triangles lie on others");
+            }));
+        }
+}
+
 // Two faces as one lamp that shines both ways.
 TEST(CoincidentFaces, LampsBackToBackShineBothWays) {
     for (const Frame3& at : frames()) {
