@@ -29,6 +29,10 @@ constexpr double kLeastWorth = 0.05, kMostWorth = 2.0;
 // Photons that an expectation counts for beside what a pilot has measured.
 constexpr double kPriorPhotons = 8.0;
 
+// Casters less wide than so many times the focus bring photons enough into it: of 100,000 some 100.
+// Those that are aimed at one caster alone are better stratified.
+constexpr double kMuchWider = 32.0;
+
 // Of photons that are aimed at a focus, the share for the innermost ball, and what is unaimed:
 // light may come by way of anything.
 constexpr double kInnermostShare = 0.5;
@@ -52,18 +56,21 @@ std::vector<Caster> ballsAround(const Focus& focus, double sceneRadius) {
     return balls;
 }
 
-// Those balls of a focus that a wider caster reaches into.
+// Those balls of a focus that a wider caster reaches into, if one is much wider than the first.
 std::vector<Caster> ballsInside(std::span<const Caster> casters, const Focus& focus) {
     std::vector<Caster> balls;
     if (focus.isEverywhere()) return balls;
     const Vec3d centre(focus.centre);
-    const auto isWider = [&](double radius) {
+    const auto reachesInto = [&](double radius, double times) {
         return std::ranges::any_of(casters, [&](const Caster& caster) {
-            return caster.radius > radius &&
+            return caster.radius > times * radius &&
                    length(caster.centre - centre) < caster.radius + radius;
         });
     };
-    for (double radius = radiusOf(focus); balls.size() < kMostBalls && isWider(radius); radius *= 2)
+    const double innermost = radiusOf(focus);
+    if (!reachesInto(innermost, kMuchWider)) return balls;
+    for (double radius = innermost; balls.size() < kMostBalls && reachesInto(radius, 1);
+         radius *= 2)
         balls.push_back({centre, radius});
     return balls;
 }

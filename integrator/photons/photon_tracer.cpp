@@ -19,7 +19,9 @@ namespace pm {
 
 namespace {
 
-constexpr std::uint64_t kBatchSize = 4096;
+// Small enough for a pass's photons to be shared evenly among many threads: eight batches of 4096
+// left two of these at 1.83 times the speed of one.
+constexpr std::uint64_t kBatchSize = 512;
 // Light can be caught for ever between lossless surfaces; what is still on its way after this many
 // events is counted as lost.
 constexpr int kMaxEvents = 1000;
