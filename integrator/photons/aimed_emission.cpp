@@ -10,6 +10,7 @@
 #include "integrator/photons/aim_caps.h"
 #include "integrator/photons/aim_shadows.h"
 #include "integrator/photons/caustic_casters.h"
+#include "integrator/photons/focus_balls.h"
 #include "integrator/photons/place_groups.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
@@ -29,51 +30,12 @@ constexpr double kLeastWorth = 0.05, kMostWorth = 2.0;
 // Photons that an expectation counts for beside what a pilot has measured.
 constexpr double kPriorPhotons = 8.0;
 
-// Casters less wide than so many times the focus bring photons enough into it: of 100,000 some 100.
-// Those that are aimed at one caster alone are better stratified.
-constexpr double kMuchWider = 32.0;
-
 // Of photons that are aimed at a focus, the share for the innermost ball, and what is unaimed:
 // light may come by way of anything.
 constexpr double kInnermostShare = 0.5;
 constexpr float kUnaimedShareOfFocus = 0.25f;
 
 constexpr const char* kAiming = "aiming photons";
-
-double radiusOf(const Focus& focus) {
-    return 1.0 / std::sqrt(static_cast<double>(focus.inverseRadiusSquared));
-}
-
-// The balls of a focus, as many as it takes to hold the scene.
-std::vector<Caster> ballsAround(const Focus& focus, double sceneRadius) {
-    std::vector<Caster> balls;
-    const Vec3d centre(focus.centre);
-    const double whole = length(centre) + sceneRadius;
-    for (double radius = radiusOf(focus); balls.size() < kMostCasters; radius *= 2) {
-        balls.push_back({centre, radius});
-        if (radius >= whole) break;
-    }
-    return balls;
-}
-
-// Those balls of a focus that a wider caster reaches into, if one is much wider than the first.
-std::vector<Caster> ballsInside(std::span<const Caster> casters, const Focus& focus) {
-    std::vector<Caster> balls;
-    if (focus.isEverywhere()) return balls;
-    const Vec3d centre(focus.centre);
-    const auto reachesInto = [&](double radius, double times) {
-        return std::ranges::any_of(casters, [&](const Caster& caster) {
-            return caster.radius > times * radius &&
-                   length(caster.centre - centre) < caster.radius + radius;
-        });
-    };
-    const double innermost = radiusOf(focus);
-    if (!reachesInto(innermost, kMuchWider)) return balls;
-    for (double radius = innermost; balls.size() < kMostBalls && reachesInto(radius, 1);
-         radius *= 2)
-        balls.push_back({centre, radius});
-    return balls;
-}
 
 // Mean over the viewpoints, sr.
 double meanSolidAngle(const Caster& caster, std::span<const EmissionPoint> viewpoints) {
