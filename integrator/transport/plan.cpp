@@ -190,10 +190,12 @@ void planGlobalMap(const RenderSettings& settings, Plan& plan) {
 }
 
 void planCausticMap(const SceneTraits& traits, Plan& plan) {
-    plan.reasons.push_back(
-        fmt::format("caustic map: {} photons a pass, aimed, {}", plan.causticPhotons,
-                    traits.specular ? "since the scene has surfaces that are not diffuse"
-                                    : "though every surface is diffuse"));
+    plan.reasons.push_back(fmt::format(
+        "caustic map: {} photons a pass, {}", plan.causticPhotons,
+        traits.specular ? "since the scene has surfaces that are not diffuse: aimed at those, and "
+                          "where they reach far beyond what is seen, half of them at that, as a "
+                          "pilot finds"
+                        : "though every surface is diffuse"));
     if (!plan.globalMap) return;
     plan.reasons.push_back(fmt::format(
         "light descended from caustics: they are lamps to the gather points, which find them by "

@@ -13,7 +13,8 @@ namespace pm::bench {
 
 namespace {
 
-constexpr std::int32_t kBucket = 32;
+// As small as the pieces that the library shares out at the end of a pass.
+constexpr std::int32_t kBucket = 8;
 
 // Sums of radiance over passes, weighted by samples.
 struct Sums {
