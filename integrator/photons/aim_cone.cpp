@@ -143,4 +143,12 @@ float AimCone::pdfSolidAngle(const Vec3f& direction) const {
     return holds(mirrored(direction)) ? 2.0f * evenDensity() : evenDensity();
 }
 
+double solidAngleFrom(std::span<const EmissionPoint> points, const Caster& caster) {
+    double sum = 0;
+    AimCone cone;
+    for (const EmissionPoint& point : points)
+        if (cone.aim(caster, point)) sum += static_cast<double>(cone.solidAngle);
+    return sum;
+}
+
 }  // namespace pm

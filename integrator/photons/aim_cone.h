@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <span>
+
 #include "integrator/scene/beam.h"
 #include "integrator/values/vec.h"
 
@@ -65,5 +67,8 @@ struct AimCone {
         return direction - normal * (2.0f * dot(direction, normal));
     }
 };
+
+// AimCone::solidAngle of a caster, summed over points of emission; sr.
+double solidAngleFrom(std::span<const EmissionPoint> points, const Caster& caster);
 
 }  // namespace pm

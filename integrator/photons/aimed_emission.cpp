@@ -37,15 +37,6 @@ constexpr float kUnaimedShareOfFocus = 0.25f;
 
 constexpr const char* kAiming = "aiming photons";
 
-// Mean over the viewpoints, sr.
-double meanSolidAngle(const Caster& caster, std::span<const EmissionPoint> viewpoints) {
-    double sum = 0;
-    AimCone cone;
-    for (const EmissionPoint& point : viewpoints)
-        if (cone.aim(caster, point)) sum += static_cast<double>(cone.solidAngle);
-    return sum / static_cast<double>(viewpoints.size());
-}
-
 // Flux, and in how many photons, of a pilot.
 struct Landing {
     double emitted = 0, landed = 0, photons = 0;
@@ -134,12 +125,13 @@ void AimedEmission::aimAtFocus(const CancelCheck& cancel) {
 
 // From where most light comes the balls together fill as much as what casts.
 void AimedEmission::addBalls(const Focus& seen, std::span<const EmissionPoint> viewpoints) {
-    const std::vector<Caster> balls = ballsInside(m_casters, seen);
-    double whole = 0;
-    for (const Caster& caster : m_casters) whole += meanSolidAngle(caster, viewpoints);
     m_prior.assign(m_casters.size(), 1.0);
+    const std::vector<Caster> balls = ballsInside(m_casters, seen);
+    if (balls.empty()) return;
+    double whole = 0;
+    for (const Caster& caster : m_casters) whole += solidAngleFrom(viewpoints, caster);
     for (const Caster& ball : balls) {
-        const double solidAngle = meanSolidAngle(ball, viewpoints);
+        const double solidAngle = solidAngleFrom(viewpoints, ball);
         if (!(solidAngle > 0)) continue;
         m_casters.push_back(ball);
         m_prior.push_back(whole / (solidAngle * static_cast<double>(balls.size())));

@@ -239,11 +239,7 @@ class CasterTree {
 
     // Solid angle of a node's best division, over the viewpoints; undoes what is not worth it.
     double chooseCost(std::size_t index) {
-        double whole = 0;
-        AimCone cone;
-        for (const EmissionPoint& point : m_viewpoints)
-            if (cone.aim(m_nodes[index].bounds, point))
-                whole += static_cast<double>(cone.solidAngle);
+        const double whole = solidAngleFrom(m_viewpoints, m_nodes[index].bounds);
         if (m_nodes[index].firstChild == 0) return whole;
         const std::size_t child = m_nodes[index].firstChild;
         const double divided = chooseCost(child) + chooseCost(child + 1);
