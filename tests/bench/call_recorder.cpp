@@ -75,8 +75,8 @@ static_assert(std::is_same_v<decltype(&Camera::ray), Ray (Camera::*)(double, dou
 Ray realCameraRay(const Camera*, double, double) __asm__("__real__ZNK2pm6Camera3rayEdd");
 Ray wrapCameraRay(const Camera*, double, double) __asm__("__wrap__ZNK2pm6Camera3rayEdd");
 Ray wrapCameraRay(const Camera* camera, double x, double y) {
-    cameraRayComes = true;
     if (recorded) {
+        cameraRayComes = true;
         ++recorded->samplers;
         ++recorded->pairs;  // the place within the pixel
     }
