@@ -193,7 +193,10 @@ class GatherPoints {
     PointTiles m_tiles;
     float m_planeTolerance;  // scene units; what rounding may lift a point off its plane
     std::unique_ptr<TileSlot[]> m_slots;
-    mutable std::atomic<std::size_t> m_tilesHeld{0}, m_mostTilesHeld{0};
+    // Written with every point: not in a cache line with what every look-up reads.
+    static constexpr std::size_t kCacheLine = 64;
+    alignas(kCacheLine) mutable std::atomic<std::size_t> m_tilesHeld{0};
+    mutable std::atomic<std::size_t> m_mostTilesHeld{0};
     mutable std::atomic<std::uint64_t> m_raysTraced{0};
 };
 
