@@ -16,6 +16,7 @@ struct SeenSamples {
     double samples = 0;  // their number
     double sums[3]{};    // of the beauty
     double square = 0;   // sum over samples and channels of the beauty squared
+    double edges = 0;    // of the passes, those whose samples met unlike surfaces
 };
 
 // Relative variance of samples taken together: over r^2 + 0.01, r their mean, the mean of the

@@ -27,7 +27,7 @@ std::size_t evenChannels(std::int32_t channels, std::int32_t biasProbeFirst, boo
 }
 
 // Floats of SeenSamples.
-constexpr std::int32_t kSeenChannels = 5;
+constexpr std::int32_t kSeenChannels = 6;
 
 // Of a rule's samples: floats of a pass that can't be read.
 std::int32_t ruleChannels(bool adaptive, bool groups) {
@@ -38,6 +38,7 @@ void addSeen(const float* values, SeenSamples& seen) {
     seen.samples += static_cast<double>(values[0]);
     for (int c = 0; c < 3; ++c) seen.sums[c] += static_cast<double>(values[c + 1]);
     seen.square += static_cast<double>(values[4]);
+    seen.edges += static_cast<double>(values[5]);
 }
 
 void checkNotEmpty(const Rect& window) {

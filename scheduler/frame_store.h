@@ -62,7 +62,7 @@ class FrameStore {
     // kBeautyChannels. beautyFirst: the first of the three channels whose error is told.
     // biasProbeFirst: the first of three that hold their bias probe, -1 where nothing is biased.
     // emissionFirst: the first of three with the part of the beauty that comes from lamps the pixel
-    // sees, -1 where that is not told apart. rule: of adaptive renders; there the last 5 channels
+    // sees, -1 where that is not told apart. rule: of adaptive renders; there the last 6 channels
     // of a pass are its SeenSamples, which are added up by halves and can't be read; with groups
     // one more follows, the contribution: any number from 0 on that is alike where samples show the
     // same. Errors: kInvalidArgument outside of that; kOutOfMemory.

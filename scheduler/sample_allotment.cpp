@@ -22,6 +22,9 @@ constexpr double kSamplesOfReference = 16;
 // What the neighbours met may be here, too, and not have been met yet: they count as so many
 // samples of the pixel's own.
 constexpr double kSamplesOfNeighbours = 3;
+// Where samples meet unlike surfaces there is an edge, and beside it there may be what none has met:
+// the lit rim of a wall. So many samples of such a relative variance are added to the pixel's own.
+constexpr double kSamplesOfEdge = 4, kVarianceOfEdge = 0.8;
 // In four passes; see isDivided().
 constexpr double kSamplesThatDivide = 16;
 // More than the least gets who wants more than so many times the least: samples that are all alike
@@ -120,7 +123,11 @@ void allotSamples(const SampleRule& rule, std::uint32_t passes,
     const AtomNoise noise(seen);
     for (std::size_t i = 0; i < kAtomPixels; ++i) {
         if (!rule.isAlone()) {
-            const double variance = noise.ofPixel(i, kSamplesOfNeighbours);
+            double variance = noise.ofPixel(i, kSamplesOfNeighbours);
+            const double known = seen[i].samples + kSamplesOfNeighbours;
+            if (seen[i].edges > 0)
+                variance = (known * variance + kSamplesOfEdge * kVarianceOfEdge) /
+                           (known + kSamplesOfEdge);
             samples[i] = samplesOfSpread(rule, passes, std::sqrt(variance));
             continue;
         }

@@ -27,6 +27,9 @@ namespace pm {
 // two: low-discrepancy sequences are at their best there, and a pixel that needs no more samples
 // than another is not to have some more.
 //
+// A pixel whose samples met unlike surfaces holds an edge, and few samples tell little of how much
+// light differs there: it is taken to differ much until they have shown more.
+//
 // That is so where the samples of a pass share noise, such as that of its photons: more samples
 // don't lower it, more passes do. Where they share none (isAlone) a pixel's passes are as good as
 // one, and all that counts is how many samples a pixel has beside others. So there

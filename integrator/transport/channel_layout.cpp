@@ -15,7 +15,7 @@ ChannelLayout channelLayout(const RenderSettings& settings) {
     layout.normal = place(settings.wantNormal, 3);
     layout.depth = place(settings.wantDepth, 1);
     layout.biasProbe = place(settings.integrator == IntegratorKind::kPhoton, 3);
-    layout.seen = place(settings.isAdaptive(), 5);
+    layout.seen = place(settings.isAdaptive(), 6);
     layout.contribution = place(settings.isAdaptive() && settings.hasGroups(), 1);
     return layout;
 }

@@ -21,8 +21,9 @@ struct ChannelLayout {
     std::int32_t depth = -1;     // 1: along the view axis, scene units, premultiplied by coverage
     // 3: beauty with the radii of all estimates narrowed by sqrt(2), minus beauty; what shows bias
     std::int32_t biasProbe = -1;
-    // 5, the last: of the samples that adaptive renders decide by (SampleRun::seen) the number, the
-    // sums of the beauty's channels, and the sum over samples and channels of their squares.
+    // 6, the last: of the samples that adaptive renders decide by (SampleRun::seen) the number, the
+    // sums of the beauty's channels, the sum over samples and channels of their squares, and 1
+    // where they met unlike surfaces first, 0 where all met the same.
     std::int32_t seen = -1;
     // 1, after those and where groups may be divided (RenderSettings::hasGroups): what a group's
     // sample shows, a whole number below 2^25 that is another for another object or material.

@@ -3,6 +3,7 @@
 #include "integrator/transport/pixel_sums.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "integrator/sampling/sampler.h"
@@ -13,19 +14,13 @@ namespace {
 
 // Far above that of any picture, and a float.
 constexpr double kLargestSquare = 1e36;
+// Normals of a surface within one pixel: some 25 degrees apart. And of the way from one point of it
+// to another the part along the normal.
+constexpr float kLeastCosineAlike = 0.9f, kMostRiseAlike = 0.5f;
 
 template <typename Triple>
 void addTo(std::array<double, 3>& sum, const Triple& value) {
     for (int c = 0; c < 3; ++c) sum[static_cast<std::size_t>(c)] += static_cast<double>(value[c]);
-}
-
-void addSeen(const Rgb& beauty, std::array<double, 5>& seen) {
-    ++seen[0];
-    for (int c = 0; c < 3; ++c) {
-        const auto value = static_cast<double>(beauty[c]);
-        seen[static_cast<std::size_t>(c) + 1] += value;
-        seen[4] += value * value;
-    }
 }
 
 // ChannelLayout::contribution; 0 where the sample met nothing.
@@ -41,13 +36,36 @@ bool PixelSums::accepts(const SampleRadiance& s) {
            isFinite(s.indirect) && isFinite(s.biasProbe);
 }
 
+bool PixelSums::FirstHit::isUnlike(const FirstHit& other) const {
+    if (any != other.any || !any) return any != other.any;
+    if (shape != other.shape || material != other.material) return true;
+    const Vec3f way = other.position - position;
+    return dot(normal, other.normal) < kLeastCosineAlike ||
+           std::abs(dot(way, normal)) > kMostRiseAlike * length(way);
+}
+
+void PixelSums::addSeen(const SampleRadiance& s) {
+    const FirstHit hit{s.coverage > 0.0f, s.firstShape, s.firstMaterial, s.firstPosition, s.normal};
+    if (m_seen[0] == 0)
+        m_firstSeen = hit;
+    else
+        m_seesEdge |= m_firstSeen.isUnlike(hit);
+    ++m_seen[0];
+    const Rgb beauty = s.emission + s.direct + s.caustic + s.indirect;
+    for (int c = 0; c < 3; ++c) {
+        const auto value = static_cast<double>(beauty[c]);
+        m_seen[static_cast<std::size_t>(c) + 1] += value;
+        m_seen[4] += value * value;
+    }
+}
+
 void PixelSums::add(const SampleRadiance& s, double depth, bool isSeen) {
     addTo(m_emission, s.emission);
     addTo(m_direct, s.direct);
     addTo(m_caustic, s.caustic);
     addTo(m_indirect, s.indirect);
     addTo(m_biasProbe, s.biasProbe);
-    if (isSeen) addSeen(s.emission + s.direct + s.caustic + s.indirect, m_seen);
+    if (isSeen) addSeen(s);
     m_contribution = contributionOf(s);
     m_coverage += static_cast<double>(s.coverage);
     if (s.coverage == 0.0f) return;
@@ -71,6 +89,8 @@ void PixelSums::write(const ChannelLayout& layout, std::uint32_t samples, float*
     for (std::size_t i = 0; i < m_seen.size() && layout.seen >= 0; ++i)
         pixel[static_cast<std::size_t>(layout.seen) + i] =
             static_cast<float>(std::min(m_seen[i], kLargestSquare));
+    if (layout.seen >= 0)
+        pixel[static_cast<std::size_t>(layout.seen) + m_seen.size()] = m_seesEdge ? 1.0f : 0.0f;
     if (layout.contribution >= 0) pixel[layout.contribution] = m_contribution;
     put(layout.albedo, m_albedo);
     put(layout.normal, m_normal);

@@ -27,7 +27,20 @@ class PixelSums {
     std::array<double, 3> m_emission{}, m_direct{}, m_caustic{}, m_indirect{}, m_biasProbe{},
         m_albedo{}, m_normal{};
     double m_coverage = 0, m_depth = 0;
+    // Where a sample first met something.
+    struct FirstHit {
+        bool any = false;
+        std::uint32_t shape = 0, material = 0;
+        Vec3f position, normal;
+
+        // Other objects or materials, a bend, or one behind the other.
+        bool isUnlike(const FirstHit& other) const;
+    };
+    void addSeen(const SampleRadiance& sample);
+
     std::array<double, 5> m_seen{};
+    FirstHit m_firstSeen;
+    bool m_seesEdge = false;
     float m_contribution = 0.0f;  // of the last sample
 };
 

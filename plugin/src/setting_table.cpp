@@ -42,7 +42,7 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
     {Setting::kAaLevelMost, "aaLevelMost", PMR_SETTING_INTEGER, "", "5", 0, 6, 1, "", true,
      "The most that a pixel gets whose samples differ, from the second pass on; aaLevel or less: "
      "every pixel gets the same.",
-     "Time goes to the pixels that need it; up to 400 bytes a pixel in place of 250."},
+     "Time goes to the pixels that need it; up to 480 bytes a pixel in place of 250."},
     {Setting::kAaThreshold, "aaThreshold", PMR_SETTING_NUMBER, "", "0.01", 0, 1, 1, "", true,
      "A pixel gets samples, from aaLevel to aaLevelMost, until one more in four passes would lower "
      "its squared relative error by less than this squared; from the fifth pass on, half of this. "

@@ -12,6 +12,8 @@
 #include "integrator/photons/irradiance_sites.h"
 #include "integrator/photons/photon_tracer.h"
 #include "integrator/sampling/sampler.h"
+#include "integrator/scene/camera.h"
+#include "scheduler/hilbert_order.h"
 #include "tests/bench/bench_scenes.h"
 #include "tests/bench/speed_bench.h"
 
@@ -22,6 +24,7 @@ namespace {
 constexpr std::uint32_t kNearest = 50;
 constexpr std::size_t kMapPhotons = 1'000'000;
 constexpr std::size_t kQueries = 50'000;
+constexpr std::int32_t kFrame = 224;  // pixels, both ways: as many
 
 struct Points {
     const PhotonMap& map;
@@ -92,6 +95,17 @@ class QueryBench {
         });
         for (std::size_t i = m_random.size(); i > 1; --i)
             std::swap(m_random[i - 1], m_random[mixBits(i) % i]);
+        const Camera camera(*m_scene, kFrame, kFrame);
+        for (const std::uint32_t pixel : hilbertOrder(kFrame, kFrame)) {
+            Surface seen;
+            const Ray ray = camera.ray(pixel % kFrame + 0.5, pixel / kFrame + 0.5);
+            // Photons lie, and are asked for, on diffuse surfaces alone.
+            if (!m_scene->intersect(ray, seen) ||
+                m_scene->material(seen.material).kind != MaterialKind::kSurface)
+                continue;
+            const float side = dot(ray.direction, seen.geometricNormal) < 0 ? 1.0f : -1.0f;
+            m_hilbert.push_back({seen.position, seen.geometricNormal * side, kNearest, 10.0f});
+        }
     }
 
     void compareWithNanoflann(Report& report, int turns) const {
@@ -113,6 +127,7 @@ class QueryBench {
         };
         add("random", m_random);
         add("Morton", m_coherent);
+        add("what a frame's pixels show, along a Hilbert curve", m_hilbert);
     }
 
     void measureOthers(Report& report, int turns) const {
@@ -198,7 +213,7 @@ class QueryBench {
     Points m_points;
     Tree m_tree;
     float m_radius = 0;
-    std::vector<PhotonQuery> m_random, m_coherent;
+    std::vector<PhotonQuery> m_random, m_coherent, m_hilbert;
     mutable std::array<std::uint32_t, kNearest> m_indices{};
     mutable std::array<float, kNearest> m_distances{};
 };

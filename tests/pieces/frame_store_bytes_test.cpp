@@ -16,7 +16,7 @@ namespace pm::test {
 namespace {
 
 constexpr std::int32_t kChannels = 11;
-constexpr std::int32_t kSeen = 5;  // of adaptive renders, in a pass only
+constexpr std::int32_t kSeen = 6;  // of adaptive renders, in a pass only
 const Rect kWindow{-3, 5, 22, 26}, kArea{-8, 0, 24, 32};
 
 std::unique_ptr<FrameStore> makeStore(bool adaptive) {

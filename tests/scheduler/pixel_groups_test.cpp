@@ -15,7 +15,7 @@
 namespace pm {
 namespace {
 
-constexpr std::int32_t kChannels = 9;  // beauty, SeenSamples, contribution
+constexpr std::int32_t kChannels = 10;  // beauty, SeenSamples, contribution
 constexpr Rect kAtom{0, 0, 8, 8};
 constexpr Rect kWindow{3, 1, 16, 8};  // cuts groups and an atom
 
@@ -41,7 +41,7 @@ void addPass(FrameStore& frame, std::uint32_t pass, const Sample& ofGroup, const
         const std::int32_t y = rect.y0 + static_cast<std::int32_t>(i) / rect.width();
         const Shown shown = next[i].isOfGroup ? ofGroup(x & ~1, y & ~1) : ofPixel(x, y);
         const float v = shown.value;
-        pixels.insert(pixels.end(), {v, v, v, 1, v, v, v, 3 * v * v, shown.contribution});
+        pixels.insert(pixels.end(), {v, v, v, 1, v, v, v, 3 * v * v, 0, shown.contribution});
         weights.push_back(next[i].isOfGroup ? 0.25f : 1.0f);
     }
     frame.addPass(pass, rect, pixels, weights);

@@ -23,7 +23,7 @@
 namespace pm {
 namespace {
 
-constexpr std::int32_t kChannels = 8;  // beauty, and what was seen of it
+constexpr std::int32_t kChannels = 9;  // beauty, and what was seen of it
 constexpr std::size_t kPixels = kAtomPixels;
 constexpr Rect kAtom{0, 0, 8, 8};
 constexpr SampleRule kTwoAtLeast{2, 64, 0.01};
@@ -240,6 +240,28 @@ TEST(SampleAllotment, neighboursOfANoisyPixelGetSamplesToo) {
         else
             EXPECT_EQ(samples[i], dx == 0 && dy == 0 ? 16u : 4u) << i;
     }
+}
+
+// An edge that a pixel's samples have met is taken to differ in light until they show that it
+// doesn't; where passes share no noise steps between means tell that.
+TEST(SampleAllotment, edgesGetSamplesUntilTheyShowLittle) {
+    constexpr std::size_t kEdge = 3 * 8 + 3;
+    const auto samplesAfter = [](double seen, const SampleRule& rule) {
+        auto atom = evenAtom(seen, 1.0, 0.0);
+        atom[kEdge].edges = 1;
+        std::array<std::uint16_t, kPixels> samples{};
+        allotSamples(rule, 1, atom, samples);
+        for (std::size_t i = 0; i < kPixels; ++i) {
+            if (i == kEdge) continue;
+            EXPECT_EQ(samples[i], rule.least) << i;
+        }
+        return samples[kEdge];
+    };
+    // sqrt(3.2 / (seen + 7)) / 0.04, to a power of two.
+    EXPECT_EQ(samplesAfter(4, kRule), 16);
+    EXPECT_EQ(samplesAfter(60, kRule), 4);
+    EXPECT_EQ(samplesAfter(1000, kRule), 1);
+    EXPECT_EQ(samplesAfter(4, kAlone), 1);
 }
 
 TEST(SampleAllotment, oneSampleEachIsComparedWithItsNeighbours) {

@@ -20,7 +20,7 @@
 namespace pm {
 namespace {
 
-constexpr std::int32_t kChannels = 8;  // beauty, and what was seen of it
+constexpr std::int32_t kChannels = 9;  // beauty, and what was seen of it
 constexpr std::size_t kPixels = kAtomPixels;
 constexpr Rect kAtom{0, 0, 8, 8};
 constexpr SampleRule kAlone{1, 64, 0.01, false, false};
