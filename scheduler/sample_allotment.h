@@ -28,7 +28,7 @@ namespace pm {
 // than another is not to have some more.
 //
 // A pixel whose samples met unlike surfaces holds an edge, and few samples tell little of how much
-// light differs there: it is taken to differ much until they have shown more.
+// light differs there: it is taken to differ much until those of the atom's edges have shown more.
 //
 // That is so where the samples of a pass share noise, such as that of its photons: more samples
 // don't lower it, more passes do. Where they share none (isAlone) a pixel's passes are as good as

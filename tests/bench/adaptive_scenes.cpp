@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "tests/bench/adaptive_scenes.h"
 
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -104,6 +105,32 @@ test::SceneMaker whiteBox() {
     return maker;
 }
 
+// The same of tiles below a pixel, of two materials that look alike: edges everywhere, and nothing
+// to see at them.
+test::SceneMaker tiledBox() {
+    test::SceneMaker maker;
+    const std::array<std::uint32_t, 2> materials = {maker.diffuse(Rgb(0.6f)),
+                                                    maker.diffuse(Rgb(0.6f))};
+    constexpr int kTiles = 128;
+    // Faces inwards: a right-handed pair of edges, whose cross product points in.
+    const auto tile = [&](const Vec3d& corner, const Vec3d& across, const Vec3d& along) {
+        for (int j = 0; j < kTiles; ++j)
+            for (int i = 0; i < kTiles; ++i)
+                maker.quad(corner + across * (i / double{kTiles}) + along * (j / double{kTiles}),
+                           across * (1 / double{kTiles}), along * (1 / double{kTiles}),
+                           materials[static_cast<std::size_t>((i + j) % 2)]);
+    };
+    tile({-1, -1, -1}, {0, 0, 2}, {2, 0, 0});
+    tile({-1, 1, -1}, {2, 0, 0}, {0, 0, 2});
+    tile({-1, -1, -1}, {2, 0, 0}, {0, 2, 0});
+    tile({-1, -1, 1}, {0, 2, 0}, {2, 0, 0});
+    tile({-1, -1, -1}, {0, 2, 0}, {0, 0, 2});
+    tile({1, -1, -1}, {0, 0, 2}, {0, 2, 0});
+    maker.quad({-0.5, 0.99, 0.3}, {1, 0, 0}, {0, 0, 0.5}, maker.diffuse({}, Rgb(6.0f)));
+    maker.camera({0, 0, 0.9}, {0, -0.2, -1}, {0, 1, 0}, 50);
+    return maker;
+}
+
 }  // namespace
 
 std::vector<AdaptiveScene> adaptiveScenes(const std::filesystem::path& peers) {
@@ -112,6 +139,8 @@ std::vector<AdaptiveScene> adaptiveScenes(const std::filesystem::path& peers) {
         {"bars", "the same in the shadow of bars: much noise, everywhere alike", barsEverywhere(),
          true},
         {"whitebox", "a closed white box: indirect light", whiteBox(), true},
+        {"tiles", "the white box of two materials that look alike: edges everywhere", tiledBox(),
+         true},
         {"edges", "shining shapes on black: edges only", edges(), true},
         {"quarter", "the plane, light through slits on a quarter of it", barsInAQuarter(), true},
         {"quarter-fine", "the plane, black specks far below a pixel on a quarter of it",

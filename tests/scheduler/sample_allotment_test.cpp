@@ -243,25 +243,40 @@ TEST(SampleAllotment, neighboursOfANoisyPixelGetSamplesToo) {
 }
 
 // An edge that a pixel's samples have met is taken to differ in light until they show that it
-// doesn't; where passes share no noise steps between means tell that.
+// doesn't, or others' do in an atom that is full of edges; where passes share no noise steps between
+// means tell that.
 TEST(SampleAllotment, edgesGetSamplesUntilTheyShowLittle) {
-    constexpr std::size_t kEdge = 3 * 8 + 3;
-    const auto samplesAfter = [](double seen, const SampleRule& rule) {
+    const auto samplesAfter = [](double seen, std::size_t edges, const SampleRule& rule) {
         auto atom = evenAtom(seen, 1.0, 0.0);
-        atom[kEdge].edges = 1;
+        for (std::size_t i = 0; i < edges; ++i) atom[i].edges = 1;
         std::array<std::uint16_t, kPixels> samples{};
         allotSamples(rule, 1, atom, samples);
-        for (std::size_t i = 0; i < kPixels; ++i) {
-            if (i == kEdge) continue;
-            EXPECT_EQ(samples[i], rule.least) << i;
-        }
-        return samples[kEdge];
+        for (std::size_t i = 1; i < kPixels; ++i)
+            EXPECT_EQ(samples[i], i < edges ? samples[0] : rule.least) << i;
+        return samples[0];
     };
-    // sqrt(3.2 / (seen + 7)) / 0.04, to a power of two.
-    EXPECT_EQ(samplesAfter(4, kRule), 16);
-    EXPECT_EQ(samplesAfter(60, kRule), 4);
-    EXPECT_EQ(samplesAfter(1000, kRule), 1);
-    EXPECT_EQ(samplesAfter(4, kAlone), 1);
+    // sqrt(4 v / (seen + 7)) / 0.04, to a power of two, v = 0.8 / (1 + seen edges / 128).
+    EXPECT_EQ(samplesAfter(4, 1, kRule), 16);
+    EXPECT_EQ(samplesAfter(4, 8, kRule), 16);
+    EXPECT_EQ(samplesAfter(60, 8, kRule), 2);
+    EXPECT_EQ(samplesAfter(1000, 8, kRule), 1);
+    // 8 samples in place of 128.
+    EXPECT_EQ(samplesAfter(4, kPixels, kRule), 2);
+    EXPECT_EQ(samplesAfter(4, 8, kAlone), 1);
+}
+
+// What one pixel of an edge has met the others of it have as well.
+TEST(SampleAllotment, edgesShareWhatTheyHaveMet) {
+    auto atom = evenAtom(64, 1.0, 0.0);
+    for (std::size_t i = 0; i < 16; ++i) atom[i].edges = 1;
+    atom[0].square += 64 * 3 * 20.0;
+    std::array<std::uint16_t, kPixels> samples{};
+    allotSamples(kRule, 1, atom, samples);
+    EXPECT_GT(samples[15], samples[40]);
+    const auto met = samples[15];
+    atom[0].square -= 64 * 3 * 20.0;
+    allotSamples(kRule, 1, atom, samples);
+    EXPECT_GT(met, samples[15]);
 }
 
 TEST(SampleAllotment, oneSampleEachIsComparedWithItsNeighbours) {
