@@ -22,9 +22,10 @@ constexpr double kSamplesOfReference = 16;
 // What the neighbours met may be here, too, and not have been met yet: they count as so many
 // samples of the pixel's own.
 constexpr double kSamplesOfNeighbours = 3;
-// Where samples meet unlike surfaces there is an edge, and beside it there may be what none has met:
-// the lit rim of a wall. The atom's edges are taken to have so much relative variance, as if so many
-// samples had shown that, and each of their pixels gets some samples of what they have together.
+// Where samples meet unlike surfaces there is an edge, and beside it there may be what none has
+// met: the lit rim of a wall. The atom's edges are taken to have so much relative variance, as if
+// so many samples had shown that, and each of their pixels gets some samples of what they have
+// together.
 constexpr double kSamplesOfEdge = 4, kVarianceOfEdge = 0.8, kSamplesOfVariance = 128;
 // Pixels of an atom that a line cuts. Where far more hold edges it is the surface that is so, of
 // leaves or tiles, and what their samples show counts for more: by the square.
@@ -146,8 +147,7 @@ void allotSamples(const SampleRule& rule, std::uint32_t passes,
             double variance = noise.ofPixel(i, kSamplesOfNeighbours);
             const double known = seen[i].samples + kSamplesOfNeighbours;
             if (seen[i].edges > 0)
-                variance =
-                    (known * variance + kSamplesOfEdge * ofEdges) / (known + kSamplesOfEdge);
+                variance = (known * variance + kSamplesOfEdge * ofEdges) / (known + kSamplesOfEdge);
             samples[i] = samplesOfSpread(rule, passes, std::sqrt(variance));
             continue;
         }

@@ -243,8 +243,8 @@ TEST(SampleAllotment, neighboursOfANoisyPixelGetSamplesToo) {
 }
 
 // An edge that a pixel's samples have met is taken to differ in light until they show that it
-// doesn't, or others' do in an atom that is full of edges; where passes share no noise steps between
-// means tell that.
+// doesn't, or others' do in an atom that is full of edges; where passes share no noise steps
+// between means tell that.
 TEST(SampleAllotment, edgesGetSamplesUntilTheyShowLittle) {
     const auto samplesAfter = [](double seen, std::size_t edges, const SampleRule& rule) {
         auto atom = evenAtom(seen, 1.0, 0.0);
