@@ -17,6 +17,14 @@ constexpr double kLeastOfSequence = 0.02;
 // pixel's own square is by so much of D^2 larger than it looks), and this share over n of the
 // variance that the neighbours show.
 constexpr double kShareOfEdge = 0.04, kSquareOfEdge = 0.1, kShareOfNeighbours = 0.015;
+// Where samples meet unlike surfaces there is an edge, and beside it there may be what none has
+// met: the lit rim of a wall. The atom's edges are taken to have so much relative variance, as if
+// so many samples had shown that, and each of their pixels gets some samples of what they have
+// together.
+constexpr double kSamplesOfEdge = 4, kVarianceOfEdge = 0.8, kSamplesOfVariance = 128;
+// Pixels of an atom that a line cuts. Where far more hold edges it is the surface that is so, of
+// leaves or tiles, and what their samples show counts for more: by the square.
+constexpr double kMostOfALine = 16;
 
 // Calls visit with each pixel of the 3 x 3 around this one that lies in the atom.
 template <typename Visit>
@@ -74,6 +82,21 @@ AtomNoise::AtomNoise(std::span<const SeenSamples, kAtomPixels> seen) : m_seen(se
         m_variance[i] = relativeVariance(about);
     }
     for (Together* const together : {&m_all, &m_ofColour[0], &m_ofColour[1]}) together->finish();
+    m_ofEdges = varianceOfEdges();
+}
+
+double AtomNoise::varianceOfEdges() const {
+    double count = 0, samples = 0, sum = 0;
+    for (std::size_t i = 0; i < kAtomPixels; ++i) {
+        if (!(m_seen[i].edges > 0)) continue;
+        ++count;
+        samples += m_seen[i].samples;
+        sum += m_seen[i].samples * m_ofOwn[i];
+    }
+    if (count == 0) return 0;
+    const double share = std::min(1.0, kMostOfALine / count);
+    const double before = kSamplesOfVariance * share * share;
+    return (before * kVarianceOfEdge + sum) / (before + samples);
 }
 
 // Half of it what the pixels around show by themselves, half by what they differ from each other,
@@ -178,8 +201,10 @@ void AtomNoise::Together::finish() {
 }
 
 double AtomNoise::ofPixel(std::size_t pixel, double neighbours) const {
-    const double own = m_seen[pixel].samples;
-    return (own * m_variance[pixel] + neighbours * around(pixel, true)) / (own + neighbours);
+    const double own = m_seen[pixel].samples, known = own + neighbours;
+    const double variance = (own * m_variance[pixel] + neighbours * around(pixel, true)) / known;
+    if (!(m_seen[pixel].edges > 0)) return variance;
+    return (known * variance + kSamplesOfEdge * m_ofEdges) / (known + kSamplesOfEdge);
 }
 
 AtomNoise::Expected AtomNoise::evened(std::size_t pixel) const {

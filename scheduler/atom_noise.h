@@ -29,7 +29,8 @@ class AtomNoise {
   public:
     explicit AtomNoise(std::span<const SeenSamples, kAtomPixels> seen);
 
-    // By the pixel's own samples and by its neighbours, which count as so many of its own.
+    // By the pixel's own samples and by its neighbours, which count as so many of its own; of a
+    // pixel with an edge also by what the atom's edges have shown, and are taken for before.
     double ofPixel(std::size_t pixel, double neighbours) const;
 
     struct Expected {
@@ -73,6 +74,7 @@ class AtomNoise {
         double m_ofSequence = 1;  // what low-discrepancy sequences leave of a variance
     };
 
+    double varianceOfEdges() const;
     double around(std::size_t pixel, bool withIt) const;
     double bend(std::size_t pixel) const;
     double apart(std::size_t a, std::size_t b) const;  // their means
@@ -86,6 +88,7 @@ class AtomNoise {
     Values m_variance{};  // the same, or of what is around where one sample has no spread
     Together m_all;
     std::array<Together, 2> m_ofColour;  // of the chessboard's fields
+    double m_ofEdges = 0;                // relative variance of pixels with edges, together
 };
 
 }  // namespace pm

@@ -22,14 +22,6 @@ constexpr double kSamplesOfReference = 16;
 // What the neighbours met may be here, too, and not have been met yet: they count as so many
 // samples of the pixel's own.
 constexpr double kSamplesOfNeighbours = 3;
-// Where samples meet unlike surfaces there is an edge, and beside it there may be what none has
-// met: the lit rim of a wall. The atom's edges are taken to have so much relative variance, as if
-// so many samples had shown that, and each of their pixels gets some samples of what they have
-// together.
-constexpr double kSamplesOfEdge = 4, kVarianceOfEdge = 0.8, kSamplesOfVariance = 128;
-// Pixels of an atom that a line cuts. Where far more hold edges it is the surface that is so, of
-// leaves or tiles, and what their samples show counts for more: by the square.
-constexpr double kMostOfALine = 16;
 // In four passes; see isDivided().
 constexpr double kSamplesThatDivide = 16;
 // More than the least gets who wants more than so many times the least: samples that are all alike
@@ -64,21 +56,6 @@ std::uint32_t nearestStep(double wanted, std::uint32_t most) {
     std::uint32_t power = 1;
     while (power < most && power * std::numbers::sqrt3 < wanted) power *= 2;
     return power > 1 && power * std::sqrt(1.5) < wanted ? power / 2 * 3 : power;
-}
-
-// Relative variance of the pixels of an atom that hold edges; 0 where there are none.
-double varianceOfEdges(std::span<const SeenSamples, kAtomPixels> seen) {
-    double count = 0, samples = 0, sum = 0;
-    for (const SeenSamples& pixel : seen) {
-        if (!(pixel.edges > 0)) continue;
-        ++count;
-        samples += pixel.samples;
-        sum += pixel.samples * relativeVariance(pixel);
-    }
-    if (count == 0) return 0;
-    const double share = std::min(1.0, kMostOfALine / count);
-    const double before = kSamplesOfVariance * share * share;
-    return (before * kVarianceOfEdge + sum) / (before + samples);
 }
 
 }  // namespace
@@ -141,13 +118,9 @@ void allotSamples(const SampleRule& rule, std::uint32_t passes,
                   std::span<const SeenSamples, kAtomPixels> seen, std::span<std::uint16_t> samples,
                   std::span<std::uint16_t> weights) {
     const AtomNoise noise(seen);
-    const double ofEdges = rule.isAlone() ? 0 : varianceOfEdges(seen);
     for (std::size_t i = 0; i < kAtomPixels; ++i) {
         if (!rule.isAlone()) {
-            double variance = noise.ofPixel(i, kSamplesOfNeighbours);
-            const double known = seen[i].samples + kSamplesOfNeighbours;
-            if (seen[i].edges > 0)
-                variance = (known * variance + kSamplesOfEdge * ofEdges) / (known + kSamplesOfEdge);
+            const double variance = noise.ofPixel(i, kSamplesOfNeighbours);
             samples[i] = samplesOfSpread(rule, passes, std::sqrt(variance));
             continue;
         }

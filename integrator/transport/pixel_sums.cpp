@@ -48,8 +48,8 @@ void PixelSums::addSeen(const SampleRadiance& s) {
     const FirstHit hit{s.coverage > 0.0f, s.firstShape, s.firstMaterial, s.firstPosition, s.normal};
     if (m_seen[0] == 0)
         m_firstSeen = hit;
-    else
-        m_seesEdge |= m_firstSeen.isUnlike(hit);
+    else if (m_firstSeen.isUnlike(hit))
+        m_seen[5] = 1;
     ++m_seen[0];
     const Rgb beauty = s.emission + s.direct + s.caustic + s.indirect;
     for (int c = 0; c < 3; ++c) {
@@ -89,8 +89,6 @@ void PixelSums::write(const ChannelLayout& layout, std::uint32_t samples, float*
     for (std::size_t i = 0; i < m_seen.size() && layout.seen >= 0; ++i)
         pixel[static_cast<std::size_t>(layout.seen) + i] =
             static_cast<float>(std::min(m_seen[i], kLargestSquare));
-    if (layout.seen >= 0)
-        pixel[static_cast<std::size_t>(layout.seen) + m_seen.size()] = m_seesEdge ? 1.0f : 0.0f;
     if (layout.contribution >= 0) pixel[layout.contribution] = m_contribution;
     put(layout.albedo, m_albedo);
     put(layout.normal, m_normal);

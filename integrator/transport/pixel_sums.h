@@ -38,9 +38,8 @@ class PixelSums {
     };
     void addSeen(const SampleRadiance& sample);
 
-    std::array<double, 5> m_seen{};
+    std::array<double, 6> m_seen{};  // as ChannelLayout::seen
     FirstHit m_firstSeen;
-    bool m_seesEdge = false;
     float m_contribution = 0.0f;  // of the last sample
 };
 

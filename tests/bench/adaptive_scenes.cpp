@@ -96,12 +96,17 @@ test::SceneMaker lines() {
     return maker;
 }
 
+// In a box from -1 to 1.
+void addLampAndCamera(test::SceneMaker& maker) {
+    maker.quad({-0.5, 0.99, 0.3}, {1, 0, 0}, {0, 0, 0.5}, maker.diffuse({}, Rgb(6.0f)));
+    maker.camera({0, 0, 0.9}, {0, -0.2, -1}, {0, 1, 0}, 50);
+}
+
 // A closed white box from within: light from everywhere, photons in each pass, no edge but corners.
 test::SceneMaker whiteBox() {
     test::SceneMaker maker;
     maker.box({-1, -1, -1}, {1, 1, 1}, maker.diffuse(Rgb(0.6f)), true);
-    maker.quad({-0.5, 0.99, 0.3}, {1, 0, 0}, {0, 0, 0.5}, maker.diffuse({}, Rgb(6.0f)));
-    maker.camera({0, 0, 0.9}, {0, -0.2, -1}, {0, 1, 0}, 50);
+    addLampAndCamera(maker);
     return maker;
 }
 
@@ -126,8 +131,7 @@ test::SceneMaker tiledBox() {
     tile({-1, -1, 1}, {0, 2, 0}, {2, 0, 0});
     tile({-1, -1, -1}, {0, 2, 0}, {0, 0, 2});
     tile({1, -1, -1}, {0, 0, 2}, {0, 2, 0});
-    maker.quad({-0.5, 0.99, 0.3}, {1, 0, 0}, {0, 0, 0.5}, maker.diffuse({}, Rgb(6.0f)));
-    maker.camera({0, 0, 0.9}, {0, -0.2, -1}, {0, 1, 0}, 50);
+    addLampAndCamera(maker);
     return maker;
 }
 
