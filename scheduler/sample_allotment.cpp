@@ -15,8 +15,7 @@ namespace pm {
 namespace {
 
 constexpr double kPassesOfALevel = 4;
-// What one or two passes show is little; from four on the threshold is divided by this.
-constexpr double kFiner = 2;
+
 // Those of level 3 in four passes, which errors are told by then.
 constexpr double kSamplesOfReference = 16;
 // What the neighbours met may be here, too, and not have been met yet: they count as so many
@@ -33,7 +32,13 @@ constexpr double kMostMadeUp = 2;
 // noisy one much larger pass is as good as none before.
 constexpr std::uint32_t kMostOfSecond = 16;
 
-// Where the samples of a pass share no noise: what the threshold is divided by.
+// What the threshold is divided by. A few samples show little, and what is spent by them is lost
+// where they mislead.
+double finer(std::uint32_t passes) {
+    return passes < 2 ? 1 / std::numbers::sqrt2 : passes < 4 ? std::numbers::sqrt2 : 2;
+}
+
+// The same where the samples of a pass share no noise.
 double finerAlone(std::uint32_t passes) {
     return passes < 2 ? 3 : passes < 4 ? 11 : 24;
 }
@@ -95,7 +100,7 @@ bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSample
 std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes, double spread) {
     double inPass = spread / rule.threshold / kPassesOfALevel;
     if (!rule.isAlone()) {
-        inPass *= passes < 4 ? 1 : kFiner;
+        inPass *= finer(passes);
         // A number that is none asks for nothing.
         const std::uint32_t power = inPass >= 0.5 ? nearestPower(inPass, rule.most) : 0;
         return static_cast<std::uint16_t>(std::clamp(power, rule.least, rule.most));

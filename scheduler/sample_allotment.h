@@ -22,8 +22,9 @@ namespace pm {
 // The rule: of N samples in four passes whose relative spread is s, one more lowers the squared
 // relative error by s^2 / N^2. A pixel gets samples until that is less than threshold^2, so
 // N = s / threshold: the allotment for which the sum of the squared errors is least for the same
-// number of samples. Relative means: to sqrt(r^2 + 0.01), r the mean, as in relMSE. Up to three
-// passes show little: from four on the threshold is halved. In a pass N / 4, rounded to a power of
+// number of samples. Relative means: to sqrt(r^2 + 0.01), r the mean, as in relMSE. The first
+// passes show little: for the second the threshold is sqrt(2) times as large, for the third and
+// fourth it is divided by sqrt(2), from the fifth on halved. In a pass N / 4, rounded to a power of
 // two: low-discrepancy sequences are at their best there, and a pixel that needs no more samples
 // than another is not to have some more.
 //

@@ -159,11 +159,12 @@ std::uint16_t samplesOf(std::uint32_t passes, double mean, double deviation,
 }
 
 TEST(SampleAllotment, samplesGrowWithTheRelativeSpread) {
-    // s / (4 threshold), s relative to sqrt(r^2 + 0.01), to the nearest power of two.
+    // From the fifth pass on s / (2 threshold), s relative to sqrt(r^2 + 0.01), to the nearest
+    // power of two.
     for (const double factor : {0.72, 1.0, 1.4})
         for (const unsigned count : {2u, 8u, 16u, 32u}) {
-            const double deviation = factor * count * 0.04 * std::sqrt(4.01);
-            EXPECT_EQ(samplesOf(2, 2.0, deviation), count) << factor;
+            const double deviation = factor * count * 0.02 * std::sqrt(4.01);
+            EXPECT_EQ(samplesOf(4, 2.0, deviation), count) << factor;
         }
     // At most and at least what the rule allows; a spread that is no number asks for nothing.
     EXPECT_EQ(samplesOf(2, 2.0, 0.0), 1u);
@@ -181,10 +182,16 @@ TEST(SampleAllotment, samplesArePowersOfTwo) {
     }
 }
 
-TEST(SampleAllotment, thresholdIsHalvedFromFourPassesOn) {
-    const double deviation = 4 * 0.04 * std::sqrt(4.01);
-    for (const auto& [passes, count] : {std::pair{2u, 4u}, std::pair{4u, 8u}, std::pair{64u, 8u}})
-        EXPECT_EQ(samplesOf(passes, 2.0, deviation), count) << passes;
+TEST(SampleAllotment, thresholdFallsAfterOneTwoAndFourPasses) {
+    // Of the threshold itself 16 samples a pass, to the power of two below and above: its
+    // sqrt(2)-fold and 1 / sqrt(2), then half of it.
+    const double even = 16 * 0.04 * std::sqrt(4.01);
+    for (const auto& [passes, count] :
+         {std::pair{1u, 8u}, std::pair{2u, 16u}, std::pair{4u, 32u}, std::pair{64u, 32u}})
+        EXPECT_EQ(samplesOf(passes, 2.0, 0.95 * even), count) << passes;
+    for (const auto& [passes, count] :
+         {std::pair{1u, 16u}, std::pair{2u, 32u}, std::pair{4u, 32u}, std::pair{64u, 32u}})
+        EXPECT_EQ(samplesOf(passes, 2.0, 1.05 * even), count) << passes;
 }
 
 // Pass 0 with the least decides for pass 1, pass 1 for pass 2; where nothing is shared, pass 2
@@ -238,7 +245,7 @@ TEST(SampleAllotment, neighboursOfANoisyPixelGetSamplesToo) {
         if (std::abs(dx) > 1 || std::abs(dy) > 1)
             EXPECT_EQ(samples[i], 1u) << i;
         else
-            EXPECT_EQ(samples[i], dx == 0 && dy == 0 ? 16u : 4u) << i;
+            EXPECT_EQ(samples[i], dx == 0 && dy == 0 ? 32u : 4u) << i;
     }
 }
 
@@ -255,9 +262,9 @@ TEST(SampleAllotment, edgesGetSamplesUntilTheyShowLittle) {
             EXPECT_EQ(samples[i], i < edges ? samples[0] : rule.least) << i;
         return samples[0];
     };
-    // sqrt(4 v / (seen + 7)) / 0.04, to a power of two, v = 0.8 / (1 + seen edges / 128).
-    EXPECT_EQ(samplesAfter(4, 1, kRule), 16);
-    EXPECT_EQ(samplesAfter(4, 8, kRule), 16);
+    // sqrt(4 v / (seen + 7)) / 0.057, to a power of two, v = 0.8 / (1 + seen edges / 128).
+    EXPECT_EQ(samplesAfter(4, 1, kRule), 8);
+    EXPECT_EQ(samplesAfter(4, 8, kRule), 8);
     EXPECT_EQ(samplesAfter(60, 8, kRule), 2);
     EXPECT_EQ(samplesAfter(1000, 8, kRule), 1);
     // 8 samples in place of 128.
