@@ -15,7 +15,6 @@ namespace pm {
 namespace {
 
 constexpr double kPassesOfALevel = 4;
-
 // Those of level 3 in four passes, which errors are told by then.
 constexpr double kSamplesOfReference = 16;
 // What the neighbours met may be here, too, and not have been met yet: they count as so many
