@@ -93,8 +93,32 @@ AimedEmission AimedEmission::atFocus(const Scene& scene, const LightSampler& lig
                                      const Focus& focus, const CancelCheck& cancel) {
     AimedEmission aimed(scene, lights, Unaimed{});
     aimed.m_focus = focus;
-    aimed.m_unaimedShare = kUnaimedShareOfFocus;
+    aimed.m_unaimedShare = aimed.m_unaimedShareOfNear = kUnaimedShareOfFocus;
     if (!lights.empty() && !focus.isEverywhere()) aimed.aimAtFocus(cancel);
+    return aimed;
+}
+
+AimedEmission AimedEmission::atOpenings(const Scene& scene, const LightSampler& lights,
+                                        std::vector<Caster> balls, std::span<const float> seenShare,
+                                        const CancelCheck& cancel) {
+    AimedEmission aimed(scene, lights, Unaimed{});
+    aimed.m_unaimedShare = kUnaimedShareOfFocus;
+    aimed.m_unaimedShareOfNear = 1.0f;
+    aimed.m_casters = std::move(balls);
+    aimed.m_prior.assign(aimed.m_casters.size(), 1.0);
+    aimed.groupLights(cancel);
+    for (std::uint32_t i = 0; i < scene.lights().size(); ++i) {
+        const Light& light = scene.lights()[i];
+        aimed.m_guess.push_back(light.isFar() ? aimed.fluxTowards(aimed.m_casters, i)
+                                              : light.powerMean);
+    }
+    aimed.m_choice = LightChoice(aimed.m_guess);
+    const float most = *std::ranges::max_element(seenShare);
+    std::vector<float> worth;
+    for (const float share : seenShare)
+        worth.push_back(static_cast<float>(
+            worthOfShare(static_cast<double>(share) / static_cast<double>(most))));
+    aimed.m_sky.setWorth(std::move(worth));
     return aimed;
 }
 
@@ -285,7 +309,7 @@ bool AimedEmission::emit(Vec2f uChoice, Vec2f uPoint, Vec2f uDirection, AimedPho
         return emitParallel(light, probability, uChoice.y, uPoint, uDirection, photon);
     Origin origin;
     place(photon.light, uChoice.y, uPoint, origin);
-    const AimMixture mixture(m_casters, worthOf(photon.light), origin.point, m_unaimedShare);
+    const AimMixture mixture(m_casters, worthOf(photon.light), origin.point, m_unaimedShareOfNear);
     AimMixture::Sample sample;
     if (!mixture.sample(uChoice.y, uDirection, sample)) return false;
     const float cosine = origin.point.onSurface ? dot(sample.direction, origin.point.axis) : 1.0f;

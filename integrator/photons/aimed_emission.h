@@ -61,6 +61,12 @@ class AimedEmission {
     static AimedEmission atFocus(const Scene& scene, const LightSampler& lights, const Focus& focus,
                                  const CancelCheck& cancel = {});
 
+    // Emission of global photons from infinitely far by way of balls, the windows of a room; other
+    // lights emit as unaimed. seenShare: of each of SkyParts, how often it is seen through them.
+    static AimedEmission atOpenings(const Scene& scene, const LightSampler& lights,
+                                    std::vector<Caster> balls, std::span<const float> seenShare,
+                                    const CancelCheck& cancel = {});
+
     // Nothing to aim from or at: emit() has no photon to give.
     bool empty() const { return m_casters.empty() || m_choice.empty(); }
 
@@ -131,6 +137,7 @@ class AimedEmission {
     LightChoice m_choice;
     Focus m_focus;
     float m_unaimedShare = AimMixture::kUnaimedShare;
+    float m_unaimedShareOfNear = AimMixture::kUnaimedShare;  // of lights not infinitely far
 };
 
 }  // namespace pm

@@ -35,6 +35,8 @@ class Environment {
     Vec3f sample(Vec2f u, float& pdfSolidAngle) const;
     float pdfSolidAngle(const Vec3f& direction) const;
 
+    // The same radiance from everywhere.
+    bool isEven() const { return m_columns == 0; }
     // Over all directions, of the mean of the channels; W m^-2.
     double integral() const { return m_integral; }
 

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -11,7 +10,7 @@
 #include <vector>
 
 #include "integrator/scene/light_tree.h"
-#include "integrator/values/vec.h"
+#include "integrator/scene/place_cells.h"
 
 namespace pm {
 
@@ -42,37 +41,17 @@ class LightGuide {
     static constexpr float kUntaught = 0.05f;
 
   private:
-    using Key = std::array<float, 6>;  // position, and the normal times a length
-    // Of the tree over the receivers.
-    struct Cell {
-        float at = 0.0f;          // what is less goes left
-        std::uint32_t right = 0;  // the left child follows its parent; 0: a leaf
-        std::uint32_t axis = 0;   // of Key; of a leaf: the number of its table
-    };
     class Learner;
 
-    // Where a table counts: around the places from which it was learnt.
-    struct Region {
-        Vec3f lo, hi;
-
-        bool holds(const Vec3f& p) const {
-            return p.x >= lo.x && p.x <= hi.x && p.y >= lo.y && p.y <= hi.y && p.z >= lo.z &&
-                   p.z <= hi.z;
-        }
-    };
-
-    Key key(const Receiver& receiver) const;
     // Cumulative probabilities of the clusters; the first is above 0, the last 1. Null far from
     // all that was learnt: there the tree chooses alone.
     const float* table(const Receiver& receiver) const;
 
     const LightTree& m_tree;
-    float m_normalLength = 0.0f;            // scene units
+    PlaceCells m_cells;
     std::vector<std::uint32_t> m_clusters;  // nodes of the light tree
     std::vector<std::uint32_t> m_begins;    // of the clusters' lights in the light tree's order
-    std::vector<Cell> m_cells;
-    std::vector<Region> m_regions;  // of the leaves
-    std::vector<float> m_tables;    // one cluster after another, one leaf after another
+    std::vector<float> m_tables;            // one cluster after another, one leaf after another
 };
 
 }  // namespace pm

@@ -41,34 +41,8 @@ double powerOf(std::span<const Light> lights) {
     return power;
 }
 
-Receiver receiverAt(const Surface& surface, const Vec3f& side) {
-    const bool front = dot(side, surface.geometricNormal) >= 0.0f;
-    return {surface.position, front ? surface.shadingNormal : -surface.shadingNormal};
-}
-
-// The random numbers have steps of 2^-24, which ten thousand lights would use up: the steps' own
-// fractions are made of both numbers' bits.
-double refined(Vec2f u) {
-    const std::uint64_t bits = mixBits(std::uint64_t{std::bit_cast<std::uint32_t>(u.x)} << 32 |
-                                       std::bit_cast<std::uint32_t>(u.y));
-    return static_cast<double>(u.x) + static_cast<double>(bits >> 40) * 0x1p-48;
-}
-
-float toBelowOne(double x) {
-    return std::min(static_cast<float>(x), 1.0f - 0x1p-24f);
-}
-
 // Choices of guided lights that are made side by side.
 constexpr std::size_t kMostAtOnce = 16;
-
-// Random numbers for trials, which nothing else uses.
-constexpr std::uint64_t kTrialSeed = 0x6c69676874677565ull;
-constexpr std::uint64_t kNoNode = ~std::uint64_t{0};
-constexpr const char* kLooking = "looking which lamps reach where";
-
-// Shadow rays that look which lights are hidden.
-constexpr std::size_t kSightingsOfAPlace = 32;
-constexpr std::size_t kMostSightings = 1 << 17;
 
 }  // namespace
 
@@ -83,48 +57,19 @@ LightSampler::LightSampler(const Scene& scene, const CancelCheck& cancel)
                             kLeastFarShare, kMostFarShare);
 }
 
-void LightSampler::learn(std::span<const LitPlace> places, std::uint64_t seed,
-                         const CancelCheck& cancel) {
-    if (!isGuided() || places.empty()) return;
-    std::vector<Receiver> receivers;
-    receivers.reserve(places.size());
-    for (const LitPlace& place : places) receivers.push_back(receiverAt(place.surface, place.side));
-    const std::uint64_t key = combineBits(seed, kTrialSeed);
-    m_tree->learn(look(places, key, cancel));
-    m_guide = std::make_unique<const LightGuide>(
-        *m_tree, receivers, [&](std::size_t place, std::uint32_t node, std::uint32_t number) {
-            cancel.throwIfSet(kLooking);
-            return lookFrom(places[place], node, Sampler(key, node, place, number).next2D());
-        });
+Receiver LightSampler::receiverAt(const Surface& surface, const Vec3f& side) {
+    const bool front = dot(side, surface.geometricNormal) >= 0.0f;
+    return {surface.position, front ? surface.shadingNormal : -surface.shadingNormal};
 }
 
-std::vector<Sighting> LightSampler::look(std::span<const LitPlace> places, std::uint64_t key,
-                                         const CancelCheck& cancel) const {
-    const std::size_t count = std::min(kSightingsOfAPlace * places.size(), kMostSightings);
-    std::vector<std::optional<Sighting>> found(count);
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-        cancel.throwIfSet(kLooking);
-        const std::size_t place = i % places.size(), number = i / places.size();
-        Sampler sampler(key, kNoNode, place, static_cast<std::uint32_t>(number));
-        found[i] = lookFrom(places[place], LightTree::kRoot, sampler.next2D());
-    });
-    std::vector<Sighting> sightings;
-    for (const auto& sighting : found)
-        if (sighting) sightings.push_back(*sighting);
-    return sightings;
+double LightSampler::refined(Vec2f u) {
+    const std::uint64_t bits = mixBits(std::uint64_t{std::bit_cast<std::uint32_t>(u.x)} << 32 |
+                                       std::bit_cast<std::uint32_t>(u.y));
+    return static_cast<double>(u.x) + static_cast<double>(bits >> 40) * 0x1p-48;
 }
 
-std::optional<Sighting> LightSampler::lookFrom(const LitPlace& place, std::uint32_t node,
-                                               Vec2f u) const {
-    const Receiver receiver = receiverAt(place.surface, place.side);
-    LightDescent descent{refined(u), node};
-    m_tree->choose(receiver, {&descent, 1});
-    u.x = toBelowOne(descent.u);
-    LightSample sample;
-    if (!this->sample({u, descent.node, descent.probability}, place.surface, sample) ||
-        !(dot(sample.direction, receiver.normal) > 0.0f))
-        return std::nullopt;
-    return Sighting{descent.node, !m_scene.occluded(sample.shadowRay)};
+float LightSampler::toBelowOne(double x) {
+    return std::min(static_cast<float>(x), 1.0f - 0x1p-24f);
 }
 
 void LightSampler::choose(const Surface& surface, const Vec3f& side,
@@ -192,7 +137,8 @@ float LightSampler::probability(const Surface& surface, const Vec3f& side,
 }
 
 std::uint64_t LightSampler::memoryBytes() const {
-    return (m_tree ? m_tree->memoryBytes() : 0) + (m_guide ? m_guide->memoryBytes() : 0);
+    return (m_tree ? m_tree->memoryBytes() : 0) + (m_guide ? m_guide->memoryBytes() : 0) +
+           (m_skyGuide ? m_skyGuide->memoryBytes() : 0);
 }
 
 Rgb LightSampler::emittedRadiance(const Surface& surface, const Vec3f& direction) const {
@@ -307,7 +253,8 @@ bool LightSampler::sampleFar(const Surface& surface, const Light& light, float p
     float pdf = 1.0f;
     sample.isPoint = false;
     if (light.kind == Light::Kind::kEnvironment) {
-        sample.direction = m_scene.environment().sample(u, pdf);
+        sample.direction = m_skyGuide ? m_skyGuide->sample(surface.position, u, pdf)
+                                      : m_scene.environment().sample(u, pdf);
         sample.radiance = m_scene.environment().radiance(sample.direction);
     } else {
         const Beam& beam = m_scene.beam(light);
@@ -331,7 +278,8 @@ float LightSampler::farPdfSolidAngle(const Surface& from, const Vec3f& direction
     const Light& light = m_scene.lights()[index];
     const float probability = this->probability(from, direction, static_cast<std::uint32_t>(index));
     if (light.kind == Light::Kind::kEnvironment)
-        return probability * m_scene.environment().pdfSolidAngle(direction);
+        return probability * (m_skyGuide ? m_skyGuide->pdfSolidAngle(from.position, direction)
+                                         : m_scene.environment().pdfSolidAngle(direction));
     const Beam& beam = m_scene.beam(light);
     return !beam.isDelta() && beam.holds(-direction) ? probability / (2.0f * kPi * beam.oneMinusCos)
                                                      : 0.0f;

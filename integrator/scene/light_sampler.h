@@ -14,6 +14,7 @@
 #include "integrator/scene/light_guide.h"
 #include "integrator/scene/light_tree.h"
 #include "integrator/scene/scene.h"
+#include "integrator/scene/sky_guide.h"
 #include "integrator/scene/surface.h"
 #include "integrator/values/cancel_check.h"
 #include "integrator/values/rgb.h"
@@ -59,9 +60,9 @@ struct LitPlace {
 
 // Chooses lights and points on them. Few lights are chosen by power, with a floor so that none is
 // starved; of many (isGuided()) each receiver has its own choice, by a LightTree and, once learn()
-// was called, a LightGuide; those infinitely far are chosen beside it, by power. Photons leave
-// lights by power.
-// Threads: const functions from any, at once.
+// was called, a LightGuide; those infinitely far are chosen beside it, by power. Directions of an
+// environment that is mostly hidden are chosen by a SkyGuide, once learn() was called. Photons
+// leave lights by power. Threads: const functions from any, at once.
 class LightSampler {
   public:
     // Of many lights in parallel in the calling TBB arena. Throws Error(kCancelled) soon after
@@ -73,9 +74,12 @@ class LightSampler {
 
     bool empty() const { return m_choice.empty(); }
     bool isGuided() const { return m_tree != nullptr; }
+    // There is something to learn: many lights, or an environment that may be hidden.
+    bool learns() const { return isGuided() || environmentLight() != nullptr; }
 
     // Learns by shadow rays which lights reach `places`, the places where most samples will be
-    // asked for. Nothing happens without many lights or without places. A function of scene, places
+    // asked for; and, where most of the environment is hidden from them, where it is not. Nothing
+    // happens without many lights or an environment, or without places. A function of scene, places
     // and seed; works in parallel in the calling TBB arena. Throws Error(kCancelled) soon after
     // cancel is set; then this must not be used any more.
     void learn(std::span<const LitPlace> places, std::uint64_t seed,
@@ -130,10 +134,22 @@ class LightSampler {
     std::uint64_t memoryBytes() const;
 
   private:
+    static Receiver receiverAt(const Surface& surface, const Vec3f& side);
+    // The random numbers have steps of 2^-24, which ten thousand lights would use up: the steps'
+    // own fractions are made of both numbers' bits.
+    static double refined(Vec2f u);
+    static float toBelowOne(double x);
+
     // Of up to kMost lights.
     template <std::size_t kMost>
     void chooseGuided(const Receiver& receiver, std::span<ChosenLight> chosen) const;
     float probability(const Surface& surface, const Vec3f& side, std::uint32_t light) const;
+    const Light* environmentLight() const;
+    void learnLights(std::span<const LitPlace> places, std::span<const Receiver> receivers,
+                     std::uint64_t key, const CancelCheck& cancel);
+    float lookAtSky(const LitPlace& place, const Receiver& receiver, const Vec3f& direction) const;
+    bool isSkyHidden(std::span<const LitPlace> places, std::span<const Receiver> receivers,
+                     std::uint64_t key) const;
     std::vector<Sighting> look(std::span<const LitPlace> places, std::uint64_t key,
                                const CancelCheck& cancel) const;
     std::optional<Sighting> lookFrom(const LitPlace& place, std::uint32_t node, Vec2f u) const;
@@ -158,6 +174,7 @@ class LightSampler {
     float m_farShare = 0.0f;
     std::unique_ptr<LightTree> m_tree;  // of many lights
     std::unique_ptr<const LightGuide> m_guide;
+    std::unique_ptr<const SkyGuide> m_skyGuide;  // where most of the environment is hidden
 };
 
 }  // namespace pm

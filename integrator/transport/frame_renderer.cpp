@@ -101,7 +101,7 @@ void FrameRenderer::Impl::prepare(const std::atomic<bool>& cancelled) {
     const CancelCheck cancel(cancelled);
     auto made = std::make_unique<Prepared>(*this, cancel);
     LightSampler& lights = made->lights;
-    if (lights.isGuided())
+    if (lights.learns())
         lights.learn(findLitPlaces(*scene, camera, settings, cancel), settings.seed, cancel);
     if (plan.lampSamples == 0)
         plan.lampSamples = findLampSamples(*scene, lights, camera, settings, plan, cancel);

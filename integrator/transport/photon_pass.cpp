@@ -18,6 +18,7 @@
 #include "integrator/transport/gather_focus.h"
 #include "integrator/transport/gather_pilot.h"
 #include "integrator/transport/pass_radius.h"
+#include "integrator/transport/sky_openings.h"
 #include "integrator/values/stopwatch.h"
 
 namespace pm {
@@ -175,9 +176,15 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
 
 void PhotonPass::findFocus(const CancelCheck& check) {
     const Focus focus = findGatherFocus(m_scene, m_camera, m_settings, check);
-    if (!focus.isEverywhere())
+    if (!focus.isEverywhere()) {
         m_focused = std::make_unique<AimedEmission>(
             AimedEmission::atFocus(m_scene, m_lights, focus, check));
+        return;
+    }
+    SkyOpenings openings = findSkyOpenings(m_scene, m_camera, m_settings, check);
+    if (!openings.balls.empty())
+        m_focused = std::make_unique<AimedEmission>(AimedEmission::atOpenings(
+            m_scene, m_lights, std::move(openings.balls), openings.seenShare, check));
 }
 
 // What light is sent to which casters of caustics: a geometric guess, and a pilot that finds what

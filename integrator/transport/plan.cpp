@@ -129,7 +129,8 @@ void planDirectLight(const Scene& scene, const SceneTraits& traits, Plan& plan) 
     if (traits.farLights)
         plan.reasons.push_back(
             "light from afar: seen by rays that meet nothing; its photons enter by the scene's "
-            "box");
+            "box, "
+            "or by windows that a pilot finds where most of the sky is hidden");
     if (scene.lights().size() > LightSampler::kFewLights)
         plan.reasons.push_back(fmt::format(
             "lamps: {}, so each place has its own choice of them, by a tree and by which of them "

@@ -10,6 +10,7 @@
 #include "tests/integrator/replicates.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/sky_picture.h"
+#include "tests/integrator/window_room.h"
 
 namespace pm::test {
 namespace {
@@ -56,6 +57,13 @@ std::vector<Room> rooms() {
             m.quad({-0.9 + 0.15 * i, 0.9, -0.5}, {0.1, 0, 0}, {0, 0, 0.1}, shines);
         m.sun({-0.3, -1, -0.4}, Rgb(1.0f), 0.15);
         m.sky(Rgb(0.3f));
+    });
+    // Light by way of a window, and a lamp: what is aimed through it must not be told twice.
+    add("window", windowRoom(0.3, Rgb(0.6f), {0.7f, 0.6f, 0.5f}, 0.4), [](SceneMaker& m) {
+        m.sky({6.0f, 8.0f, 10.0f});
+        m.sun({-0.4, -1, 0.2}, Rgb(6.0f), 0.05);
+        m.quad({-0.9, 0.95, -0.5}, {0.2, 0, 0}, {0, 0, 0.2}, m.diffuse({}, Rgb(3.0f)));
+        m.box({-0.6, -1, -0.7}, {-0.1, -0.2, -0.3}, m.diffuse(Rgb(0.5f)), false);
     });
     return rooms;
 }

@@ -1,0 +1,126 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// What a LightSampler learns: which lights, and how much of the sky, reach where.
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "integrator/sampling/sampler.h"
+#include "integrator/sampling/warps.h"
+#include "integrator/scene/light_sampler.h"
+
+namespace pm {
+
+namespace {
+
+// Random numbers for trials, which nothing else uses.
+constexpr std::uint64_t kTrialSeed = 0x6c69676874677565ull;
+constexpr std::uint64_t kNoNode = ~std::uint64_t{0};
+constexpr const char* kLooking = "looking which lamps reach where";
+
+// Shadow rays that look which lights are hidden.
+constexpr std::size_t kSightingsOfAPlace = 32;
+constexpr std::size_t kMostSightings = 1 << 17;
+
+// An environment of which less than this is seen is worth a guide; looked at from about so many
+// places, in so many directions.
+constexpr double kShareOfHiddenSky = 0.5;
+constexpr std::size_t kPlacesOfSky = 512;
+constexpr std::uint32_t kSightingsOfSky = 16;
+
+}  // namespace
+
+const Light* LightSampler::environmentLight() const {
+    const auto isEnvironment = [](const Light& light) {
+        return light.kind == Light::Kind::kEnvironment;
+    };
+    const auto found = std::ranges::find_if(m_scene.farLights(), isEnvironment);
+    return found == m_scene.farLights().end() ? nullptr : &*found;
+}
+
+void LightSampler::learn(std::span<const LitPlace> places, std::uint64_t seed,
+                         const CancelCheck& cancel) {
+    if (!learns() || places.empty()) return;
+    std::vector<Receiver> receivers;
+    receivers.reserve(places.size());
+    for (const LitPlace& place : places) receivers.push_back(receiverAt(place.surface, place.side));
+    const std::uint64_t key = combineBits(seed, kTrialSeed);
+    if (isGuided()) learnLights(places, receivers, key, cancel);
+    if (!environmentLight() || !isSkyHidden(places, receivers, key)) return;
+    m_skyGuide = std::make_unique<const SkyGuide>(
+        m_scene.environment(), receivers, key, [&](std::size_t place, const Vec3f& direction) {
+            cancel.throwIfSet(kLooking);
+            return lookAtSky(places[place], receivers[place], direction);
+        });
+}
+
+void LightSampler::learnLights(std::span<const LitPlace> places,
+                               std::span<const Receiver> receivers, std::uint64_t key,
+                               const CancelCheck& cancel) {
+    m_tree->learn(look(places, key, cancel));
+    m_guide = std::make_unique<const LightGuide>(
+        *m_tree, receivers, [&](std::size_t place, std::uint32_t node, std::uint32_t number) {
+            cancel.throwIfSet(kLooking);
+            return lookFrom(places[place], node, Sampler(key, node, place, number).next2D());
+        });
+}
+
+float LightSampler::lookAtSky(const LitPlace& place, const Receiver& receiver,
+                              const Vec3f& direction) const {
+    const float cosine = dot(direction, receiver.normal);
+    if (!(cosine > 0.0f)) return 0.0f;
+    const Rgb radiance = m_scene.environment().radiance(direction);
+    if (isBlack(radiance) || m_scene.occluded(rayFrom(place.surface, direction))) return 0.0f;
+    return cosine * static_cast<float>(channelSum(radiance));
+}
+
+// Of directions as the environment chooses them, that a surface could receive light from.
+bool LightSampler::isSkyHidden(std::span<const LitPlace> places,
+                               std::span<const Receiver> receivers, std::uint64_t key) const {
+    const std::size_t step = std::max<std::size_t>(1, places.size() / kPlacesOfSky);
+    double asked = 0, seen = 0;
+    for (std::size_t place = 0; place < places.size(); place += step) {
+        Sampler sampler(key, kNoNode - 1, place, 0);
+        const Vec2f start = sampler.next2D();
+        for (std::uint32_t i = 0; i < kSightingsOfSky; ++i) {
+            float pdf;
+            const Vec3f direction = m_scene.environment().sample(spreadPoint(i, start), pdf);
+            if (!(dot(direction, receivers[place].normal) > 0.0f)) continue;
+            ++asked;
+            seen += lookAtSky(places[place], receivers[place], direction) > 0.0f ? 1 : 0;
+        }
+    }
+    return seen < kShareOfHiddenSky * asked;
+}
+
+std::vector<Sighting> LightSampler::look(std::span<const LitPlace> places, std::uint64_t key,
+                                         const CancelCheck& cancel) const {
+    const std::size_t count = std::min(kSightingsOfAPlace * places.size(), kMostSightings);
+    std::vector<std::optional<Sighting>> found(count);
+    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+        cancel.throwIfSet(kLooking);
+        const std::size_t place = i % places.size(), number = i / places.size();
+        Sampler sampler(key, kNoNode, place, static_cast<std::uint32_t>(number));
+        found[i] = lookFrom(places[place], LightTree::kRoot, sampler.next2D());
+    });
+    std::vector<Sighting> sightings;
+    for (const auto& sighting : found)
+        if (sighting) sightings.push_back(*sighting);
+    return sightings;
+}
+
+std::optional<Sighting> LightSampler::lookFrom(const LitPlace& place, std::uint32_t node,
+                                               Vec2f u) const {
+    const Receiver receiver = receiverAt(place.surface, place.side);
+    LightDescent descent{refined(u), node};
+    m_tree->choose(receiver, {&descent, 1});
+    u.x = toBelowOne(descent.u);
+    LightSample sample;
+    if (!this->sample({u, descent.node, descent.probability}, place.surface, sample) ||
+        !(dot(sample.direction, receiver.normal) > 0.0f))
+        return std::nullopt;
+    return Sighting{descent.node, !m_scene.occluded(sample.shadowRay)};
+}
+
+}  // namespace pm
