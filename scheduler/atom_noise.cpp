@@ -21,7 +21,7 @@ constexpr double kShareOfEdge = 0.04, kSquareOfEdge = 0.1, kShareOfNeighbours = 
 // met: the lit rim of a wall. The atom's edges are taken to have so much relative variance, as if
 // so many samples had shown that, and each of their pixels gets some samples of what they have
 // together.
-constexpr double kSamplesOfEdge = 4, kVarianceOfEdge = 0.8, kSamplesOfVariance = 128;
+constexpr double kSamplesOfEdge = 2, kVarianceOfEdge = 0.8, kSamplesOfVariance = 128;
 // Pixels of an atom that a line cuts. Where far more hold edges it is the surface that is so, of
 // leaves or tiles, and what their samples show counts for more: by the square.
 constexpr double kMostOfALine = 16;

@@ -25,6 +25,9 @@ constexpr double kSamplesThatDivide = 16;
 // More than the least gets who wants more than so many times the least: samples that are all alike
 // are worth more than their number.
 constexpr double kBeyondLeast = 1.7;
+// Samples of a pass that tempering leaves as they are; and the largest spread that it takes for
+// that of an edge.
+constexpr double kAsKnown = 6, kMostOfEdge = 0.35;
 // A pass makes up for what earlier ones lacked by at most so many times what is allotted.
 constexpr double kMostMadeUp = 2;
 // Samples of the second pass where nothing is shared: the first has seen little, and where all is
@@ -34,7 +37,16 @@ constexpr std::uint32_t kMostOfSecond = 16;
 // What the threshold is divided by. A few samples show little, and what is spent by them is lost
 // where they mislead.
 double finer(std::uint32_t passes) {
-    return passes < 2 ? 1 / std::numbers::sqrt2 : passes < 4 ? std::numbers::sqrt2 : 2;
+    return passes < 2 ? 1 : passes < 4 ? 2 : 2 * std::numbers::sqrt2;
+}
+
+// Samples of a pass for what would be so many if their spread were known and noise went down like
+// 1 / N: more where that is few, less where it is many, since few samples tell badly which pixels
+// are which, and a low-discrepancy sequence cures an edge by itself. Not light that few samples
+// meet, whose spread is large: no sequence cures that.
+double tempered(double inPass, double spread) {
+    const double rare = std::max(1.0, spread / kMostOfEdge);
+    return rare * std::sqrt(kAsKnown * inPass / rare);
 }
 
 // The same where the samples of a pass share no noise.
@@ -99,7 +111,7 @@ bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSample
 std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes, double spread) {
     double inPass = spread / rule.threshold / kPassesOfALevel;
     if (!rule.isAlone()) {
-        inPass *= finer(passes);
+        inPass = tempered(finer(passes) * inPass, spread);
         // A number that is none asks for nothing.
         const std::uint32_t power = inPass >= 0.5 ? nearestPower(inPass, rule.most) : 0;
         return static_cast<std::uint16_t>(std::clamp(power, rule.least, rule.most));

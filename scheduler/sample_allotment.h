@@ -22,11 +22,13 @@ namespace pm {
 // The rule: of N samples in four passes whose relative spread is s, one more lowers the squared
 // relative error by s^2 / N^2. A pixel gets samples until that is less than threshold^2, so
 // N = s / threshold: the allotment for which the sum of the squared errors is least for the same
-// number of samples. Relative means: to sqrt(r^2 + 0.01), r the mean, as in relMSE. The first
-// passes show little: for the second the threshold is sqrt(2) times as large, for the third and
-// fourth it is divided by sqrt(2), from the fifth on halved. In a pass N / 4, rounded to a power of
-// two: low-discrepancy sequences are at their best there, and a pixel that needs no more samples
-// than another is not to have some more.
+// number of samples, were s known and noise like 1/N. But few samples tell badly which pixels are
+// noisy, and a low-discrepancy sequence cures edges: so in a pass the root of 6 N / 4, up to a
+// spread of 0.35; light that few samples meet has more than that, and there N goes on with s.
+// Relative means: to sqrt(r^2 + 0.01), r the mean, as in relMSE. The first passes show little:
+// after two passes the threshold is halved, after four divided by sqrt(8). Samples are rounded to a
+// power of two: low-discrepancy sequences are at their best there, and a pixel that needs no more
+// samples than another is not to have some more.
 //
 // A pixel whose samples met unlike surfaces holds an edge, and few samples tell little of how much
 // light differs there: it is taken to differ much until those of the atom's edges have shown more.

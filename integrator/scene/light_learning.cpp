@@ -24,9 +24,9 @@ constexpr std::size_t kSightingsOfAPlace = 32;
 constexpr std::size_t kMostSightings = 1 << 17;
 
 // An environment of which less than this is seen is worth a guide; looked at from about so many
-// places, in so many directions.
+// places, in so many directions. And the most places that a guide learns from.
 constexpr double kShareOfHiddenSky = 0.5;
-constexpr std::size_t kPlacesOfSky = 512;
+constexpr std::size_t kPlacesOfSky = 512, kMostPlacesOfSky = 1024;
 constexpr std::uint32_t kSightingsOfSky = 16;
 
 }  // namespace
@@ -47,11 +47,19 @@ void LightSampler::learn(std::span<const LitPlace> places, std::uint64_t seed,
     for (const LitPlace& place : places) receivers.push_back(receiverAt(place.surface, place.side));
     const std::uint64_t key = combineBits(seed, kTrialSeed);
     if (isGuided()) learnLights(places, receivers, key, cancel);
-    if (!environmentLight() || !isSkyHidden(places, receivers, key)) return;
+    if (environmentLight()) learnSky(places, receivers, key, cancel);
+}
+
+void LightSampler::learnSky(std::span<const LitPlace> places, std::span<const Receiver> receivers,
+                            std::uint64_t key, const CancelCheck& cancel) {
+    if (!isSkyHidden(places, receivers, key)) return;
+    const std::size_t step = (places.size() + kMostPlacesOfSky - 1) / kMostPlacesOfSky;
+    std::vector<Receiver> some;
+    for (std::size_t i = 0; i < places.size(); i += step) some.push_back(receivers[i]);
     m_skyGuide = std::make_unique<const SkyGuide>(
-        m_scene.environment(), receivers, key, [&](std::size_t place, const Vec3f& direction) {
+        m_scene.environment(), some, key, [&](std::size_t i, const Vec3f& direction) {
             cancel.throwIfSet(kLooking);
-            return lookAtSky(places[place], receivers[place], direction);
+            return lookAtSky(places[i * step], some[i], direction);
         });
 }
 

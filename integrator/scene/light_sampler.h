@@ -147,6 +147,8 @@ class LightSampler {
     const Light* environmentLight() const;
     void learnLights(std::span<const LitPlace> places, std::span<const Receiver> receivers,
                      std::uint64_t key, const CancelCheck& cancel);
+    void learnSky(std::span<const LitPlace> places, std::span<const Receiver> receivers,
+                  std::uint64_t key, const CancelCheck& cancel);
     float lookAtSky(const LitPlace& place, const Receiver& receiver, const Vec3f& direction) const;
     bool isSkyHidden(std::span<const LitPlace> places, std::span<const Receiver> receivers,
                      std::uint64_t key) const;

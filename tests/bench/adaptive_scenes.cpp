@@ -153,7 +153,7 @@ std::vector<AdaptiveScene> adaptiveScenes(const std::filesystem::path& peers) {
          specks(-1.1, 0.018, 0.0031, 122), true},
         {"lines", "shining lines thinner than a pixel on black", lines(), true}};
     for (PlanScene& scene : planScenes())
-        scenes.push_back({scene.key, scene.what, std::move(scene.maker), scene.key != "glass"});
+        scenes.push_back({scene.key, scene.what, std::move(scene.maker), scene.byPaths});
     const std::filesystem::path file = peers / "scenes.json";
     if (!std::filesystem::exists(file)) return scenes;
     for (const char* const key : {"A", "B", "C"}) {

@@ -334,7 +334,8 @@ int runProgram(int argc, char** argv) {
     CLI::App app("Time to an error with each number of the plan halved and doubled");
     app.add_option("--csv", options.csvFile, "also write the tables to this CSV file");
     app.add_option("--docs", options.docsFile, "also put the tables into this Markdown file");
-    app.add_option("--scenes", options.scenes, "of hall, mirror, glass; with commas (all)");
+    app.add_option("--scenes", options.scenes,
+                   "of hall, mirror, window, glass, lantern, gallery; with commas (all)");
     app.add_option("--number", options.number, "only those with this in their name (all)");
     app.add_option("--size", options.size, "pixels, both ways, a multiple of 8 (128)")
         ->check(CLI::Validator(

@@ -159,13 +159,20 @@ std::uint16_t samplesOf(std::uint32_t passes, double mean, double deviation,
 }
 
 TEST(SampleAllotment, samplesGrowWithTheRelativeSpread) {
-    // From the fifth pass on s / (2 threshold), s relative to sqrt(r^2 + 0.01), to the nearest
-    // power of two.
-    for (const double factor : {0.72, 1.0, 1.4})
-        for (const unsigned count : {2u, 8u, 16u, 32u}) {
-            const double deviation = factor * count * 0.02 * std::sqrt(4.01);
-            EXPECT_EQ(samplesOf(4, 2.0, deviation), count) << factor;
-        }
+    // From the fifth pass on, s relative to sqrt(r^2 + 0.01), to the nearest power of two: the root
+    // of 6 s / (0.04 / sqrt(8)), but beyond s = 0.35 in proportion to it.
+    const double perSpread = std::sqrt(8) / 0.04;
+    const auto samplesAt = [](double spread) {
+        return samplesOf(4, 2.0, spread * std::sqrt(4.01));
+    };
+    for (const double factor : {0.72, 1.0, 1.4}) {
+        for (const unsigned count : {2u, 4u, 8u})
+            EXPECT_EQ(samplesAt(factor * count * factor * count / (6 * perSpread)), count)
+                << factor;
+        for (const unsigned count : {16u, 32u})
+            EXPECT_EQ(samplesAt(factor * count * 0.35 / std::sqrt(6 * perSpread * 0.35)), count)
+                << factor;
+    }
     // At most and at least what the rule allows; a spread that is no number asks for nothing.
     EXPECT_EQ(samplesOf(2, 2.0, 0.0), 1u);
     EXPECT_EQ(samplesOf(2, 2.0, 1e3), 64u);
@@ -183,15 +190,21 @@ TEST(SampleAllotment, samplesArePowersOfTwo) {
 }
 
 TEST(SampleAllotment, thresholdFallsAfterOneTwoAndFourPasses) {
-    // Of the threshold itself 16 samples a pass, to the power of two below and above: its
-    // sqrt(2)-fold and 1 / sqrt(2), then half of it.
-    const double even = 16 * 0.04 * std::sqrt(4.01);
-    for (const auto& [passes, count] :
-         {std::pair{1u, 8u}, std::pair{2u, 16u}, std::pair{4u, 32u}, std::pair{64u, 32u}})
-        EXPECT_EQ(samplesOf(passes, 2.0, 0.95 * even), count) << passes;
-    for (const auto& [passes, count] :
-         {std::pair{1u, 16u}, std::pair{2u, 32u}, std::pair{4u, 32u}, std::pair{64u, 32u}})
-        EXPECT_EQ(samplesOf(passes, 2.0, 1.05 * even), count) << passes;
+    // Half of it after two passes, over sqrt(8) after four: just below and above the border between
+    // 4 and 8.
+    const auto samplesAfter = [](std::uint32_t passes, double ofBorder, double divided) {
+        const double samples = ofBorder * 4 * std::numbers::sqrt2;
+        const double spread = samples * samples / 6 * 0.04 / divided;
+        return samplesOf(passes, 2.0, spread * std::sqrt(4.01));
+    };
+    EXPECT_EQ(samplesAfter(1, 0.97, 1), 4u);
+    EXPECT_EQ(samplesAfter(1, 1.03, 1), 8u);
+    EXPECT_EQ(samplesAfter(2, 0.97, 2), 4u);
+    EXPECT_EQ(samplesAfter(2, 1.03, 2), 8u);
+    for (const std::uint32_t passes : {4u, 64u}) {
+        EXPECT_EQ(samplesAfter(passes, 0.97, std::sqrt(8)), 4u);
+        EXPECT_EQ(samplesAfter(passes, 1.03, std::sqrt(8)), 8u);
+    }
 }
 
 // Pass 0 with the least decides for pass 1, pass 1 for pass 2; where nothing is shared, pass 2
@@ -245,7 +258,7 @@ TEST(SampleAllotment, neighboursOfANoisyPixelGetSamplesToo) {
         if (std::abs(dx) > 1 || std::abs(dy) > 1)
             EXPECT_EQ(samples[i], 1u) << i;
         else
-            EXPECT_EQ(samples[i], dx == 0 && dy == 0 ? 32u : 4u) << i;
+            EXPECT_EQ(samples[i], dx == 0 && dy == 0 ? 16u : 8u) << i;
     }
 }
 
@@ -262,13 +275,13 @@ TEST(SampleAllotment, edgesGetSamplesUntilTheyShowLittle) {
             EXPECT_EQ(samples[i], i < edges ? samples[0] : rule.least) << i;
         return samples[0];
     };
-    // sqrt(4 v / (seen + 7)) / 0.057, to a power of two, v = 0.8 / (1 + seen edges / 128).
+    // Of a spread sqrt(2 v / (seen + 5)), v = 0.8 / (1 + seen edges / 128).
     EXPECT_EQ(samplesAfter(4, 1, kRule), 8);
     EXPECT_EQ(samplesAfter(4, 8, kRule), 8);
-    EXPECT_EQ(samplesAfter(60, 8, kRule), 2);
+    EXPECT_EQ(samplesAfter(60, 8, kRule), 4);
     EXPECT_EQ(samplesAfter(1000, 8, kRule), 1);
     // 8 samples in place of 128.
-    EXPECT_EQ(samplesAfter(4, kPixels, kRule), 2);
+    EXPECT_EQ(samplesAfter(4, kPixels, kRule), 4);
     EXPECT_EQ(samplesAfter(4, 8, kAlone), 1);
 }
 
