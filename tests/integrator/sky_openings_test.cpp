@@ -93,7 +93,7 @@ TEST(SkyOpenings, NoneInTheOpenOrWithoutASky) {
 constexpr std::size_t kSums = 9;
 struct Landed {
     std::array<double, kSums> sums{};
-    double photons = 0, brightest = 0;
+    double photons = 0;
 };
 Landed landedInside(const BigVector<Photon>& photons, const Scene& scene) {
     Landed landed;
@@ -106,7 +106,6 @@ Landed landedInside(const BigVector<Photon>& photons, const Scene& scene) {
         for (int c = 0; c < 3; ++c)
             landed.sums[at + static_cast<std::size_t>(c)] += static_cast<double>(photon.flux[c]);
         ++landed.photons;
-        landed.brightest = std::max(landed.brightest, static_cast<double>(photon.flux.r));
     }
     return landed;
 }
