@@ -25,10 +25,6 @@ constexpr std::uint32_t kMostSteps = 16;
 // carries over the border between them.
 constexpr double kNeighbourShare = 0.1;
 
-double meanOf(const Rgb& c) {
-    return (static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b)) / 3;
-}
-
 // Sums of the probabilities as the random numbers have them, in steps of 2^-24: a cell is taken
 // with the probability that they leave it.
 void accumulate(std::span<const double> probabilities, float* cumulative) {
@@ -62,7 +58,7 @@ Environment::Environment(const EnvironmentDescription& description, const Textur
         m_axes[axis] = Vec3f(Vec3d{description.toWorld[axis], description.toWorld[4 + axis],
                                    description.toWorld[8 + axis]});
     if (m_texture == kNoTexture || isBlack(m_scale))
-        m_integral = 4 * std::numbers::pi * meanOf(m_scale);
+        m_integral = 4 * std::numbers::pi * channelMean(m_scale);
     else
         fillTable(cancel);
 }
@@ -98,7 +94,7 @@ double Environment::meanOfCell(std::size_t column, std::size_t row, std::uint32_
         for (std::uint32_t i = 0; i < steps; ++i) {
             const double x = static_cast<double>(column) + (i + 0.5) / steps;
             const double y = static_cast<double>(row) + (j + 0.5) / steps;
-            sum += meanOf(
+            sum += channelMean(
                 texel({static_cast<float>(x / m_columns), static_cast<float>(y / m_rowCount)}));
         }
     return sum / (static_cast<double>(steps) * steps);

@@ -14,6 +14,15 @@
 
 namespace pm {
 
+// Of directions that an environment chose, towards which places could receive its light, in how
+// many they do.
+struct SkyLooks {
+    std::size_t asked = 0, seen = 0;
+
+    // So little of it that it is worth knowing where.
+    bool isHidden() const { return 2 * seen < asked; }
+};
+
 // Light from infinitely far all around: a constant, or a latitude-longitude picture times it.
 //
 // In the environment's own space the middle of the picture lies towards -z, its right half towards

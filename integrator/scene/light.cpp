@@ -10,14 +10,6 @@
 
 namespace pm {
 
-namespace {
-
-double meanOf(const Rgb& c) {
-    return (static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b)) / 3;
-}
-
-}  // namespace
-
 double crossSection(const Vec3d& halfSize, const Vec3d& direction) {
     return std::max(BoxShadow(halfSize, direction).area(), 1e-3 * lengthSquared(halfSize));
 }
@@ -29,7 +21,7 @@ void addPointLights(const SceneDescription& description, const Vec3d& centre,
         Light light;
         light.position = point.position - centre;
         light.intensity = point.intensity;
-        light.powerMean = 4 * std::numbers::pi * meanOf(point.intensity);
+        light.powerMean = 4 * std::numbers::pi * channelMean(point.intensity);
         lights.push_back(light);
     }
     for (const SpotLightDescription& spot : description.spotLights) {
@@ -41,7 +33,7 @@ void addPointLights(const SceneDescription& description, const Vec3d& centre,
         light.position = spot.position - centre;
         light.intensity = spot.intensity;
         light.powerMean =
-            static_cast<double>(beams.back().fluxOverIntensity()) * meanOf(spot.intensity);
+            static_cast<double>(beams.back().fluxOverIntensity()) * channelMean(spot.intensity);
         lights.push_back(light);
     }
 }
@@ -57,7 +49,7 @@ void addDirectionalLights(const SceneDescription& description, const Vec3d& half
         beams.push_back(Beam::make(sun.direction, angle, 0.0));
         const Beam& beam = beams.back();
         light.intensity = sun.irradiance;
-        light.powerMean = meanOf(sun.irradiance) * crossSection(halfSize, Vec3d(beam.axis));
+        light.powerMean = channelMean(sun.irradiance) * crossSection(halfSize, Vec3d(beam.axis));
         // The irradiance of a disc of radiance L: pi L sin^2.
         if (!beam.isDelta())
             light.intensity = sun.irradiance / (std::numbers::pi_v<float> * beam.oneMinusCos *

@@ -40,8 +40,10 @@ class LightGuide::Learner {
         guide.m_tables.resize(guide.m_cells.leaves() * m_clusters);
         tbb::parallel_for(std::size_t{0}, guide.m_cells.cells().size(),
                           [&](std::size_t i) { lookFromCell(i); });
-        gather(0);
-        spread(0, std::vector<float>(m_clusters, 1.0f));
+        gather();
+        guide.m_cells.spread(
+            std::vector<float>(m_clusters, 1.0f),
+            [this](std::size_t cell, const auto& above) { return learnCell(cell, above); });
     }
 
   private:
@@ -85,31 +87,27 @@ class LightGuide::Learner {
     }
 
     // Sums up what was seen.
-    void gather(std::size_t index) {
-        const PlaceCells::Cell& cell = m_guide.m_cells.cells()[index];
-        if (cell.right == 0) return;
-        for (const std::size_t child : {index + 1, std::size_t{cell.right}}) {
-            gather(child);
-            for (std::size_t c = 0; c < m_clusters; ++c)
-                m_seen[index * m_clusters + c].add(m_seen[child * m_clusters + c]);
-        }
+    void gather() {
+        m_guide.m_cells.gather([this](std::size_t cell, std::size_t left, std::size_t right) {
+            for (std::size_t c = 0; c < m_clusters; ++c) {
+                Seen& seen = m_seen[cell * m_clusters + c];
+                seen.add(m_seen[left * m_clusters + c]);
+                seen.add(m_seen[right * m_clusters + c]);
+            }
+        });
     }
 
-    // Hands down how much more or less of a cluster is visible than anywhere, as far as is known;
-    // makes the leaves' tables of it.
-    void spread(std::size_t index, const std::vector<float>& above) {
+    // How much more or less of each cluster is visible than anywhere, as far as is known; of a
+    // leaf, the table of it, too.
+    std::vector<float> learnCell(std::size_t index, const std::vector<float>& above) {
         std::vector<float> ratios(m_clusters);
         for (std::size_t c = 0; c < m_clusters; ++c) {
             const Seen& seen = m_seen[index * m_clusters + c];
             ratios[c] = (seen.ratios + kPriorLooks * above[c]) / (seen.looks + kPriorLooks);
         }
         const PlaceCells::Cell& cell = m_guide.m_cells.cells()[index];
-        if (cell.right == 0) {
-            makeTable(cell.axis, ratios);
-            return;
-        }
-        spread(index + 1, ratios);
-        spread(cell.right, ratios);
+        if (cell.right == 0) makeTable(cell.axis, ratios);
+        return ratios;
     }
 
     // The variance of the sum is least when each cluster is chosen by the root of its second

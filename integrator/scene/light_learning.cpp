@@ -23,21 +23,12 @@ constexpr const char* kLooking = "looking which lamps reach where";
 constexpr std::size_t kSightingsOfAPlace = 32;
 constexpr std::size_t kMostSightings = 1 << 17;
 
-// An environment of which less than this is seen is worth a guide; looked at from about so many
-// places, in so many directions. And the most places that a guide learns from.
-constexpr double kShareOfHiddenSky = 0.5;
+// Whether an environment is hidden is looked at from about so many places, in so many directions.
+// And the most places that a guide learns from.
 constexpr std::size_t kPlacesOfSky = 512, kMostPlacesOfSky = 1024;
 constexpr std::uint32_t kSightingsOfSky = 16;
 
 }  // namespace
-
-const Light* LightSampler::environmentLight() const {
-    const auto isEnvironment = [](const Light& light) {
-        return light.kind == Light::Kind::kEnvironment;
-    };
-    const auto found = std::ranges::find_if(m_scene.farLights(), isEnvironment);
-    return found == m_scene.farLights().end() ? nullptr : &*found;
-}
 
 void LightSampler::learn(std::span<const LitPlace> places, std::uint64_t seed,
                          const CancelCheck& cancel) {
@@ -47,7 +38,7 @@ void LightSampler::learn(std::span<const LitPlace> places, std::uint64_t seed,
     for (const LitPlace& place : places) receivers.push_back(receiverAt(place.surface, place.side));
     const std::uint64_t key = combineBits(seed, kTrialSeed);
     if (isGuided()) learnLights(places, receivers, key, cancel);
-    if (environmentLight()) learnSky(places, receivers, key, cancel);
+    if (m_scene.hasEnvironment()) learnSky(places, receivers, key, cancel);
 }
 
 void LightSampler::learnSky(std::span<const LitPlace> places, std::span<const Receiver> receivers,
@@ -76,18 +67,16 @@ void LightSampler::learnLights(std::span<const LitPlace> places,
 
 float LightSampler::lookAtSky(const LitPlace& place, const Receiver& receiver,
                               const Vec3f& direction) const {
-    const float cosine = dot(direction, receiver.normal);
-    if (!(cosine > 0.0f)) return 0.0f;
-    const Rgb radiance = m_scene.environment().radiance(direction);
-    if (isBlack(radiance) || m_scene.occluded(rayFrom(place.surface, direction))) return 0.0f;
-    return cosine * static_cast<float>(channelSum(radiance));
+    const Rgb radiance = m_scene.skyRadiance(place.surface, receiver.normal, direction);
+    return std::max(0.0f, dot(direction, receiver.normal)) *
+           static_cast<float>(channelSum(radiance));
 }
 
 // Of directions as the environment chooses them, that a surface could receive light from.
 bool LightSampler::isSkyHidden(std::span<const LitPlace> places,
                                std::span<const Receiver> receivers, std::uint64_t key) const {
     const std::size_t step = std::max<std::size_t>(1, places.size() / kPlacesOfSky);
-    double asked = 0, seen = 0;
+    SkyLooks looks;
     for (std::size_t place = 0; place < places.size(); place += step) {
         Sampler sampler(key, kNoNode - 1, place, 0);
         const Vec2f start = sampler.next2D();
@@ -95,11 +84,11 @@ bool LightSampler::isSkyHidden(std::span<const LitPlace> places,
             float pdf;
             const Vec3f direction = m_scene.environment().sample(spreadPoint(i, start), pdf);
             if (!(dot(direction, receivers[place].normal) > 0.0f)) continue;
-            ++asked;
-            seen += lookAtSky(places[place], receivers[place], direction) > 0.0f ? 1 : 0;
+            ++looks.asked;
+            if (lookAtSky(places[place], receivers[place], direction) > 0.0f) ++looks.seen;
         }
     }
-    return seen < kShareOfHiddenSky * asked;
+    return looks.isHidden();
 }
 
 std::vector<Sighting> LightSampler::look(std::span<const LitPlace> places, std::uint64_t key,

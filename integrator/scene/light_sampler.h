@@ -75,7 +75,7 @@ class LightSampler {
     bool empty() const { return m_choice.empty(); }
     bool isGuided() const { return m_tree != nullptr; }
     // There is something to learn: many lights, or an environment that may be hidden.
-    bool learns() const { return isGuided() || environmentLight() != nullptr; }
+    bool learns() const { return isGuided() || m_scene.hasEnvironment(); }
 
     // Learns by shadow rays which lights reach `places`, the places where most samples will be
     // asked for; and, where most of the environment is hidden from them, where it is not. Nothing
@@ -144,7 +144,6 @@ class LightSampler {
     template <std::size_t kMost>
     void chooseGuided(const Receiver& receiver, std::span<ChosenLight> chosen) const;
     float probability(const Surface& surface, const Vec3f& side, std::uint32_t light) const;
-    const Light* environmentLight() const;
     void learnLights(std::span<const LitPlace> places, std::span<const Receiver> receivers,
                      std::uint64_t key, const CancelCheck& cancel);
     void learnSky(std::span<const LitPlace> places, std::span<const Receiver> receivers,

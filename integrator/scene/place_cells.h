@@ -38,6 +38,20 @@ class PlaceCells {
     std::span<const std::uint32_t> placesOf(std::size_t leaf) const {
         return std::span(m_order).subspan(m_leaves[leaf].begin, m_leaves[leaf].count);
     }
+    // Upwards: merge(cell, left, right) for every cell that has children, after those.
+    template <typename Merge>
+    void gather(Merge merge) const {
+        for (std::size_t i = m_cells.size(); i-- > 0;)
+            if (m_cells[i].right != 0) merge(i, i + 1, std::size_t{m_cells[i].right});
+    }
+    // Downwards: what is known of a cell is step(cell, what is known of the one above).
+    template <typename Known, typename Step>
+    void spread(const Known& above, const Step& step, std::size_t cell = 0) const {
+        const Known known = step(cell, above);
+        if (m_cells[cell].right == 0) return;
+        spread(known, step, cell + 1);
+        spread(known, step, m_cells[cell].right);
+    }
     // The leaf's number; kNoLeaf far from all places.
     std::uint32_t leafAt(const Receiver& receiver) const;
 

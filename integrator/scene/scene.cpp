@@ -29,6 +29,12 @@ Rgb Scene::farRadiance(const Light& light, const Vec3f& direction) const {
     return !beam.isDelta() && beam.holds(-direction) ? light.intensity : Rgb{};
 }
 
+Rgb Scene::skyRadiance(const Surface& from, const Vec3f& normal, const Vec3f& direction) const {
+    if (!(dot(direction, normal) > 0.0f)) return {};
+    const Rgb radiance = m_environment->radiance(direction);
+    return isBlack(radiance) || occluded(rayFrom(from, direction)) ? Rgb{} : radiance;
+}
+
 bool Scene::seesFarLight(const Vec3f& direction) const {
     return std::ranges::any_of(
         farLights(), [&](const Light& light) { return !isBlack(farRadiance(light, direction)); });

@@ -53,7 +53,9 @@ class Scene {
         return std::span(m_lights).subspan(m_nearLightCount);
     }
     const Beam& beam(const Light& light) const { return m_beams[light.beam]; }
-    const Environment& environment() const { return *m_environment; }  // of a light of that kind
+    // Whether a light is an environment; and the one that there is then.
+    bool hasEnvironment() const { return m_environment != nullptr; }
+    const Environment& environment() const { return *m_environment; }
 
     // Whether rays can meet a light: it has an area, a disc in the sky, or is all of the sky.
     bool isMet(const Light& light) const {
@@ -63,6 +65,9 @@ class Scene {
     // Radiance of a far light that is seen along a unit direction where nothing is in the way;
     // black of parallel light. W m^-2 sr^-1.
     Rgb farRadiance(const Light& light, const Vec3f& direction) const;
+    // Radiance of the environment that there is, W m^-2 sr^-1, along a unit direction from that
+    // side of a surface to which `normal` points; black where something is in the way.
+    Rgb skyRadiance(const Surface& from, const Vec3f& normal, const Vec3f& direction) const;
     // Whether a ray that meets nothing sees light.
     bool seesFarLight(const Vec3f& direction) const;
 

@@ -65,8 +65,10 @@ class SkyGuide::Learner {
         tbb::parallel_for(std::size_t{0}, m_cells.size(), [&](std::size_t i) {
             if (m_cells[i].right == 0) lookFrom(i, first, last);
         });
-        gather(0);
-        spread(0, std::vector<float>(kDirections, 0.0f));
+        gather();
+        m_guide.m_places.spread(
+            std::vector<float>(kDirections, 0.0f),
+            [this](std::size_t cell, const auto& above) { return learnCell(cell, above); });
     }
 
     void lookFrom(std::size_t index, std::uint32_t first, std::uint32_t last) {
@@ -85,20 +87,19 @@ class SkyGuide::Learner {
     }
 
     // Sums up what was seen.
-    void gather(std::size_t index) {
-        const PlaceCells::Cell& cell = m_cells[index];
-        if (cell.right == 0) return;
-        for (std::size_t c = 0; c < kDirections; ++c) m_seen[index * kDirections + c] = {};
-        for (const std::size_t child : {index + 1, std::size_t{cell.right}}) {
-            gather(child);
-            for (std::size_t c = 0; c < kDirections; ++c)
-                m_seen[index * kDirections + c].add(m_seen[child * kDirections + c]);
-        }
+    void gather() {
+        m_guide.m_places.gather([this](std::size_t cell, std::size_t left, std::size_t right) {
+            for (std::size_t c = 0; c < kDirections; ++c) {
+                Seen& seen = m_seen[cell * kDirections + c];
+                seen = m_seen[left * kDirections + c];
+                seen.add(m_seen[right * kDirections + c]);
+            }
+        });
     }
 
-    // Hands down the mean square of each cell of directions, as far as is known; makes the leaves'
-    // tables of it.
-    void spread(std::size_t index, const std::vector<float>& above) {
+    // The mean square of each cell of directions, as far as is known; of a leaf, the table of it,
+    // too.
+    std::vector<float> learnCell(std::size_t index, const std::vector<float>& above) {
         const PlaceCells::Cell& cell = m_cells[index];
         std::vector<float> squares(kDirections);
         for (std::size_t c = 0; c < kDirections; ++c) {
@@ -108,12 +109,8 @@ class SkyGuide::Learner {
                 (seen.squares / std::max(1.0f, seen.looks) * looks + kPriorLooks * above[c]) /
                 (looks + kPriorLooks);
         }
-        if (cell.right == 0) {
-            makeTable(tableOf(cell.axis), squares);
-            return;
-        }
-        spread(index + 1, squares);
-        spread(cell.right, squares);
+        if (cell.right == 0) makeTable(tableOf(cell.axis), squares);
+        return squares;
     }
 
     // The variance of the sum is least when each cell is chosen by the root of its second moment.

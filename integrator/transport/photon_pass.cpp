@@ -2,66 +2,18 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/transport/photon_pass.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
-#include <cmath>
-#include <iterator>
 #include <numbers>
-#include <optional>
 #include <span>
 #include <string>
 #include <utility>
 
 #include "integrator/transport/frame_renderer.h"
-#include "integrator/transport/gather_focus.h"
-#include "integrator/transport/gather_pilot.h"
 #include "integrator/transport/pass_radius.h"
-#include "integrator/transport/sky_openings.h"
+#include "integrator/transport/photon_lists.h"
 #include "integrator/values/stopwatch.h"
 
 namespace pm {
-
-namespace {
-
-// Gather rays go by a guide where that leaves less than this of their variance.
-constexpr double kGuidePays = 0.5;
-// Radius at which gather rays read caustics, over the typical one of those that are seen: rays blur
-// them anyway.
-constexpr float kRadiusOfGathered = 2.0f;
-// Caustics' radii, which rise slowly beside bright light, are to hold so many times K photons.
-constexpr double kSoughtInCaustics = 1.6;
-
-std::vector<Photon> refocusedOf(std::span<const Photon> descended) {
-    std::vector<Photon> found;
-    std::ranges::copy_if(descended, std::back_inserter(found),
-                         [](const Photon& photon) { return photon.normal.isMarked(); });
-    return found;
-}
-
-BigVector<Photon> inFocus(std::span<const Photon> photons, const Focus& focus) {
-    BigVector<Photon> found;
-    for (const Photon& photon : photons)
-        if (focus.levelAt(photon.position) == 0) found.push_back(photon);
-    return found;
-}
-
-// Where a pilot finds next to nothing, estimates reach a hundredth of what is in focus.
-float fallbackIn(const Focus& focus) {
-    return 0.01f / std::sqrt(focus.inverseRadiusSquared);
-}
-
-BigVector<Photon> join(std::span<const Photon> first, std::span<const Photon> second) {
-    BigVector<Photon> all(first.size() + second.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size()), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i)
-            all[i] = i < first.size() ? first[i] : second[i - first.size()];
-    });
-    return all;
-}
-
-}  // namespace
 
 PhotonPass::PhotonPass(const Scene& scene, const Camera& camera, const LightSampler& lights,
                        const Plan& plan, const RenderSettings& settings)
@@ -174,104 +126,6 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
     return result;
 }
 
-void PhotonPass::findFocus(const CancelCheck& check) {
-    const Focus focus = findGatherFocus(m_scene, m_camera, m_settings, check);
-    if (!focus.isEverywhere()) {
-        m_focused = std::make_unique<AimedEmission>(
-            AimedEmission::atFocus(m_scene, m_lights, focus, check));
-        return;
-    }
-    SkyOpenings openings = findSkyOpenings(m_scene, m_camera, m_settings, check);
-    if (!openings.balls.empty())
-        m_focused = std::make_unique<AimedEmission>(AimedEmission::atOpenings(
-            m_scene, m_lights, std::move(openings.balls), openings.seenShare, check));
-}
-
-// What light is sent to which casters of caustics: a geometric guess, and a pilot that finds what
-// is hidden.
-void PhotonPass::aim(Control& control) {
-    const CancelCheck check(control.cancelled);
-    m_aim = std::make_unique<AimedEmission>(
-        m_scene, m_lights, findSeenFocus(m_scene, m_camera, m_settings, check), check);
-    if (m_aim->empty()) return;
-    // A pass's number that the pilot of the radii doesn't have.
-    const PhotonTraceRequest request{
-        PhotonKind::kCausticPilot, m_plan.aimPilotPhotons(), m_settings.seed, 1, m_aim.get(), true};
-    const PhotonTraceResult landed =
-        tracePhotons(m_scene, m_lights, request, control.cancelled, {});
-    m_aim->refine(landed.records);
-}
-
-void PhotonPass::chooseGatherRays(const PhotonMap& pilot, const CancelCheck& check) {
-    m_raysOfPoint = m_plan.gatherRays;
-    if (!m_plan.gatherRaysByPilot) return;
-    const IrradianceSites sites(m_scene, pilot, m_globalRadius, nullptr, 1.0f, m_focus);
-    std::optional<VirtualLamps> lamps;
-    if (m_plan.descent > 0.0f)
-        lamps.emplace(m_scene, m_causticRadius->photons(),
-                      kRadiusOfGathered * m_causticRadius->typical(), nullptr, 1.0f,
-                      m_settings.seed, check);
-    const GatherEnds ends{sites, lamps ? &*lamps : nullptr, m_plan.gatherRays};
-    m_raysOfPoint = gatherRaysFor(
-        gatherSpread(m_scene, m_camera, m_lights, ends, m_settings, check), m_plan.gatherRays);
-    const bool always = m_settings.plan == PlanKind::kEverything;
-    if (m_raysOfPoint <= m_plan.gatherRays && !always) return;
-    auto guide = std::make_unique<GatherGuide>(pilot, m_globalRadius);
-    const auto [byCosine, byGuide] =
-        gatherRivals(m_scene, m_camera, m_lights, ends, *guide, m_settings, check);
-    if (byGuide < kGuidePays * byCosine || always) m_guide = std::move(guide);
-}
-
-// Of caustics and of refocused light. Returns the pilot's descended photons.
-BigVector<Photon> PhotonPass::findCausticRadii(float fallback, Control& control) {
-    if (!m_source) aim(control);
-    const CancelCheck check(control.cancelled);
-    PhotonTraceResult pilot =
-        trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), 0, control);
-    const auto sought = static_cast<std::uint32_t>(kSoughtInCaustics * m_settings.estimatePhotons);
-    m_causticRadius = std::make_unique<PilotRadius>(pilot.photons, sought, fallback, check);
-    if (m_plan.descent > 0.0f)
-        m_refocusedRadius =
-            std::make_unique<PilotRadius>(refocusedOf(pilot.descended), sought, fallback, check);
-    return std::move(pilot.descended);
-}
-
-// Of what is in focus; gather rays read what is beyond, too.
-void PhotonPass::findGlobalRadius(std::span<const Photon> pilot, float fallback,
-                                  const CancelCheck& check) {
-    if (m_focus.isEverywhere()) {
-        const PhotonMap map(pilot, check);
-        m_globalRadius = PilotRadius::typicalOf(map, m_settings.estimatePhotons, fallback);
-        chooseGatherRays(map, check);
-    } else {
-        m_globalRadius = PilotRadius::typicalOf(PhotonMap(inFocus(pilot, m_focus), check),
-                                                m_settings.estimatePhotons, fallbackIn(m_focus));
-        chooseGatherRays(PhotonMap(pilot, check), check);
-    }
-}
-
-void PhotonPass::findRadii(Control& control) {
-    // Where a pilot finds next to nothing, estimates reach a hundredth of the scene.
-    const auto fallback = static_cast<float>(0.01 * m_scene.radius());
-    const CancelCheck check(control.cancelled);
-    BigVector<Photon> global;
-    if (m_plan.globalMap) {
-        if (!m_source) findFocus(check);
-        PhotonTraceResult pilot =
-            trace(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0, control);
-        // Of photons that are read, that of the view which they were made for.
-        m_focus = pilot.focus;
-        global = std::move(pilot.photons);
-    }
-    if (m_plan.causticMap) global = join(global, findCausticRadii(fallback, control));
-    if (m_plan.globalMap) findGlobalRadius(global, fallback, check);
-    // By the sites' radius, so that they know nothing of caustics.
-    const bool byCaustics = m_causticRadius && !m_plan.globalMap;
-    m_patches = std::make_unique<SurfacePatches>(
-        m_scene, byCaustics ? m_causticRadius->typical() : m_globalRadius);
-    m_haveRadii = true;
-}
-
 // Returns the descended photons, which gather rays read beside the global ones.
 BigVector<Photon> PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
     PhotonTraceResult traced =
@@ -285,7 +139,7 @@ BigVector<Photon> PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
     BigVector<Photon>().swap(traced.photons);
     noteBuilding(maps, landed);
     if (m_plan.descent > 0.0f) {
-        const float radius = kRadiusOfGathered * m_causticRadius->typical();
+        const float radius = radiusOfGathered();
         maps.lamps = std::make_unique<VirtualLamps>(m_scene, maps.caustic->photons(),
                                                     radius * factor, patchesOfSites(radius), factor,
                                                     combineBits(m_settings.seed, maps.pass), check);

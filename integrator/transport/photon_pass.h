@@ -88,6 +88,8 @@ class PhotonPass {
     PhotonTraceResult trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
                             Control& control);
     BigVector<Photon> buildCaustics(PassMaps& maps, Control& control);
+    // At which gather rays read caustics.
+    float radiusOfGathered() const;
     const SurfacePatches* patchesOfSites(float radius) const;
     void buildIndirect(PassMaps& maps, BigVector<Photon> descended, Control& control);
     void findFocus(const CancelCheck& check);

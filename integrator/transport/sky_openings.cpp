@@ -23,9 +23,6 @@ constexpr std::size_t kColumns = 32, kRows = 32;
 // From where each path ends; more where those find something, but little.
 constexpr std::uint32_t kLooks = 64, kMoreLooks = 2048;
 constexpr std::uint64_t kSeed = 0x736b796f70656e69ull;
-
-// Of the looks to the side of a surface, so many reach the sky at most where it is hidden.
-constexpr double kShareOfHiddenSky = 0.5;
 // Fewer rays tell nothing; of more than the most some are left out.
 constexpr std::size_t kFewestRays = 64, kMostRays = 2048;
 constexpr std::size_t kMostOpenings = 4;
@@ -163,8 +160,7 @@ Looks lookAtSky(const Scene& scene, const Camera& camera, const RenderSettings& 
                                  scene.environment().sample(spreadPoint(i, start), pdf);
                              if (!(dot(direction, normal) > 0.0f)) continue;
                              ++ofPath[path].asked;
-                             if (isBlack(scene.environment().radiance(direction)) ||
-                                 scene.occluded(rayFrom(stop.surface, direction)))
+                             if (isBlack(scene.skyRadiance(stop.surface, normal, direction)))
                                  continue;
                              ofPath[path].rays.push_back(
                                  {Vec3d(stop.surface.position), normalize(Vec3d(direction))});
@@ -172,13 +168,13 @@ Looks lookAtSky(const Scene& scene, const Camera& camera, const RenderSettings& 
                          return false;
                      });
     Looks looks;
-    std::size_t asked = 0;
+    SkyLooks counted;
     for (const OfPath& one : ofPath) {
-        asked += one.asked;
+        counted.asked += one.asked;
+        counted.seen += one.rays.size();
         looks.rays.insert(looks.rays.end(), one.rays.begin(), one.rays.end());
     }
-    looks.isHidden =
-        static_cast<double>(looks.rays.size()) < kShareOfHiddenSky * static_cast<double>(asked);
+    looks.isHidden = counted.isHidden();
     looks.seenShare.resize(SkyParts::kCount);
     for (const SkyRay& ray : looks.rays)
         looks.seenShare[SkyParts::partOf(Vec3f(ray.direction))] +=
@@ -190,10 +186,7 @@ Looks lookAtSky(const Scene& scene, const Camera& camera, const RenderSettings& 
 
 SkyOpenings findSkyOpenings(const Scene& scene, const Camera& camera,
                             const RenderSettings& settings, const CancelCheck& cancel) {
-    const bool hasSky = std::ranges::any_of(scene.farLights(), [](const Light& light) {
-        return light.kind == Light::Kind::kEnvironment;
-    });
-    if (!hasSky) return {};
+    if (!scene.hasEnvironment()) return {};
     Looks looks = lookAtSky(scene, camera, settings, kLooks, cancel);
     if (!looks.rays.empty() && looks.rays.size() < kFewestRays)
         looks = lookAtSky(scene, camera, settings, kMoreLooks, cancel);

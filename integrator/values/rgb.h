@@ -45,6 +45,9 @@ constexpr bool isBlack(const Rgb& c) {
 constexpr double channelSum(const Rgb& c) {
     return static_cast<double>(c.r) + static_cast<double>(c.g) + static_cast<double>(c.b);
 }
+constexpr double channelMean(const Rgb& c) {
+    return channelSum(c) / 3;
+}
 constexpr float maxChannel(const Rgb& c) {
     return std::max(c.r, std::max(c.g, c.b));
 }
