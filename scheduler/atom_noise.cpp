@@ -207,6 +207,23 @@ double AtomNoise::ofPixel(std::size_t pixel, double neighbours) const {
     return (known * variance + kSamplesOfEdge * m_ofEdges) / (known + kSamplesOfEdge);
 }
 
+// One-way analysis of variance: within passes and between them.
+double AtomNoise::shared(double samplesOfPass) const {
+    double sum = 0, count = 0;
+    for (std::size_t i = 0; i < kAtomPixels; ++i) {
+        const SeenSamples& seen = m_seen[i];
+        const double passes = seen.samples / samplesOfPass;
+        if (seen.edges > 0 || !(passes > 1 && samplesOfPass > 1)) continue;
+        double ofMean = 0;
+        for (const double s : seen.sums) ofMean += s * s / seen.samples;
+        const double within = (seen.square - seen.ofPasses) / (seen.samples - passes);
+        const double between = (seen.ofPasses - ofMean) / (passes - 1);
+        sum += (between - within) / (samplesOfPass * m_scales[i]);
+        ++count;
+    }
+    return count > 0 ? std::max(0.0, sum / count) : 0.0;
+}
+
 AtomNoise::Expected AtomNoise::evened(std::size_t pixel) const {
     const Together& others = m_ofColour[1 - colourOf(pixel)];
     if (m_all.isEven() && others.isEven()) return {m_all.expected(0), others.expected(0)};

@@ -17,6 +17,8 @@ struct SeenSamples {
     double sums[3]{};    // of the beauty
     double square = 0;   // sum over samples and channels of the beauty squared
     double edges = 0;    // of the passes, those whose samples met unlike surfaces
+    // Sum over passes and channels of the square of a pass's sum over its samples' number.
+    double ofPasses = 0;
 };
 
 // Relative variance of samples taken together: over r^2 + 0.01, r their mean, the mean of the
@@ -32,6 +34,11 @@ class AtomNoise {
     // By the pixel's own samples and by its neighbours, which count as so many of its own; of a
     // pixel with an edge also by what the atom's edges have shown, and are taken for before.
     double ofPixel(std::size_t pixel, double neighbours) const;
+
+    // Relative variance that a pass's mean has by what its samples share, of so many samples each:
+    // what passes differ by, and their samples don't explain. A mean over the atom's pixels without
+    // edges, which sequences cure; 0 before a second pass.
+    double shared(double samplesOfPass) const;
 
     struct Expected {
         double byAll = 0;

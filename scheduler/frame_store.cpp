@@ -39,6 +39,11 @@ void addSeen(const float* values, SeenSamples& seen) {
     for (int c = 0; c < 3; ++c) seen.sums[c] += static_cast<double>(values[c + 1]);
     seen.square += static_cast<double>(values[4]);
     seen.edges += static_cast<double>(values[5]);
+    if (!(values[0] > 0.0f)) return;
+    for (int c = 0; c < 3; ++c) {
+        const auto sum = static_cast<double>(values[c + 1]);
+        seen.ofPasses += sum * sum / static_cast<double>(values[0]);
+    }
 }
 
 void checkNotEmpty(const Rect& window) {

@@ -63,9 +63,9 @@ class FrameStore {
     // biasProbeFirst: the first of three that hold their bias probe, -1 where nothing is biased.
     // emissionFirst: the first of three with the part of the beauty that comes from lamps the pixel
     // sees, -1 where that is not told apart. rule: of adaptive renders; there the last 6 channels
-    // of a pass are its SeenSamples, which are added up by halves and can't be read; with groups
-    // one more follows, the contribution: any number from 0 on that is alike where samples show the
-    // same. Errors: kInvalidArgument outside of that; kOutOfMemory.
+    // of a pass are its SeenSamples up to `edges`, added up by halves, which can't be read; with
+    // groups one more follows, the contribution: any number from 0 on that is alike where samples
+    // show the same. Errors: kInvalidArgument outside of that; kOutOfMemory.
     FrameStore(const Rect& window, std::int32_t channels, std::int32_t beautyFirst,
                std::int32_t biasProbeFirst = -1, std::int32_t emissionFirst = -1,
                const std::optional<SampleRule>& rule = std::nullopt);

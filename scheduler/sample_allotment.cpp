@@ -27,7 +27,7 @@ constexpr double kSamplesThatDivide = 16;
 constexpr double kBeyondLeast = 1.7;
 // Samples of a pass that tempering leaves as they are; and the largest spread that it takes for
 // that of an edge.
-constexpr double kAsKnown = 6, kMostOfEdge = 0.35;
+constexpr double kAsKnown = 6, kMostOfEdge = 0.7;
 // A pass makes up for what earlier ones lacked by at most so many times what is allotted.
 constexpr double kMostMadeUp = 2;
 // Samples of the second pass where nothing is shared: the first has seen little, and where all is
@@ -108,10 +108,14 @@ bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSample
     return !(std::sqrt(relativeVariance(both)) <= kSamplesThatDivide * rule.threshold);
 }
 
-std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes, double spread) {
+std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes, double spread,
+                              double shared) {
     double inPass = spread / rule.threshold / kPassesOfALevel;
     if (!rule.isAlone()) {
-        inPass = tempered(finer(passes) * inPass, spread);
+        inPass *= finer(passes);
+        // Not the least of both, which makes a number of what is none.
+        if (shared * inPass > spread) inPass = spread / shared;
+        inPass = tempered(inPass, spread);
         // A number that is none asks for nothing.
         const std::uint32_t power = inPass >= 0.5 ? nearestPower(inPass, rule.most) : 0;
         return static_cast<std::uint16_t>(std::clamp(power, rule.least, rule.most));
@@ -134,10 +138,11 @@ void allotSamples(const SampleRule& rule, std::uint32_t passes,
                   std::span<const SeenSamples, kAtomPixels> seen, std::span<std::uint16_t> samples,
                   std::span<std::uint16_t> weights) {
     const AtomNoise noise(seen);
+    const double shared = rule.isAlone() ? 0 : std::sqrt(noise.shared(rule.least));
     for (std::size_t i = 0; i < kAtomPixels; ++i) {
         if (!rule.isAlone()) {
             const double variance = noise.ofPixel(i, kSamplesOfNeighbours);
-            samples[i] = samplesOfSpread(rule, passes, std::sqrt(variance));
+            samples[i] = samplesOfSpread(rule, passes, std::sqrt(variance), shared);
             continue;
         }
         const auto [byAll, byOthers] = noise.evened(i);

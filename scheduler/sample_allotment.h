@@ -24,11 +24,17 @@ namespace pm {
 // N = s / threshold: the allotment for which the sum of the squared errors is least for the same
 // number of samples, were s known and noise like 1/N. But few samples tell badly which pixels are
 // noisy, and a low-discrepancy sequence cures edges: so in a pass the root of 6 N / 4, up to a
-// spread of 0.35; light that few samples meet has more than that, and there N goes on with s.
+// spread of 0.7; light that few samples meet has more than that, and there N goes on with s.
 // Relative means: to sqrt(r^2 + 0.01), r the mean, as in relMSE. The first passes show little:
 // after two passes the threshold is halved, after four divided by sqrt(8). Samples are rounded to a
 // power of two: low-discrepancy sequences are at their best there, and a pixel that needs no more
 // samples than another is not to have some more.
+//
+// Where passes differ by more than their samples explain, by photons, more samples of a pass don't
+// help. With r^2 the relative variance of that, t the time of a pass without samples and u that of
+// one sample, the error times the time of all passes, (r^2 + T s)(t + u s / T), is least at
+// T = r sqrt(u / t); so the threshold of a pass is r at least (what holds is told by the atom's
+// other half, as all of this).
 //
 // A pixel whose samples met unlike surfaces holds an edge, and few samples tell little of how much
 // light differs there: it is taken to differ much until those of the atom's edges have shown more.
@@ -79,8 +85,10 @@ bool allotsAfter(std::uint32_t passes);
 // get the 16 samples of level 3. A group blurs what is even, and noise alone is not to divide it.
 bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSamples& odd);
 
-// Samples a pass of a pixel of this relative spread, after so many passes.
-std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes, double spread);
+// Samples a pass of a pixel of this relative spread, after so many passes, whose means have this
+// relative standard deviation by what their samples share.
+std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes, double spread,
+                              double shared = 0);
 
 // What a pixel gets in a pass, where it is allotted so much for each pass of that half and has had
 // `had` in those before: if isAlone(), what is lacking to that, at least the least, at most twice

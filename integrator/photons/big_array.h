@@ -6,9 +6,13 @@
 #include <sys/mman.h>
 #endif
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
+#include <cstring>
 #include <memory>
 #include <new>
 #include <type_traits>
@@ -17,23 +21,21 @@
 
 namespace pm {
 
-// Of a block that may begin before the array in it.
 struct FreeMemory {
-    void* block = nullptr;
-    void operator()(void*) const { std::free(block); }
+    void operator()(void* memory) const { std::free(memory); }
 };
 
 // An array on a cache line's boundary; a large one asks the system for pages of 2 MiB. With the
 // usual 4 KiB, first touching 10 million photons' arrays and giving them back took a tenth of the
 // time of building their map, and what is looked up in no order found most pages' places anew.
-// Tables that begin as zeros cost more: a page that is read first and written then is faulted in
-// twice, and the second time all processors are told.
 template <typename T>
 using BigArray = std::unique_ptr<T[], FreeMemory>;
 
 namespace big_array {
 
 inline constexpr std::size_t kLine = 64, kLargePage = std::size_t{1} << 21;
+// Bytes that are zeroed at a time.
+inline constexpr std::size_t kZeroed = std::size_t{1} << 18;
 
 // Not 0 bytes: that may be answered by a null pointer.
 template <typename T>
@@ -66,7 +68,7 @@ BigArray<T> makeBigArray(std::size_t count) {
     void* const memory = std::aligned_alloc(alignment, bytes);
     if (!memory) throw std::bad_alloc();
     big_array::wishForLargePages(memory, bytes);
-    return BigArray<T>(static_cast<T*>(memory), FreeMemory{memory});
+    return BigArray<T>(static_cast<T*>(memory));
 }
 
 // For vectors whose elements somebody else writes: resize() leaves them as they are.
@@ -89,20 +91,18 @@ struct BigAllocator {
 template <typename T>
 using BigVector = std::vector<T, BigAllocator<T>>;
 
-// All bytes 0, which is what a T begins with: numbers, atomic or not. What is never touched takes
-// no memory as a rule. Throws std::bad_alloc.
+// All bytes 0, which is what a T begins with: numbers, atomic or not. Written in parallel in the
+// calling TBB arena: memory that the heap gives again has to be, and that new from the system, read
+// first and written then, would be faulted in twice, and the second time all processors be told.
+// Throws std::bad_alloc.
 template <typename T>
 BigArray<T> makeBigZeroedArray(std::size_t count) {
     static_assert(std::is_standard_layout_v<T> && std::is_trivially_destructible_v<T>);
-    const std::size_t wanted = big_array::bytesOf<T>(count);
-    const std::size_t alignment = big_array::alignmentOf(wanted);
-    std::size_t space = wanted + alignment;
-    void* const block = std::calloc(space, 1);
-    if (!block) throw std::bad_alloc();
-    void* memory = block;
-    std::align(alignment, wanted, memory, space);
-    big_array::wishForLargePages(memory, wanted);
-    return BigArray<T>(static_cast<T*>(memory), FreeMemory{block});
+    BigArray<T> array = makeBigArray<T>(count);
+    auto* const bytes = reinterpret_cast<unsigned char*>(array.get());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count * sizeof(T), big_array::kZeroed),
+                      [&](const auto& r) { std::memset(bytes + r.begin(), 0, r.size()); });
+    return array;
 }
 
 }  // namespace pm

@@ -171,6 +171,37 @@ TEST(AllottedFrame, theFirstPassDecidesForTheSecond) {
     }
 }
 
+// Where each pass's samples share noise, what it is is found, and fewer samples are allotted: in
+// half of the picture; by the other half of the passes.
+TEST(AllottedFrame, passesThatDifferGetFewerSamples) {
+    const SampleRule rule{4, 64, 0.01};
+    const Rect two{0, 0, 16, 8};
+    double left = 0, right = 0;
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        FrameStore frame(two, kChannels, 0, -1, -1, rule);
+        std::mt19937 random(seed);
+        std::normal_distribution<float> normal;
+        for (std::uint32_t pass = 0; pass < 4; ++pass) {
+            float shared[128];
+            for (float& s : shared) s = 0.3f * normal(random);
+            addPass(
+                frame, pass, two,
+                [&](std::size_t pixel, std::uint32_t, std::uint32_t) {
+                    const bool isLeft = pixel % 16 < 8;
+                    return 2.0f + 0.4f * normal(random) + (isLeft ? shared[pixel] : 0.0f);
+                },
+                rule.least);
+        }
+        std::vector<FrameStore::NextSamples> next(128);
+        frame.nextSamples(4, two, next);
+        for (std::size_t i = 0; i < next.size(); ++i)
+            (i % 16 < 8 ? left : right) += next[i].count / (64.0 * 20);
+    }
+    // A spread of 0.2 gets 9.2 by the threshold, 2.8 by the 0.15 that passes differ by.
+    EXPECT_LT(left, 5.0);
+    EXPECT_GT(right, 7.0);
+}
+
 float noiseAt(std::int32_t x, std::int32_t y, std::uint32_t half, std::uint32_t index) {
     std::mt19937 random(static_cast<unsigned>(x * 977 + y * 131) + half * 7919 + index * 104729);
     return static_cast<float>(random() % 1000) / (x > 10 ? 1000.0f : 1e6f) + 1.0f;

@@ -34,7 +34,7 @@ std::uint16_t samplesOf(std::uint32_t passes, double mean, double deviation,
 
 TEST(SampleAllotment, samplesGrowWithTheRelativeSpread) {
     // From the fifth pass on, s relative to sqrt(r^2 + 0.01), to the nearest power of two: the root
-    // of 6 s / (0.04 / sqrt(8)), but beyond s = 0.35 in proportion to it.
+    // of 6 s / (0.04 / sqrt(8)), but beyond s = 0.7 in proportion to it.
     const double perSpread = std::sqrt(8) / 0.04;
     const auto samplesAt = [](double spread) {
         return samplesOf(4, 2.0, spread * std::sqrt(4.01));
@@ -43,9 +43,7 @@ TEST(SampleAllotment, samplesGrowWithTheRelativeSpread) {
         for (const unsigned count : {2u, 4u, 8u})
             EXPECT_EQ(samplesAt(factor * count * factor * count / (6 * perSpread)), count)
                 << factor;
-        for (const unsigned count : {16u, 32u})
-            EXPECT_EQ(samplesAt(factor * count * 0.35 / std::sqrt(6 * perSpread * 0.35)), count)
-                << factor;
+        EXPECT_EQ(samplesAt(factor * 32 * 0.7 / std::sqrt(6 * perSpread * 0.7)), 32u) << factor;
     }
     // At most and at least what the rule allows; a spread that is no number asks for nothing.
     EXPECT_EQ(samplesOf(2, 2.0, 0.0), 1u);
@@ -143,6 +141,57 @@ TEST(SampleAllotment, edgesShareWhatTheyHaveMet) {
     atom[0].square -= 64 * 3 * 20.0;
     allotSamples(kRule, 1, atom, samples);
     EXPECT_GT(met, samples[15]);
+}
+
+// An atom of two passes of four samples of mean 2, whose own relative variance is square, and whose
+// passes have this one besides by what each shares.
+std::array<SeenSamples, kPixels> twoPassesOfFour(double square, double shared) {
+    auto atom = evenAtom(8, 2.0, 0.0);
+    const double scale = 4.01;
+    for (SeenSamples& seen : atom) {
+        // What is expected of sums of squares: of 3 channels, within passes and between them.
+        const double within = 6 * 3 * scale * square;
+        const double between = 3 * scale * (square + 4 * shared);
+        seen.ofPasses = 8 * 3 * 4.0 + between;
+        seen.square = seen.ofPasses + within;
+    }
+    return atom;
+}
+
+TEST(AtomNoise, tellsWhatPassesShare) {
+    for (const double shared : {0.0, 1e-4, 0.04})
+        EXPECT_NEAR(AtomNoise(twoPassesOfFour(0.09, shared)).shared(4), shared, 1e-12);
+    // Pixels with edges don't count: sequences cure what their samples differ by.
+    auto atom = twoPassesOfFour(0.09, 0.04);
+    for (std::size_t i = 0; i < 32; ++i) {
+        atom[i].edges = 1;
+        atom[i].ofPasses = 8 * 3 * 4.0;
+    }
+    EXPECT_NEAR(AtomNoise(atom).shared(4), 0.04, 1e-12);
+    for (SeenSamples& seen : atom) seen.edges = 1;
+    EXPECT_EQ(AtomNoise(atom).shared(4), 0.0);
+    // A single pass, or passes of a single sample, tell nothing; nor passes closer to each other
+    // than by chance.
+    EXPECT_EQ(AtomNoise(twoPassesOfFour(0.09, 0.04)).shared(8), 0.0);
+    EXPECT_EQ(AtomNoise(twoPassesOfFour(0.09, 0.04)).shared(1), 0.0);
+    EXPECT_EQ(AtomNoise(twoPassesOfFour(0.09, -0.02)).shared(4), 0.0);
+}
+
+// More samples of a pass don't lower what its photons make: there the threshold is no finer.
+TEST(SampleAllotment, samplesDontGoWherePassesDifferByPhotons) {
+    const SampleRule rule{4, 64, 0.01};
+    const auto samplesAfter = [&rule](double shared, double spread) {
+        std::array<std::uint16_t, kPixels> samples{};
+        allotSamples(rule, 4, twoPassesOfFour(spread * spread, shared * shared), samples);
+        return samples[20];
+    };
+    // sqrt(6 s / (0.04 / sqrt(8))), but at least the threshold 0.1: sqrt(6 s / 0.1).
+    EXPECT_EQ(samplesAfter(0.0, 0.3), 8u);
+    EXPECT_EQ(samplesAfter(0.01, 0.3), 8u);
+    EXPECT_EQ(samplesAfter(0.1, 0.3), 4u);
+    // Light that few samples meet gets some all the same.
+    EXPECT_EQ(samplesAfter(0.1, 1.5), 16u);
+    EXPECT_EQ(samplesAfter(0.0, 1.5), 32u);
 }
 
 TEST(SampleAllotment, oneSampleEachIsComparedWithItsNeighbours) {
