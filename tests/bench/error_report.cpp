@@ -42,16 +42,15 @@ void ErrorBench::run() {
     readJobs();
     for (const Job& job : m_jobs) measureOurs(job);
     measurePlan();
-    if (!m_options.quick) {
-        measureTessellated();
-        measurePeers();
-    }
+    if (!m_options.quick) measureTessellated();
+    const bool withPeers = !m_options.quick && hasPeers();
+    if (withPeers) measurePeers();
     keepEarlierPeers();
     summarize();
     if (!m_options.docsFile.empty())
         for (const Job& job : m_jobs) plot(job);
     m_report.publish(m_options.csvFile, m_options.docsFile);
-    if (m_options.quick) return;
+    if (!withPeers) return;
     m_peersReport.publish("", m_options.docsFile);
     if (!m_options.docsFile.empty()) writeCurves(peersFile(), m_peers);
 }
@@ -146,12 +145,18 @@ void ErrorBench::measureTessellated() {
     }
 }
 
+// Both of them, or what was measured of them last is kept.
+bool ErrorBench::hasPeers() const {
+    bool all = true;
+    for (const char* const program : {"blender", "povray"}) {
+        if (findProgram(program)) continue;
+        fmt::print(stderr, "pm_bench_speed_error: no {} here, other renderers left out\n", program);
+        all = false;
+    }
+    return all;
+}
+
 void ErrorBench::measurePeers() {
-    for (const char* const program : {"blender", "povray"})
-        if (!findProgram(program)) {
-            fmt::print(stderr, "pm_bench_speed_error: no {} here, left out\n", program);
-            m_peersReport.paragraph(fmt::format("`{}` was not installed.", program));
-        }
     const TemporaryFolder folder;
     m_peersReport.table(fmt::format("Other renderers, {} threads", m_options.threads),
                         {"scene", "renderer", "budget", "relMSE", "relMSE against its own best",
@@ -168,12 +173,14 @@ void ErrorBench::measurePeers() {
     for (const std::string& failure : failures) m_peersReport.paragraph(failure);
 }
 
-// What was measured of other renderers in an earlier run, of scenes that this run left out.
+// What was measured of other renderers in an earlier run, and not in this one.
 void ErrorBench::keepEarlierPeers() {
     if (m_options.docsFile.empty()) return;
     for (ErrorCurve& curve : readCurves(peersFile())) {
-        const auto isOfThisRun = [&](const Job& job) { return job.scene.name == curve.scene; };
-        if (m_options.quick || std::none_of(m_jobs.begin(), m_jobs.end(), isOfThisRun))
+        const auto isAlike = [&](const ErrorCurve& measured) {
+            return measured.scene == curve.scene && measured.renderer == curve.renderer;
+        };
+        if (std::none_of(m_peers.begin(), m_peers.end(), isAlike))
             m_peers.push_back(std::move(curve));
     }
 }

@@ -41,6 +41,7 @@ class ErrorBench {
     void readJobs();
     void measureOurs(const Job& job);
     void addStep(const std::string& name, const LadderStep& step);
+    bool hasPeers() const;
     void measurePeers();
     void keepEarlierPeers();
     void measureCycles(const Job& job, const std::filesystem::path& folder);
