@@ -22,6 +22,7 @@ constexpr std::size_t kPixels = kAtomPixels;
 constexpr Rect kAtom{0, 0, 8, 8};
 constexpr SampleRule kTwoAtLeast{2, 64, 0.01};
 constexpr SampleRule kRule{1, 64, 0.01};
+constexpr SampleRule kFourAtLeast{4, 64, 0.01};
 // The samples of a pass share no noise.
 constexpr SampleRule kAlone{1, 64, 0.01, false, false};
 constexpr SampleRule kTwoAlone{2, 64, 0.01, false, false};
@@ -114,6 +115,8 @@ double rareLightOfALonePixel(std::uint32_t seen, const SampleRule& rule) {
 
 TEST(AllottedFrame, rareLightIsNotLost) {
     EXPECT_LT(std::abs(rareLightOfAtoms(kRule.least)), 4.0);
+    // Passes of several samples also tell what they share.
+    EXPECT_LT(std::abs(rareLightOfAtoms(kFourAtLeast.least, kFourAtLeast)), 4.0);
     EXPECT_LT(std::abs(rareLightOfAtoms(kAlone.least, kAlone)), 4.0);
 }
 
@@ -146,7 +149,7 @@ TEST(AllottedFrame, decidingByItsOwnSamplesWouldLoseRareLight) {
 // Pass 0 with the least decides for pass 1, pass 1 for pass 2; where nothing is shared, pass 2
 // makes up for pass 0.
 TEST(AllottedFrame, theFirstPassDecidesForTheSecond) {
-    for (const SampleRule& rule : {SampleRule{4, 64, 0.01}, kFourAlone}) {
+    for (const SampleRule& rule : {kFourAtLeast, kFourAlone}) {
         FrameStore frame(kAtom, kChannels, 0, -1, -1, rule);
         double counts[3];
         for (std::uint32_t pass = 0; pass < 3; ++pass) {
@@ -174,7 +177,7 @@ TEST(AllottedFrame, theFirstPassDecidesForTheSecond) {
 // Where each pass's samples share noise, what it is is found, and fewer samples are allotted: in
 // half of the picture; by the other half of the passes.
 TEST(AllottedFrame, passesThatDifferGetFewerSamples) {
-    const SampleRule rule{4, 64, 0.01};
+    const SampleRule& rule = kFourAtLeast;
     const Rect two{0, 0, 16, 8};
     double left = 0, right = 0;
     for (unsigned seed = 0; seed < 20; ++seed) {
