@@ -130,7 +130,8 @@ std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes, doub
 
 double madeUp(const SampleRule& rule, std::uint32_t pass, double had, double allotted) {
     if (!rule.isAlone()) return allotted;
-    const double lacking = allotted * (pass / 2 + 1) - had;
+    const std::uint32_t passesOfHalf = pass / 2 + 1;
+    const double lacking = allotted * passesOfHalf - had;
     return std::max(static_cast<double>(rule.least), std::min(lacking, kMostMadeUp * allotted));
 }
 

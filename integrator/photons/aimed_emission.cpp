@@ -69,6 +69,7 @@ AimedEmission::AimedEmission(const Scene& scene, const LightSampler& lights, con
     const auto& all = scene.lights();
     if (lights.empty()) return;
     std::vector<double> powers;
+    powers.reserve(all.size());
     for (const Light& light : all) powers.push_back(light.powerMean);
     const LightChoice byPower(powers);
     std::vector<EmissionPoint> viewpoints;
@@ -115,6 +116,7 @@ AimedEmission AimedEmission::atOpenings(const Scene& scene, const LightSampler& 
     aimed.m_choice = LightChoice(aimed.m_guess);
     const float most = *std::ranges::max_element(seenShare);
     std::vector<float> worth;
+    worth.reserve(seenShare.size());
     for (const float share : seenShare)
         worth.push_back(static_cast<float>(
             worthOfShare(static_cast<double>(share) / static_cast<double>(most))));
@@ -269,6 +271,7 @@ void AimedEmission::refineSky(std::span<const EmissionRecord> pilot) {
     }
     if (!(sky.landed > 0)) return;
     std::vector<float> worth;
+    worth.reserve(parts.size());
     for (const Landing& part : parts)
         worth.push_back(static_cast<float>(worthOfShare(part.share(sky.share(0)))));
     m_sky.setWorth(std::move(worth));
