@@ -32,9 +32,13 @@ class IrradianceSites {
     // Irradiance, W m^-2, at a site near the point, on the side of the normal; estimated at the
     // point itself where none is.
     TwoRadii at(const Vec3f& position, const Vec3f& normal) const;
+    // Alike for places that ask for the same site first.
+    std::uint64_t siteOf(const Vec3f& position, const Vec3f& normal) const {
+        return m_cells.at(position, normal).hash();
+    }
     // Asks for the site to be at hand soon.
     void prefetch(const Vec3f& position, const Vec3f& normal) const {
-        __builtin_prefetch(&m_slots[firstSlot(m_cells.at(position, normal).hash())]);
+        __builtin_prefetch(&m_slots[firstSlot(siteOf(position, normal))]);
     }
 
     // Irradiance, W m^-2, at a point, computed now. pattern turns the rays about the normal.

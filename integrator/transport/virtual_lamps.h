@@ -71,6 +71,7 @@ class VirtualLamps {
         Rgb flux;
         float density = 0.0f;
     };
+    void findDensities(const CancelCheck& cancel);
     Rgb irradianceBy(const Lamp& lamp, const Place& place, std::uint32_t gatherRays) const;
     float densityOf(const Rgb& irradiance) const {
         return static_cast<float>(channelSum(irradiance)) * m_inverseFlux;
