@@ -209,11 +209,12 @@ double AtomNoise::ofPixel(std::size_t pixel, double neighbours) const {
 
 // One-way analysis of variance: within passes and between them.
 double AtomNoise::shared(double samplesOfPass) const {
+    if (!(samplesOfPass > 1)) return 0;
     double sum = 0, count = 0;
     for (std::size_t i = 0; i < kAtomPixels; ++i) {
         const SeenSamples& seen = m_seen[i];
         const double passes = seen.samples / samplesOfPass;
-        if (seen.edges > 0 || !(passes > 1 && samplesOfPass > 1)) continue;
+        if (seen.edges > 0 || !(passes > 1)) continue;
         double ofMean = 0;
         for (const double s : seen.sums) ofMean += s * s / seen.samples;
         const double within = (seen.square - seen.ofPasses) / (seen.samples - passes);

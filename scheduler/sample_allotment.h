@@ -31,10 +31,10 @@ namespace pm {
 // samples than another is not to have some more.
 //
 // Where passes differ by more than their samples explain, by photons, more samples of a pass don't
-// help. With r^2 the relative variance of that, t the time of a pass without samples and u that of
-// one sample, the error times the time of all passes, (r^2 + T s)(t + u s / T), is least at
-// T = r sqrt(u / t); so the threshold of a pass is r at least (what holds is told by the atom's
-// other half, as all of this).
+// help. With r^2 the relative variance of that, t the time of a pass without samples, u that of one
+// sample and s / q samples a pass, error times time, (r^2 + q s)(t + u s / q), is least at
+// q = r sqrt(u / t); so q, four of the thresholds, is r at least. What r is the other half tells,
+// once it has two passes.
 //
 // A pixel whose samples met unlike surfaces holds an edge, and few samples tell little of how much
 // light differs there: it is taken to differ much until those of the atom's edges have shown more.

@@ -328,7 +328,7 @@ class Scene::Builder {
             light.material = material;
             light.area = static_cast<float>(area);
             const Rgb& e = m_scene.material(material).emission;
-            light.powerMean = kPiDouble * area * (static_cast<double>(e.r) + e.g + e.b) / 3;
+            light.powerMean = kPiDouble * area * channelSum(e) / 3;
             m_scene.m_lights.push_back(light);
         }
     }
