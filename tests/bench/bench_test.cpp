@@ -35,6 +35,26 @@ TEST(Report, RowsHaveAsManyCellsAsTheHeader) {
     EXPECT_NE(std::string::npos, report.markdown().find("| n | n^2 |\n| --- | --- |\n| 2 | 4 |\n"));
 }
 
+TEST(Report, OnlyItsOwnPlaceInTheDocumentIsReplaced) {
+    const TemporaryFolder folder;
+    const std::string docs = (folder.path() / "docs.md").string();
+    const auto place = [](const std::string& name, const std::string& held) {
+        return "<!-- " + name + " begin -->\n" + held + "<!-- " + name + " end -->\n";
+    };
+    const std::string first = place("one", "measured before\n"), second = place("two", "old\n");
+    std::ofstream(docs) << first << second;
+    std::vector<Report> reports;
+    reports.emplace_back("two").paragraph("new");
+    publish(reports, "", docs);
+    EXPECT_EQ(first + place("two", "\n" + reports[0].markdown() + "\n"), contentsOf(docs));
+    // Of two that are measured one has no place: then neither is written.
+    reports.emplace_back("three");
+    const std::string before = contentsOf(docs);
+    reports[0].paragraph("newer");
+    EXPECT_THROW(publish(reports, "", docs), Error);
+    EXPECT_EQ(before, contentsOf(docs));
+}
+
 TEST(SecondsTo, FollowsAStraightLineBetweenLogarithms) {
     const ErrorCurve curve{"s", "r", {{"1", 1, 2, 1e-2}, {"4", 4, 8, 2.5e-3}, {"9", 8, 16, 2e-3}}};
     EXPECT_EQ("2.00 (4.00)", secondsTo(5e-3, curve));

@@ -93,10 +93,14 @@ int runProgram(int argc, char** argv) {
     try {
         const std::filesystem::path folder = std::filesystem::path(options.docsFile).parent_path();
         if (!options.docsFile.empty()) std::filesystem::create_directories(folder / "images");
-        Report report("pm_bench_paper");
-        if (options.only != "levels") benchOrders(report, options, folder);
-        if (options.only != "orders") benchLevels(report, options, folder);
-        report.publish(options.csvFile, options.docsFile);
+        std::vector<Report> reports;
+        const auto add = [&](const std::string& part, const auto& bench) {
+            if (options.only.empty() || options.only == part)
+                bench(reports.emplace_back("pm_bench_paper " + part), options, folder);
+        };
+        add("orders", benchOrders);
+        add("levels", benchLevels);
+        publish(reports, options.csvFile, options.docsFile);
         return 0;
     } catch (const std::exception& e) {
         fmt::print(stderr, "pm_bench_paper: {}\n", e.what());

@@ -56,6 +56,18 @@ void writeAll(const std::string& file, const std::string& text) {
     if (!out.flush()) throw Error(Status::kIo, file + ": can't be written");
 }
 
+// The document with what the report's place in it held replaced.
+std::string withReport(const std::string& docs, const std::string& file, const Report& report) {
+    const std::string begin = fmt::format("<!-- {} begin -->\n", report.name());
+    const std::string end = fmt::format("<!-- {} end -->", report.name());
+    const auto from = docs.find(begin), to = docs.find(end);
+    if (from == std::string::npos || to == std::string::npos || to < from)
+        throw Error(Status::kIo, fmt::format("{}: needs the lines '<!-- {} begin -->' and '{}'",
+                                             file, report.name(), end));
+    return fmt::format("{}\n{}\n{}", docs.substr(0, from + begin.size()), report.markdown(),
+                       docs.substr(to));
+}
+
 }  // namespace
 
 void Report::paragraph(const std::string& text) {
@@ -102,19 +114,21 @@ std::string Report::csv() const {
 }
 
 void Report::publish(const std::string& csvFile, const std::string& docsFile) const {
-    fmt::print("{}", markdown());
-    if (!csvFile.empty()) writeAll(csvFile, csv());
+    bench::publish({this, 1}, csvFile, docsFile);
+}
+
+void publish(std::span<const Report> reports, const std::string& csvFile,
+             const std::string& docsFile) {
+    std::string csv;
+    for (const Report& report : reports) {
+        fmt::print("{}", report.markdown());
+        csv += report.csv();
+    }
+    if (!csvFile.empty()) writeAll(csvFile, csv);
     if (docsFile.empty()) return;
-    const std::string text = readAll(docsFile);
-    const std::string begin = fmt::format("<!-- {} begin -->\n", m_name);
-    const std::string end = fmt::format("<!-- {} end -->", m_name);
-    const auto from = text.find(begin), to = text.find(end);
-    if (from == std::string::npos || to == std::string::npos || to < from)
-        throw Error(Status::kIo, fmt::format("{}: needs the lines '<!-- {} begin -->' and '{}'",
-                                             docsFile, m_name, end));
-    const auto start = from + begin.size();
-    writeAll(docsFile,
-             fmt::format("{}\n{}\n{}", text.substr(0, start), markdown(), text.substr(to)));
+    std::string docs = readAll(docsFile);
+    for (const Report& report : reports) docs = withReport(docs, docsFile, report);
+    writeAll(docsFile, docs);
 }
 
 std::string machineLine() {

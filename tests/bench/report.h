@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,11 +24,10 @@ class Report {
     // std::logic_error.
     void row(std::vector<std::string> cells);
 
+    const std::string& name() const { return m_name; }
     std::string markdown() const;
     std::string csv() const;
-    // Markdown to standard output, CSV to csvFile, and Markdown between the lines
-    // <!-- NAME begin --> and <!-- NAME end --> of docsFile; a file name that is empty is left out.
-    // Throws Error(kIo), naming the file and what is wrong with it.
+    // publish() of this one.
     void publish(const std::string& csvFile, const std::string& docsFile) const;
 
   private:
@@ -39,6 +39,12 @@ class Report {
     std::string m_name;
     std::vector<Table> m_tables;
 };
+
+// Markdown to standard output, CSV of all to csvFile, and the Markdown of each between the lines
+// <!-- NAME begin --> and <!-- NAME end --> of docsFile, so that the places of others stay; a file
+// name that is empty is left out. Throws Error(kIo), naming the file and what is wrong with it.
+void publish(std::span<const Report> reports, const std::string& csvFile,
+             const std::string& docsFile);
 
 // Processor, threads, build, date (UTC), and how busy the machine was, in one line.
 std::string machineLine();

@@ -10,15 +10,16 @@
 #include <algorithm>
 #include <cstdio>
 #include <functional>
-#include <map>
+#include <utility>
+#include <vector>
 
 namespace pm::bench {
 namespace {
 
 int runProgram(int argc, char** argv) {
-    static const std::map<std::string, std::function<void(Report&, int)>> kParts = {
-        {"1-rays", benchRays},     {"2-photons", benchPhotons}, {"3-queries", benchQueries},
-        {"4-phases", benchPhases}, {"5-sampler", benchSampler}, {"6-split", benchSplit},
+    static const std::vector<std::pair<std::string, std::function<void(Report&, int)>>> kParts = {
+        {"rays", benchRays},     {"photons", benchPhotons}, {"queries", benchQueries},
+        {"phases", benchPhases}, {"sampler", benchSampler}, {"split", benchSplit},
     };
     std::string csvFile, docsFile, only;
     int turns = 9;
@@ -33,10 +34,11 @@ int runProgram(int argc, char** argv) {
     CLI11_PARSE(app, argc, argv);
     if (quick) turns = std::max(1, turns / 3);
     try {
-        Report report("pm_bench_speed");
+        std::vector<Report> reports;
         for (const auto& [name, part] : kParts)
-            if (only.empty() || name.ends_with(only)) part(report, turns);
-        report.publish(csvFile, docsFile);
+            if (only.empty() || name == only)
+                part(reports.emplace_back("pm_bench_speed " + name), turns);
+        publish(reports, csvFile, docsFile);
         return 0;
     } catch (const std::exception& e) {
         fmt::print(stderr, "pm_bench_speed: {}\n", e.what());
