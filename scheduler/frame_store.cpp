@@ -179,7 +179,7 @@ void FrameStore::addPass(std::uint32_t pass, const Rect& rect, std::span<const f
             addWeightOfPass(pixel, pass);
         }
     }
-    if (!isAdaptive() || !allotsAfter(pass + 1)) return;
+    if (!isAdaptive() || !allotsAfter(*m_rule, pass + 1)) return;
     for (std::int32_t y = rect.y0; y < rect.y1; y += kAtomSizePixels) {
         const std::lock_guard lock(bandLock(y));
         for (std::int32_t x = rect.x0; x < rect.x1; x += kAtomSizePixels)
@@ -238,29 +238,29 @@ void FrameStore::divideGroups(const Rect& atom) {
         }
 }
 
-// Each half by what the other has seen.
 void FrameStore::allot(const Rect& atom, std::uint32_t passes) {
     if (hasGroups()) divideGroups(atom);
+    allotHalf(atom, passes, passes % 2);
+    // After the first pass the odd ones have seen nothing yet.
+    if (m_rule->isAlone() && passes > 1) allotHalf(atom, passes, 1 - passes % 2);
+}
+
+// By what the other half has seen.
+void FrameStore::allotHalf(const Rect& atom, std::uint32_t passes, std::size_t half) {
     std::array<SeenSamples, kAtomPixels> seen;
     std::array<std::uint16_t, kAtomPixels> samples{}, weights{};
-    // After the first pass the odd ones have seen nothing yet.
-    for (int half = passes == 1 ? 1 : 0; half < 2; ++half) {
+    const auto forEachPixel = [&](const auto& use) {
         std::size_t i = 0;
-        const auto forEachPixel = [&](const auto& use) {
-            i = 0;
-            for (std::int32_t y = atom.y0; y < atom.y1; ++y)
-                for (std::int32_t x = atom.x0; x < atom.x1; ++x, ++i) use(pixelIndex(x, y));
-        };
-        forEachPixel([&](std::size_t pixel) {
-            seen[i] = m_seen[2 * pixel + static_cast<std::size_t>(1 - half)];
-        });
-        allotSamples(*m_rule, passes, seen, samples, weights);
-        forEachPixel([&](std::size_t pixel) {
-            const std::size_t at = 2 * pixel + static_cast<std::size_t>(half);
-            m_allotted[at] = samples[i];
-            if (!m_passWeights.empty()) m_passWeights[at] = weights[i];
-        });
-    }
+        for (std::int32_t y = atom.y0; y < atom.y1; ++y)
+            for (std::int32_t x = atom.x0; x < atom.x1; ++x, ++i) use(pixelIndex(x, y), i);
+    };
+    forEachPixel([&](std::size_t pixel, std::size_t i) { seen[i] = m_seen[2 * pixel + 1 - half]; });
+    allotSamples(*m_rule, passes, seen, samples, weights);
+    forEachPixel([&](std::size_t pixel, std::size_t i) {
+        const std::size_t at = 2 * pixel + half;
+        m_allotted[at] = samples[i];
+        if (!m_passWeights.empty()) m_passWeights[at] = weights[i];
+    });
 }
 
 void FrameStore::nextSamples(std::uint32_t pass, const Rect& rect,

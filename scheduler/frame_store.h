@@ -38,7 +38,7 @@ namespace pm {
 // v what the passes with samples weigh: 1 each, or by SampleRule where passes share no noise:
 // weights that no sample of the pixel decides on, so that this has no bias. Its variance is then
 // that of a sample, M2 / (n - 1), times the sum over the halves of (v_half / v)^2 / W_half. An
-// atom's samples are allotted as soon as its pass 0, 1, 3, 7, ... is there, so the store holds
+// atom's samples are allotted as soon as a pass of it is there (allotsAfter), so the store holds
 // whole atoms, also those that the window cuts.
 //
 // At level 0 such a render begins with groups of 2 x 2 pixels: a group's samples count for each of
@@ -164,6 +164,7 @@ class FrameStore {
     Halves halves(std::size_t pixel) const;
     void addWeightOfPass(std::size_t pixel, std::uint32_t pass);
     void allot(const Rect& atom, std::uint32_t passes);
+    void allotHalf(const Rect& atom, std::uint32_t passes, std::size_t half);
     void divideGroups(const Rect& atom);
     void noteContribution(std::size_t pixel, float contribution);
     void forget(std::size_t pixel);

@@ -25,9 +25,9 @@ constexpr double kSamplesThatDivide = 16;
 // More than the least gets who wants more than so many times the least: samples that are all alike
 // are worth more than their number.
 constexpr double kBeyondLeast = 1.7;
-// Samples of a pass that tempering leaves as they are; and the largest spread that it takes for
-// that of an edge.
-constexpr double kAsKnown = 6, kMostOfEdge = 0.7;
+// Samples of a pass that tempering leaves as they are; and the largest spread that it tempers,
+// that of edges once there are two passes.
+constexpr double kAsKnown = 6, kMostTempered = 0.7, kMostTemperedOfEdge = 0.25;
 // A pass makes up for what earlier ones lacked by at most so many times what is allotted.
 constexpr double kMostMadeUp = 2;
 // Samples of the second pass where nothing is shared: the first has seen little, and where all is
@@ -44,8 +44,9 @@ double finer(std::uint32_t passes) {
 // 1 / N: more where that is few, less where it is many, since few samples tell badly which pixels
 // are which, and a low-discrepancy sequence cures an edge by itself. Not light that few samples
 // meet, whose spread is large: no sequence cures that.
-double tempered(double inPass, double spread) {
-    const double rare = std::max(1.0, spread / kMostOfEdge);
+double tempered(double inPass, std::uint32_t passes, const PixelSpread& spread) {
+    const double most = spread.hasEdge && passes >= 2 ? kMostTemperedOfEdge : kMostTempered;
+    const double rare = std::max(1.0, spread.ofSamples / most);
     return rare * std::sqrt(kAsKnown * inPass / rare);
 }
 
@@ -95,10 +96,6 @@ void checkSampleRule(const SampleRule& rule) {
                                 rule.least, rule.most, rule.threshold, kMost));
 }
 
-bool allotsAfter(std::uint32_t passes) {
-    return std::has_single_bit(passes);
-}
-
 bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSamples& odd) {
     SeenSamples both = even;
     both.samples += odd.samples;
@@ -108,14 +105,18 @@ bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSample
     return !(std::sqrt(relativeVariance(both)) <= kSamplesThatDivide * rule.threshold);
 }
 
-std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes, double spread,
-                              double shared) {
-    double inPass = spread / rule.threshold / kPassesOfALevel;
+bool allotsAfter(const SampleRule& rule, std::uint32_t passes) {
+    return !rule.isAlone() || std::has_single_bit(passes);
+}
+
+std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes,
+                              const PixelSpread& spread) {
+    double inPass = spread.ofSamples / rule.threshold / kPassesOfALevel;
     if (!rule.isAlone()) {
         inPass *= finer(passes);
         // Not the least of both, which makes a number of what is none.
-        if (shared * inPass > spread) inPass = spread / shared;
-        inPass = tempered(inPass, spread);
+        if (spread.shared * inPass > spread.ofSamples) inPass = spread.ofSamples / spread.shared;
+        inPass = tempered(inPass, passes, spread);
         // A number that is none asks for nothing.
         const std::uint32_t power = inPass >= 0.5 ? nearestPower(inPass, rule.most) : 0;
         return static_cast<std::uint16_t>(std::clamp(power, rule.least, rule.most));
@@ -143,12 +144,13 @@ void allotSamples(const SampleRule& rule, std::uint32_t passes,
     for (std::size_t i = 0; i < kAtomPixels; ++i) {
         if (!rule.isAlone()) {
             const double variance = noise.ofPixel(i, kSamplesOfNeighbours);
-            samples[i] = samplesOfSpread(rule, passes, std::sqrt(variance), shared);
+            samples[i] =
+                samplesOfSpread(rule, passes, {std::sqrt(variance), shared, seen[i].edges > 0});
             continue;
         }
         const auto [byAll, byOthers] = noise.evened(i);
-        samples[i] = samplesOfSpread(rule, passes, std::sqrt(byAll));
-        if (!weights.empty()) weights[i] = samplesOfSpread(rule, passes, std::sqrt(byOthers));
+        samples[i] = samplesOfSpread(rule, passes, {std::sqrt(byAll)});
+        if (!weights.empty()) weights[i] = samplesOfSpread(rule, passes, {std::sqrt(byOthers)});
     }
 }
 

@@ -17,14 +17,17 @@ namespace pm {
 // ones and the reverse: the two share no random number, and the weight of a half in the mean is its
 // number of passes, whatever its samples (FrameStore; but see the last point). Of the half that
 // decides only those samples count that it has in any case, at the least level: how many more it
-// has was decided by the half that it decides for.
+// has was decided by the half that it decides for. Where samples share noise
+// it decides after every pass for the next.
 //
 // The rule: of N samples in four passes whose relative spread is s, one more lowers the squared
 // relative error by s^2 / N^2. A pixel gets samples until that is less than threshold^2, so
 // N = s / threshold: the allotment for which the sum of the squared errors is least for the same
 // number of samples, were s known and noise like 1/N. But few samples tell badly which pixels are
 // noisy, and a low-discrepancy sequence cures edges: so in a pass the root of 6 N / 4, up to a
-// spread of 0.7; light that few samples meet has more than that, and there N goes on with s.
+// spread of 0.7; light that few samples meet has more than that, and there N goes on with s. From
+// the third pass on, where samples have met an edge, it does so from a spread of 0.25 on: beside
+// edges such light is common.
 // Relative means: to sqrt(r^2 + 0.01), r the mean, as in relMSE. The first passes show little:
 // after two passes the threshold is halved, after four divided by sqrt(8). Samples are rounded to a
 // power of two: low-discrepancy sequences are at their best there, and a pixel that needs no more
@@ -78,17 +81,24 @@ SampleRule sampleRule(std::uint32_t leastLevel, std::uint32_t mostLevel, double 
 // Errors: kInvalidArgument for numbers that are not allowed.
 void checkSampleRule(const SampleRule& rule);
 
-// Whether samples are allotted anew after so many passes: 1, 2, 4, 8, ...
-bool allotsAfter(std::uint32_t passes);
-
 // Whether the samples of a group differ so much that it is divided: by their spread, a pixel would
 // get the 16 samples of level 3. A group blurs what is even, and noise alone is not to divide it.
 bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSamples& odd);
 
-// Samples a pass of a pixel of this relative spread, after so many passes, whose means have this
-// relative standard deviation by what their samples share.
-std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes, double spread,
-                              double shared = 0);
+// Whether samples are allotted anew after so many passes: if isAlone() after 1, 2, 4, 8, ..., as
+// more often gains nothing there, else after each for the next alone.
+bool allotsAfter(const SampleRule& rule, std::uint32_t passes);
+
+// What is known of a pixel's noise, relative to the root of relMSE's denominator.
+struct PixelSpread {
+    double ofSamples = 0;  // standard deviation of one
+    double shared = 0;     // that of a pass's mean by what its samples share
+    bool hasEdge = false;  // samples have met unlike surfaces
+};
+
+// Samples a pass of a pixel after so many passes.
+std::uint16_t samplesOfSpread(const SampleRule& rule, std::uint32_t passes,
+                              const PixelSpread& spread);
 
 // What a pixel gets in a pass, where it is allotted so much for each pass of that half and has had
 // `had` in those before: if isAlone(), what is lacking to that, at least the least, at most twice

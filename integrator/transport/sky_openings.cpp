@@ -138,7 +138,7 @@ std::vector<SkyRay> someOf(const std::vector<SkyRay>& rays, std::size_t most) {
 struct Looks {
     std::vector<SkyRay> rays;
     std::vector<float> seenShare;
-    bool isHidden = false;
+    SkyLooks counted;
 };
 
 Looks lookAtSky(const Scene& scene, const Camera& camera, const RenderSettings& settings,
@@ -168,13 +168,11 @@ Looks lookAtSky(const Scene& scene, const Camera& camera, const RenderSettings& 
                          return false;
                      });
     Looks looks;
-    SkyLooks counted;
     for (const OfPath& one : ofPath) {
-        counted.asked += one.asked;
-        counted.seen += one.rays.size();
+        looks.counted.asked += one.asked;
+        looks.counted.seen += one.rays.size();
         looks.rays.insert(looks.rays.end(), one.rays.begin(), one.rays.end());
     }
-    looks.isHidden = counted.isHidden();
     looks.seenShare.resize(SkyParts::kCount);
     for (const SkyRay& ray : looks.rays)
         looks.seenShare[SkyParts::partOf(Vec3f(ray.direction))] +=
@@ -190,7 +188,7 @@ SkyOpenings findSkyOpenings(const Scene& scene, const Camera& camera,
     Looks looks = lookAtSky(scene, camera, settings, kLooks, cancel);
     if (!looks.rays.empty() && looks.rays.size() < kFewestRays)
         looks = lookAtSky(scene, camera, settings, kMoreLooks, cancel);
-    if (!looks.isHidden || looks.rays.size() < kFewestRays) return {};
+    if (!looks.counted.isHidden() || looks.rays.size() < kFewestRays) return {};
     looks.rays = someOf(looks.rays, kMostRays);
     const std::size_t all = looks.rays.size();
     Sampler sampler(combineBits(settings.seed, kSeed), 1, 0, 0);

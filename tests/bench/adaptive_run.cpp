@@ -176,9 +176,9 @@ PassRenderer::Chooser samplesBySpread(const SampleRule& rule, std::vector<double
     return
         [rule, spread = std::move(spread)](std::uint32_t pass, std::size_t pixel, SampleRun& run) {
             std::uint32_t allotted = pass;
-            while (allotted > 0 && !allotsAfter(allotted)) --allotted;
+            while (allotted > 0 && !allotsAfter(rule, allotted)) --allotted;
             const std::uint32_t samples =
-                allotted > 0 ? samplesOfSpread(rule, allotted, spread[pixel]) : rule.least;
+                allotted > 0 ? samplesOfSpread(rule, allotted, {spread[pixel]}) : rule.least;
             run.count = static_cast<std::uint32_t>(madeUp(rule, pass, run.first, samples));
         };
 }

@@ -174,6 +174,25 @@ TEST(AllottedFrame, theFirstPassDecidesForTheSecond) {
     }
 }
 
+// What the fifth pass is the first to meet decides for the sixth; where nothing is shared not yet.
+TEST(AllottedFrame, theLastPassDecidesForTheNext) {
+    for (const SampleRule& rule : {kFourAtLeast, kFourAlone}) {
+        FrameStore frame(kAtom, kChannels, 0, -1, -1, rule);
+        for (std::uint32_t pass = 0; pass < 5; ++pass)
+            addPass(
+                frame, pass, kAtom,
+                [pass](std::size_t, std::uint32_t, std::uint32_t index) {
+                    return pass < 4 ? 1.0f : index % 2 == 0 ? 0.5f : 1.5f;
+                },
+                rule.least);
+        std::vector<FrameStore::NextSamples> next(kPixels);
+        frame.nextSamples(5, kAtom, next);
+        EXPECT_EQ(next[20].count > 4, rule.sharesNoise);
+        frame.nextSamples(6, kAtom, next);
+        EXPECT_EQ(next[20].count, 4u);
+    }
+}
+
 // Where each pass's samples share noise, what it is is found, and fewer samples are allotted: in
 // half of the picture; by the other half of the passes.
 TEST(AllottedFrame, passesThatDifferGetFewerSamples) {

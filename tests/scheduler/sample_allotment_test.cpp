@@ -53,6 +53,19 @@ TEST(SampleAllotment, samplesGrowWithTheRelativeSpread) {
     EXPECT_EQ(samplesOf(2, 2.0, 0.0, {0, 64, 0.01}), 0u);
 }
 
+// From the third pass on what is beyond a spread of 0.25 is not tempered where there is an edge:
+// sqrt(6 s / 0.02), up to s = 0.7 or 0.25.
+TEST(SampleAllotment, rareLightBeginsEarlierAtEdges) {
+    const auto samplesAt = [](std::uint32_t passes, double spread, bool hasEdge) {
+        return samplesOfSpread(kRule, passes, {spread, 0, hasEdge});
+    };
+    EXPECT_EQ(samplesAt(2, 0.24, false), 8u);
+    EXPECT_EQ(samplesAt(2, 0.24, true), 8u);
+    EXPECT_EQ(samplesAt(2, 0.7, false), 16u);  // 14.5
+    EXPECT_EQ(samplesAt(2, 0.7, true), 32u);   // 24.2
+    EXPECT_EQ(samplesAt(1, 0.7, true), samplesAt(1, 0.7, false));
+}
+
 // An even picture, whose pixels need no more samples one than another, gets none that are odd.
 TEST(SampleAllotment, samplesArePowersOfTwo) {
     for (double deviation = 0.01; deviation < 10; deviation *= 1.1) {
@@ -208,11 +221,12 @@ TEST(SampleAllotment, oneSampleEachIsComparedWithItsNeighbours) {
     }
 }
 
-TEST(SampleAllotment, isDoneAfterOneTwoFourPasses) {
-    for (std::uint32_t passes = 0; passes < 70; ++passes) {
+TEST(SampleAllotment, isDoneAfterEachPassOrWhereNothingIsSharedAfterOneTwoFour) {
+    for (std::uint32_t passes = 1; passes < 70; ++passes) {
         const bool expected = passes == 1 || passes == 2 || passes == 4 || passes == 8 ||
                               passes == 16 || passes == 32 || passes == 64;
-        EXPECT_EQ(allotsAfter(passes), expected) << passes;
+        EXPECT_EQ(allotsAfter(kAlone, passes), expected) << passes;
+        EXPECT_TRUE(allotsAfter(kRule, passes));
     }
 }
 

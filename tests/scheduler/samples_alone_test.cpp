@@ -43,18 +43,18 @@ TEST(SamplesAlone, wherePassesShareNoNoiseTheRuleIsFiner) {
         for (const unsigned count : {2u, 3u, 4u, 6u, 8u, 12u, 16u, 24u, 32u, 48u}) {
             const double wanted = count == 2 ? std::max(1.75, 2 * factor) : count * factor;
             for (const auto& [passes, finer] : {std::pair{1u, 3.0}, {2u, 11.0}, {4u, 24.0}})
-                EXPECT_EQ(samplesOfSpread(kAlone, passes, spread(wanted, finer)),
+                EXPECT_EQ(samplesOfSpread(kAlone, passes, {spread(wanted, finer)}),
                           passes < 2 ? std::min(count, 16u) : count)
                     << wanted;
         }
     // More than the least is for who wants 1.7 times as many.
-    EXPECT_EQ(samplesOfSpread(kFourAlone, 4, spread(6.7, 24)), 4u);
-    EXPECT_EQ(samplesOfSpread(kFourAlone, 4, spread(6.9, 24)), 6u);
+    EXPECT_EQ(samplesOfSpread(kFourAlone, 4, {spread(6.7, 24)}), 4u);
+    EXPECT_EQ(samplesOfSpread(kFourAlone, 4, {spread(6.9, 24)}), 6u);
     for (const double none : {0.0, std::numeric_limits<double>::quiet_NaN()})
-        EXPECT_EQ(samplesOfSpread(kFourAlone, 4, none), 4u);
-    EXPECT_EQ(samplesOfSpread(kFourAlone, 4, 1e9), 64u);
-    EXPECT_EQ(samplesOfSpread({3, 50, 0.01, false, false}, 4, 1e9), 50u);
-    EXPECT_EQ(samplesOfSpread({32, 64, 0.01, false, false}, 1, 1e9), 32u);
+        EXPECT_EQ(samplesOfSpread(kFourAlone, 4, {none}), 4u);
+    EXPECT_EQ(samplesOfSpread(kFourAlone, 4, {1e9}), 64u);
+    EXPECT_EQ(samplesOfSpread({3, 50, 0.01, false, false}, 4, {1e9}), 50u);
+    EXPECT_EQ(samplesOfSpread({32, 64, 0.01, false, false}, 1, {1e9}), 32u);
 }
 
 TEST(SamplesAlone, passesMakeUpForWhatEarlierOnesLacked) {
