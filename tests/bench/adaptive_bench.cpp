@@ -16,6 +16,8 @@
 #include "scheduler/sample_allotment.h"
 #include "tests/bench/adaptive_run.h"
 #include "tests/bench/adaptive_scenes.h"
+#include "tests/bench/pass_renderer.h"
+#include "tests/bench/pictures.h"
 #include "tests/bench/report.h"
 #include "tests/bench/timing.h"
 
@@ -24,6 +26,7 @@ namespace {
 
 struct Options {
     std::filesystem::path peers = PM_SHARED_PEERS, keep;
+    std::filesystem::path pictures;  // where to, in place of measuring
     std::string csvFile, docsFile, scenes;
     std::vector<std::string> levels = {"3:5"};
     std::vector<double> thresholds = {0.01}, oracles = {0.01, 0.005, 0.0025};
@@ -91,6 +94,7 @@ class AdaptiveBench {
     Truth truthOf(const AdaptiveScene& adaptive, const std::shared_ptr<const Scene>& scene) const;
     std::vector<Rival> rivals(const Scene& scene, const Known& known) const;
     void measure(const AdaptiveScene& adaptive);
+    void paint(const AdaptiveScene& adaptive) const;
     void tell(const AdaptiveScene& adaptive, const std::vector<Rival>& rivals);
 
     Options m_options;
@@ -232,21 +236,55 @@ void AdaptiveBench::measure(const AdaptiveScene& adaptive) {
     fmt::print(stderr, "  {:.1f} s in all\n", processorSeconds() - start);
 }
 
+// The pictures of the fixed level and of the first range, and white for the most samples of any
+// pixel.
+void AdaptiveBench::paint(const AdaptiveScene& adaptive) const {
+    const std::shared_ptr<const Scene> scene = adaptive.maker.build();
+    const auto picture = [this](std::vector<double> rgb) {
+        return Picture{m_options.size, m_options.size, std::move(rgb)};
+    };
+    const std::string& range = m_options.levels[0];
+    const auto adaptiveSettings =
+        settings(static_cast<std::uint32_t>(range[0] - '0'),
+                 static_cast<std::uint32_t>(range[2] - '0'), m_options.thresholds[0]);
+    for (const bool isFixed : {true, false}) {
+        const RenderSettings s = isFixed ? settings(kFixedLevel, 0, 0.01) : adaptiveSettings;
+        PassRenderer renderer(scene, s, makePlan(*scene, s), m_options.threads);
+        for (std::uint32_t pass = 0; pass < s.passes; ++pass) renderer.next();
+        const auto file = [&](const char* what) {
+            return m_options.pictures / fmt::format("{}_{}.png", adaptive.key, what);
+        };
+        writePng(file(isFixed ? "fixed" : "adaptive"), picture(renderer.beauty()), 1);
+        if (isFixed) continue;
+        std::vector<double> samples;
+        for (std::int32_t y = 0; y < m_options.size; ++y)
+            for (std::int32_t x = 0; x < m_options.size; ++x)
+                samples.insert(samples.end(), 3, renderer.frame().sampleCount(x, y));
+        const double most = *std::ranges::max_element(samples);
+        writePng(file("samples"), picture(std::move(samples)), 1 / most);
+    }
+}
+
 void AdaptiveBench::run() {
-    m_report.table(
-        fmt::format("Processor time of fixed level 3 over that of adaptive samples and of the "
-                    "oracles, to the same true relMSE: {0} x {0} pixels, {1} seeds, 95 % intervals",
-                    m_options.size, m_options.seeds),
-        {"scene", "levels, threshold", "passes of level 3", "relMSE", "fixed / adaptive",
-         "fixed / the same, variance known", "share of that gain", "fixed / oracle by hindsight",
-         "share of that gain"});
+    const bool paints = !m_options.pictures.empty();
+    if (!paints)
+        m_report.table(
+            fmt::format(
+                "Processor time of fixed level 3 over that of adaptive samples and of the "
+                "oracles, to the same true relMSE: {0} x {0} pixels, {1} seeds, 95 % intervals",
+                m_options.size, m_options.seeds),
+            {"scene", "levels, threshold", "passes of level 3", "relMSE", "fixed / adaptive",
+             "fixed / the same, variance known", "share of that gain",
+             "fixed / oracle by hindsight", "share of that gain"});
     if (!std::filesystem::exists(m_options.peers / "scenes.json"))
         fmt::print(stderr, "neutral scenes: skipped, no scenes.json in the folder of peers\n");
-    for (const AdaptiveScene& scene : adaptiveScenes(m_options.peers))
-        if (m_options.scenes.empty() ||
-            ("," + m_options.scenes + ",").find("," + scene.key + ",") != std::string::npos)
-            measure(scene);
-    m_report.publish(m_options.csvFile, m_options.docsFile);
+    for (const AdaptiveScene& scene : adaptiveScenes(m_options.peers)) {
+        if (!m_options.scenes.empty() &&
+            ("," + m_options.scenes + ",").find("," + scene.key + ",") == std::string::npos)
+            continue;
+        paints ? paint(scene) : measure(scene);
+    }
+    if (!paints) m_report.publish(m_options.csvFile, m_options.docsFile);
 }
 
 int runProgram(int argc, char** argv) {
@@ -256,6 +294,9 @@ int runProgram(int argc, char** argv) {
     app.add_option("--docs", options.docsFile, "also put the tables into this Markdown file");
     app.add_option("--peers", options.peers, "folder of scenes.json");
     app.add_option("--keep", options.keep, "keep the truths in this folder and read those there");
+    app.add_option("--pictures", options.pictures,
+                   "don't measure: write the pictures of the fixed and the adaptive level, and how "
+                   "many samples pixels had, to this folder");
     app.add_option("--scenes", options.scenes, "only these, with commas");
     app.add_option("--levels", options.levels, "ranges of adaptive renders (3:5)");
     app.add_option("--thresholds", options.thresholds, "of adaptive renders (0.01)");
