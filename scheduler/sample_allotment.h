@@ -15,10 +15,9 @@ namespace pm {
 //
 // A pixel that decides by the samples it then keeps loses rare light. So even passes decide for odd
 // ones and the reverse: the two share no random number, and the weight of a half in the mean is its
-// number of passes, whatever its samples (FrameStore; but see the last point). Of the half that
+// number of passes, whatever its samples (FrameStore; but see the last points). Of the half that
 // decides only those samples count that it has in any case, at the least level: how many more it
-// has was decided by the half that it decides for. Where samples share noise
-// it decides after every pass for the next.
+// has was decided by the half that it decides for. It does so after every pass for the next.
 //
 // The rule: of N samples in four passes whose relative spread is s, one more lowers the squared
 // relative error by s^2 / N^2. A pixel gets samples until that is less than threshold^2, so
@@ -28,6 +27,7 @@ namespace pm {
 // spread of 0.7; light that few samples meet has more than that, and there N goes on with s. From
 // the third pass on, where samples have met an edge, it does so from a spread of 0.25 on: beside
 // edges such light is common.
+//
 // Relative means: to sqrt(r^2 + 0.01), r the mean, as in relMSE. The first passes show little:
 // after two passes the threshold is halved, after four divided by sqrt(8). Samples are rounded to a
 // power of two: low-discrepancy sequences are at their best there, and a pixel that needs no more
@@ -45,6 +45,7 @@ namespace pm {
 // That is so where the samples of a pass share noise, such as that of its photons: more samples
 // don't lower it, more passes do. Where they share none (isAlone) a pixel's passes are as good as
 // one, and all that counts is how many samples a pixel has beside others. So there
+// - samples are allotted anew after passes 1, 2, 4, 8, ... only: more often gains nothing;
 // - the threshold T falls: a third of it for the second pass, an eleventh for the third and fourth,
 //   a 24th after; N = 16 (s / (16 T))^(3/4), as the squared error falls like N^(-5/3), not like
 //   1/N; a second pass has at most 16 samples;
@@ -85,8 +86,8 @@ void checkSampleRule(const SampleRule& rule);
 // get the 16 samples of level 3. A group blurs what is even, and noise alone is not to divide it.
 bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSamples& odd);
 
-// Whether samples are allotted anew after so many passes: if isAlone() after 1, 2, 4, 8, ..., as
-// more often gains nothing there, else after each for the next alone.
+// Whether samples are allotted anew after so many passes: if isAlone() after 1, 2, 4, 8, ... for all
+// that follow, else after each for the next.
 bool allotsAfter(const SampleRule& rule, std::uint32_t passes);
 
 // What is known of a pixel's noise, relative to the root of relMSE's denominator.
