@@ -207,22 +207,25 @@ double AtomNoise::ofPixel(std::size_t pixel, double neighbours) const {
     return (known * variance + kSamplesOfEdge * m_ofEdges) / (known + kSamplesOfEdge);
 }
 
-// One-way analysis of variance: within passes and between them.
+// One-way analysis of variance: within passes and between them. The standard error is that of
+// normal samples, independent between pixels.
 double AtomNoise::shared(double samplesOfPass) const {
     if (!(samplesOfPass > 1)) return 0;
-    double sum = 0, count = 0;
+    double sum = 0, errors = 0, count = 0;
     for (std::size_t i = 0; i < kAtomPixels; ++i) {
         const SeenSamples& seen = m_seen[i];
         const double passes = seen.samples / samplesOfPass;
         if (seen.edges > 0 || !(passes > 1)) continue;
         double ofMean = 0;
         for (const double s : seen.sums) ofMean += s * s / seen.samples;
-        const double within = (seen.square - seen.ofPasses) / (seen.samples - passes);
-        const double between = (seen.ofPasses - ofMean) / (passes - 1);
-        sum += (between - within) / (samplesOfPass * m_scales[i]);
+        const double scale = samplesOfPass * m_scales[i];
+        const double within = (seen.square - seen.ofPasses) / (seen.samples - passes) / scale;
+        const double between = (seen.ofPasses - ofMean) / (passes - 1) / scale;
+        sum += between - within;
+        errors += 2 * within * within / (passes - 1);
         ++count;
     }
-    return count > 0 ? std::max(0.0, sum / count) : 0.0;
+    return count > 0 ? std::max(0.0, (sum - std::sqrt(errors)) / count) : 0.0;
 }
 
 AtomNoise::Expected AtomNoise::evened(std::size_t pixel) const {

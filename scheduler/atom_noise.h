@@ -37,7 +37,8 @@ class AtomNoise {
 
     // Relative variance that a pass's mean has by what its samples share, of so many samples each:
     // what passes differ by, and their samples don't explain. A mean over the atom's pixels without
-    // edges, which sequences cure; 0 before a second pass.
+    // edges, which sequences cure, less what its standard error is by those samples; 0 before a
+    // second pass.
     double shared(double samplesOfPass) const;
 
     struct Expected {

@@ -86,8 +86,8 @@ void checkSampleRule(const SampleRule& rule);
 // get the 16 samples of level 3. A group blurs what is even, and noise alone is not to divide it.
 bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSamples& odd);
 
-// Whether samples are allotted anew after so many passes: if isAlone() after 1, 2, 4, 8, ... for all
-// that follow, else after each for the next.
+// Whether samples are allotted anew after so many passes: if isAlone() after 1, 2, 4, 8, ... for
+// all that follow, else after each for the next.
 bool allotsAfter(const SampleRule& rule, std::uint32_t passes);
 
 // What is known of a pixel's noise, relative to the root of relMSE's denominator.
