@@ -91,6 +91,7 @@ class AdaptiveBench {
 
   private:
     RenderSettings settings(std::uint32_t least, std::uint32_t most, double threshold) const;
+    RenderSettings settingsOf(const std::string& range, double threshold) const;  // LEAST:MOST
     Truth truthOf(const AdaptiveScene& adaptive, const std::shared_ptr<const Scene>& scene) const;
     std::vector<Rival> rivals(const Scene& scene, const Known& known) const;
     void measure(const AdaptiveScene& adaptive);
@@ -111,6 +112,11 @@ RenderSettings AdaptiveBench::settings(std::uint32_t least, std::uint32_t most,
     s.aaLevelMost = most > least ? most : 0;
     s.aaThreshold = threshold;
     return s;
+}
+
+RenderSettings AdaptiveBench::settingsOf(const std::string& range, double threshold) const {
+    return settings(static_cast<std::uint32_t>(range[0] - '0'),
+                    static_cast<std::uint32_t>(range[2] - '0'), threshold);
 }
 
 Truth AdaptiveBench::truthOf(const AdaptiveScene& adaptive,
@@ -140,14 +146,10 @@ Truth AdaptiveBench::truthOf(const AdaptiveScene& adaptive,
 // thresholds.
 std::vector<Rival> AdaptiveBench::rivals(const Scene& scene, const Known& known) const {
     std::vector<Rival> result = {{"fixed", {settings(kFixedLevel, 0, 0.01), {}}, {}}};
-    for (const std::string& range : m_options.levels) {
-        const auto least = static_cast<std::uint32_t>(range[0] - '0');
-        const auto most = static_cast<std::uint32_t>(range[2] - '0');
+    for (const std::string& range : m_options.levels)
         for (const double threshold : m_options.thresholds)
-            result.push_back({fmt::format("{}, {}", range, threshold),
-                              {settings(least, most, threshold), {}},
-                              {}});
-    }
+            result.push_back(
+                {fmt::format("{}, {}", range, threshold), {settingsOf(range, threshold), {}}, {}});
     for (std::size_t i = 1, adaptives = result.size(); i < adaptives; ++i) {
         const RenderSettings& s = result[i].way.settings;
         const SampleRule rule =
@@ -240,29 +242,25 @@ void AdaptiveBench::measure(const AdaptiveScene& adaptive) {
 // pixel.
 void AdaptiveBench::paint(const AdaptiveScene& adaptive) const {
     const std::shared_ptr<const Scene> scene = adaptive.maker.build();
-    const auto picture = [this](std::vector<double> rgb) {
-        return Picture{m_options.size, m_options.size, std::move(rgb)};
+    const auto write = [&](const char* what, std::vector<double> rgb, double exposure) {
+        writePng(m_options.pictures / fmt::format("{}_{}.png", adaptive.key, what),
+                 {m_options.size, m_options.size, std::move(rgb)}, exposure);
     };
-    const std::string& range = m_options.levels[0];
-    const auto adaptiveSettings =
-        settings(static_cast<std::uint32_t>(range[0] - '0'),
-                 static_cast<std::uint32_t>(range[2] - '0'), m_options.thresholds[0]);
-    for (const bool isFixed : {true, false}) {
-        const RenderSettings s = isFixed ? settings(kFixedLevel, 0, 0.01) : adaptiveSettings;
-        PassRenderer renderer(scene, s, makePlan(*scene, s), m_options.threads);
-        for (std::uint32_t pass = 0; pass < s.passes; ++pass) renderer.next();
-        const auto file = [&](const char* what) {
-            return m_options.pictures / fmt::format("{}_{}.png", adaptive.key, what);
-        };
-        writePng(file(isFixed ? "fixed" : "adaptive"), picture(renderer.beauty()), 1);
-        if (isFixed) continue;
-        std::vector<double> samples;
-        for (std::int32_t y = 0; y < m_options.size; ++y)
-            for (std::int32_t x = 0; x < m_options.size; ++x)
-                samples.insert(samples.end(), 3, renderer.frame().sampleCount(x, y));
-        const double most = *std::ranges::max_element(samples);
-        writePng(file("samples"), picture(std::move(samples)), 1 / most);
-    }
+    const auto render = [&](const RenderSettings& s) {
+        auto renderer =
+            std::make_unique<PassRenderer>(scene, s, makePlan(*scene, s), m_options.threads);
+        for (std::uint32_t pass = 0; pass < s.passes; ++pass) renderer->next();
+        return renderer;
+    };
+    write("fixed", render(settings(kFixedLevel, 0, 0.01))->beauty(), 1);
+    const auto adapted = render(settingsOf(m_options.levels[0], m_options.thresholds[0]));
+    write("adaptive", adapted->beauty(), 1);
+    std::vector<double> samples;
+    for (std::int32_t y = 0; y < m_options.size; ++y)
+        for (std::int32_t x = 0; x < m_options.size; ++x)
+            samples.insert(samples.end(), 3, adapted->frame().sampleCount(x, y));
+    const double most = *std::ranges::max_element(samples);
+    write("samples", std::move(samples), 1 / most);
 }
 
 void AdaptiveBench::run() {
