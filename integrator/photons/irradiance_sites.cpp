@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
@@ -19,6 +20,8 @@ constexpr float kCellSize = 0.6f;
 constexpr float kSiteCosine = 0.8f;
 // ... and evenly: then the way is at right angles to the sum of both normals, within this.
 constexpr float kSiteFlatness = 0.2f;
+// Cells whose sites are not seen are halved so often at most.
+constexpr int kMostHalvings = 3;
 constexpr std::size_t kFewestSlots = 1 << 16, kMostSlots = 1 << 22, kMostProbes = 16;
 // Slots of a photon in the first pass: of evenly lit rooms a quarter to a third was in use there,
 // and as radii shrink, sites grow in number. Later passes have up to three times as many.
@@ -55,8 +58,9 @@ IrradianceSites::IrradianceSites(const Scene& scene, const PhotonMap& map, float
 IrradianceSites::Value IrradianceSites::compute(const Cell& cell, std::uint64_t hash) const {
     Value value;
     if (!m_cells.findSurface(cell, value.position, value.normal)) return {};
-    value.irradiance =
-        estimateOf(cell.level).at(value.position, value.normal, static_cast<std::uint32_t>(hash));
+    const SurfaceEstimate estimate = estimateOf(cell.level);
+    value.irradiance = estimate.at(value.position, value.normal, static_cast<std::uint32_t>(hash));
+    value.height = apexHeight(m_estimate.scene(), value.position, value.normal, estimate.radius());
     return value;
 }
 
@@ -79,49 +83,46 @@ IrradianceSites::Value IrradianceSites::valueOf(const Cell& cell) const {
     const std::uint64_t hash = cell.hash();
     Slot* const slot = slotOf(hash);
     if (!slot) return compute(cell, hash);
-    std::array<float, 12> v;
+    std::array<float, 13> v;
     if (slot->ready.load(std::memory_order_acquire)) {
         for (std::size_t i = 0; i < v.size(); ++i)
             v[i] = slot->value[i].load(std::memory_order_relaxed);
-        return {{v[0], v[1], v[2]}, {v[3], v[4], v[5]}, {{v[6], v[7], v[8]}, {v[9], v[10], v[11]}}};
+        return {{v[0], v[1], v[2]},
+                {v[3], v[4], v[5]},
+                {{v[6], v[7], v[8]}, {v[9], v[10], v[11]}},
+                v[12]};
     }
     const Value value = compute(cell, hash);
-    v = {value.position.x,
-         value.position.y,
-         value.position.z,
-         value.normal.x,
-         value.normal.y,
-         value.normal.z,
-         value.irradiance.wide.r,
-         value.irradiance.wide.g,
-         value.irradiance.wide.b,
-         value.irradiance.narrow.r,
-         value.irradiance.narrow.g,
-         value.irradiance.narrow.b};
+    const auto& [wide, narrow] = value.irradiance;
+    v = {value.position.x, value.position.y, value.position.z, value.normal.x, value.normal.y,
+         value.normal.z,   wide.r,           wide.g,           wide.b,         narrow.r,
+         narrow.g,         narrow.b,         value.height};
     for (std::size_t i = 0; i < v.size(); ++i)
         slot->value[i].store(v[i], std::memory_order_relaxed);
     slot->ready.store(1, std::memory_order_release);
     return value;
 }
 
-TwoRadii IrradianceSites::at(const Vec3f& position, const Vec3f& normal) const {
-    Cell cell = m_cells.at(position, normal);
-    const float cellSize = m_cells.cellSize(cell.level);
-    const auto speaksFor = [&](const Value& site) {
-        const Vec3f way = position - site.position;
-        if (m_estimate.scene().hasSheets() &&
-            m_estimate.gate(position, normal).isBesidePlane(way, site.normal))
-            return false;
-        const float height = dot(way, site.normal + normal);
-        const float tolerance = 1e-4f * cellSize;
-        return dot(site.normal, normal) >= kSiteCosine &&
-               height * height <=
-                   kSiteFlatness * kSiteFlatness * lengthSquared(way) + tolerance * tolerance;
-    };
-    Value site = valueOf(cell);
-    if (speaksFor(site)) return site.irradiance;
-    // A sliver of surface at an edge, or one of two surfaces in the cell: the nearest cell aside.
-    const Vec3f place = (position - m_cells.origin()) * (1.0f / cellSize);
+// Whether the place is on the site's surface, and nothing stands between.
+bool IrradianceSites::speaksFor(const Value& site, const Cell& cell, const Vec3f& position,
+                                const Vec3f& normal) const {
+    const Scene& scene = m_estimate.scene();
+    const Vec3f way = position - site.position;
+    if (scene.hasSheets() && m_estimate.gate(position, normal).isBesidePlane(way, site.normal))
+        return false;
+    const float height = dot(way, site.normal + normal);
+    const float tolerance = 1e-4f * m_cells.sizeOf(cell);
+    return dot(site.normal, normal) >= kSiteCosine &&
+           height * height <=
+               kSiteFlatness * kSiteFlatness * lengthSquared(way) + tolerance * tolerance &&
+           isSeenFrom(scene, site.position + site.normal * site.height, position, normal);
+}
+
+// The cell beside, where the place is nearest to it.
+IrradianceSites::Cell IrradianceSites::nearestAside(const Cell& cell, const Vec3f& position,
+                                                    const Vec3f& normal) const {
+    Cell aside = cell;
+    const Vec3f place = (position - m_cells.origin()) * (1.0f / m_cells.sizeOf(cell));
     int nearest = 0;
     float way = 1.0f;
     std::int64_t step = 0;
@@ -134,9 +135,22 @@ TwoRadii IrradianceSites::at(const Vec3f& position, const Vec3f& normal) const {
         way = toSide;
         step = inside < 0.5f ? -1 : 1;
     }
-    cell.place[static_cast<std::size_t>(nearest)] += step;
-    site = valueOf(cell);
-    if (speaksFor(site)) return site.irradiance;
+    aside.place[static_cast<std::size_t>(nearest)] += step;
+    return aside;
+}
+
+TwoRadii IrradianceSites::at(const Vec3f& position, const Vec3f& normal) const {
+    const auto ask = [&](const Cell& cell) -> std::optional<TwoRadii> {
+        const Value site = valueOf(cell);
+        if (!speaksFor(site, cell, position, normal)) return std::nullopt;
+        return site.irradiance;
+    };
+    const Cell cell = m_cells.at(position, normal);
+    if (const auto found = ask(cell)) return *found;
+    // A sliver of surface at an edge, or one of two surfaces in the cell.
+    if (const auto found = ask(nearestAside(cell, position, normal))) return *found;
+    for (int halvings = 1; halvings <= kMostHalvings; ++halvings)
+        if (const auto found = ask(m_cells.at(position, normal, halvings))) return *found;
     return estimate(position, normal, patternAt(position));
 }
 

@@ -29,8 +29,8 @@ class IrradianceSites {
                     const SurfacePatches* patches = nullptr, float radiusFactor = 1.0f,
                     const Focus& focus = {});
 
-    // Irradiance, W m^-2, at a site near the point, on the side of the normal; estimated at the
-    // point itself where none is.
+    // Irradiance, W m^-2, at a site near the point, on the side of the normal, that the point is
+    // seen from; estimated at the point itself where none is.
     TwoRadii at(const Vec3f& position, const Vec3f& normal) const;
     // Alike for places that ask for the same site first.
     std::uint64_t siteOf(const Vec3f& position, const Vec3f& normal) const {
@@ -56,11 +56,12 @@ class IrradianceSites {
     struct Value {
         Vec3f position, normal;
         TwoRadii irradiance;
+        float height = 0.0f;  // above it, from where places look like its own; scene units
     };
     // Atomic, as two threads may come here at once: they compute and store the same bits.
     struct alignas(64) Slot {
         std::atomic<std::uint64_t> cell;
-        std::array<std::atomic<float>, 12> value;
+        std::array<std::atomic<float>, 13> value;
         std::atomic<std::uint32_t> ready;
     };
 
@@ -73,6 +74,9 @@ class IrradianceSites {
     Slot* slotOf(std::uint64_t hash) const;
     Value compute(const Cell& cell, std::uint64_t hash) const;
     Value valueOf(const Cell& cell) const;
+    bool speaksFor(const Value& site, const Cell& cell, const Vec3f& position,
+                   const Vec3f& normal) const;
+    Cell nearestAside(const Cell& cell, const Vec3f& position, const Vec3f& normal) const;
 
     SurfaceEstimate m_estimate;
     SurfaceCells m_cells;

@@ -128,7 +128,11 @@ class PhotonWalk {
             }
             const Vec3f out = -ray.direction;
             const Bsdf bsdf(m_scene, surface, out, Transport::kPhotons, flux);
-            if (bsdf.has(Lobe::kDiffuse)) landed += land(way, surface, bsdf, flux, batch);
+            if (bsdf.has(Lobe::kDiffuse)) {
+                surface.position = pointUnderRay(
+                    surface.position, ray, bsdf.facingGeometricNormal(), m_scene.liftOfRays());
+                landed += land(way, surface, bsdf, flux, batch);
+            }
             BsdfSample sample;
             const float uLobe = sampler.next1D();
             const Vec2f u = sampler.next2D();
@@ -150,7 +154,10 @@ class PhotonWalk {
             if (!isFinite(scattered)) break;
             balance.fluxAbsorbed += channelSum(flux) - channelSum(scattered);
             flux = scattered;
-            ray = rayFrom(surface, sample.direction);
+            ray = sample.lobe == Lobe::kDiffuse
+                      ? rayOnwards(surface.position, bsdf.facingGeometricNormal(), sample.direction,
+                                   m_scene.liftOfRays())
+                      : rayFrom(surface, sample.direction);
             ++events;
         }
         ++balance.lost;

@@ -37,17 +37,20 @@ std::uint64_t SurfaceCells::Cell::hash() const {
         h = h * 0x9e3779b97f4a7c15ull +
             static_cast<std::uint64_t>(place[static_cast<std::size_t>(axis)] * 16 +
                                        direction[static_cast<std::size_t>(axis)] + 8);
-    h = mixBits(h + static_cast<std::uint64_t>(level) * 0xd1b54a32d192ed03ull);
+    h = mixBits(h + static_cast<std::uint64_t>(level) * 0xd1b54a32d192ed03ull +
+                static_cast<std::uint64_t>(halvings) * 0x8cb92ba72f3d8dd7ull);
     return h == 0 ? 1 : h;  // 0 is an empty slot
 }
 
-SurfaceCells::Cell SurfaceCells::at(const Vec3f& position, const Vec3f& normal) const {
+SurfaceCells::Cell SurfaceCells::at(const Vec3f& position, const Vec3f& normal,
+                                    int halvings) const {
     const int level = m_focus.levelAt(position);
-    const Vec3f place = (position - m_origin) * (1.0f / cellSize(level));
+    const Vec3f place = (position - m_origin) * (1.0f / sizeOf(level, halvings));
     const Vec3f direction = normal * kDirectionSteps + Vec3f(0.5f);
     return {{floorToInteger(place.x), floorToInteger(place.y), floorToInteger(place.z)},
             {floorToInteger(direction.x), floorToInteger(direction.y), floorToInteger(direction.z)},
-            level};
+            level,
+            halvings};
 }
 
 bool SurfaceCells::findAlong(const Vec3f& middle, const Vec3f& through, const Vec3f& direction,
@@ -73,7 +76,7 @@ bool SurfaceCells::findAlong(const Vec3f& middle, const Vec3f& through, const Ve
 }
 
 bool SurfaceCells::findSurface(const Cell& cell, Vec3f& position, Vec3f& normal) const {
-    const float size = cellSize(cell.level);
+    const float size = sizeOf(cell);
     const auto middleAlong = [&](std::size_t axis) {
         return (static_cast<float>(cell.place[axis]) + 0.5f) * size;
     };

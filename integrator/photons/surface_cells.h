@@ -25,23 +25,27 @@ class SurfaceCells {
     struct Cell {
         std::array<std::int64_t, 3> place;
         std::array<std::int64_t, 3> direction;
-        int level = 0;  // of the focus, by which cells differ in size
+        int level = 0;     // of the focus, by which cells differ in size
+        int halvings = 0;  // of that size
 
         std::uint64_t hash() const;  // never 0
     };
 
-    // normal: unit.
-    Cell at(const Vec3f& position, const Vec3f& normal) const;
+    // normal: unit. halvings: how often the cell is to be halved, >= 0.
+    Cell at(const Vec3f& position, const Vec3f& normal, int halvings = 0) const;
     // A point of diffuse surface and its geometric normal on the side of the cell's direction;
     // false where there is none.
     bool findSurface(const Cell& cell, Vec3f& position, Vec3f& normal) const;
 
-    // Of the cells of a level, scene units.
-    float cellSize(int level) const { return m_cellSize * powerOfTwo(level); }
+    // Of a side, scene units.
+    float sizeOf(const Cell& cell) const { return sizeOf(cell.level, cell.halvings); }
     const Focus& focus() const { return m_focus; }
     const Vec3f& origin() const { return m_origin; }
 
   private:
+    float sizeOf(int level, int halvings) const {
+        return m_cellSize * powerOfTwo(level - halvings);
+    }
     bool findAlong(const Vec3f& middle, const Vec3f& through, const Vec3f& direction,
                    float cellSize, Vec3f& position, Vec3f& normal) const;
 

@@ -23,16 +23,18 @@ constexpr float kApexHeight = 0.6f;
 constexpr float kRayReach = 1.5f;
 // Grazing rays see much surface each; more than this is cut, so that one ray can't decide the area.
 constexpr float kLargestAreaRatio = 4.0f;
-// What ends on a surface is lifted off it by this share of the height it is seen from.
-constexpr float kLift = 0.01f;
 // Where less of the disc than this is surface (a leaf, a wire) it is too wide for what is there: it
 // is halved, so many times at most. By what stands there alone: photons that chose their own radius
 // would bias it.
 constexpr float kLeastShare = 0.2f;
 constexpr int kMostHalvings = 6;
+// What sees nothing looks from so far aside, in radii.
+constexpr float kAside = 0.125f;
 constexpr float kFlatTolerance = 0.02f;
-// Rays to the rim; where all of them find it flat, the disc is taken as whole.
+// Rays beyond the rim, at kRim radii; where all of them find it flat, the disc is taken as whole.
+// No straight wall that cuts the disc passes between two of them: kRim cos(pi / kRimRays) > 1.
 constexpr std::uint32_t kRimRays = 8;
+constexpr float kRim = 1.09f;
 
 // Where area is looked for: the narrow disc, the ring around it, and beyond the rim, where surface
 // that bends towards the apex is seen that lies within the radius. Squared, in radii.
@@ -42,11 +44,6 @@ struct Zone {
 };
 constexpr std::array<Zone, 4> kZones{
     {{0.0f, 0.5f, 18}, {0.5f, 1.0f, 12}, {1.0f, 1.3f, 5}, {1.3f, 2.0f, 5}}};
-
-// Off a surface by more than places are rounded by.
-float leastLift(const Scene& scene) {
-    return 4.0f * PhotonGate::kRounding * static_cast<float>(scene.radius());
-}
 
 }  // namespace
 
@@ -73,15 +70,16 @@ SeenArea lookFor(const Scene& scene, const PhotonGate& gate, const Vec3f& apex,
 float apexHeight(const Scene& scene, const Vec3f& position, const Vec3f& normal, float radius) {
     const float height = kApexHeight * radius;
     // Off the surface itself, but below a ball as close to where it touches as can be told.
-    const Vec3f start = position + normal * leastLift(scene);
+    const Vec3f start = position + normal * scene.liftOfPoints();
     Surface above;
     if (!scene.intersect({start, normal, 2.0f * height}, above)) return height;
     return std::min(height, 0.5f * dot(above.position - position, normal));
 }
 
-float liftSeenFrom(const Scene& scene, float height) {
-    // Not above a sheet that lies closely over it.
-    return scene.hasSheets() ? leastLift(scene) : std::max(kLift * height, leastLift(scene));
+bool isSeenFrom(const Scene& scene, const Vec3f& apex, const Vec3f& position, const Vec3f& normal) {
+    const Vec3f way = position + normal * scene.liftOfPoints() - apex;
+    const float distance = length(way);
+    return !(distance > 0.0f) || !scene.occluded({apex, way * (1.0f / distance), distance});
 }
 
 std::uint32_t patternAt(const Vec3f& position) {
@@ -90,16 +88,18 @@ std::uint32_t patternAt(const Vec3f& position) {
         combineBits(bits(position.x) << 32 | bits(position.y), bits(position.z)));
 }
 
+SeenArea SurfaceEstimate::lookAt(const View& view, float turns, float radii) const {
+    const SinCos phi = sinCosTurns(turns - std::floor(turns));
+    const Vec3f inPlane = (view.tangent * phi.cos + view.bitangent * phi.sin) * (radii * m_radius);
+    return lookFor(m_scene, m_map.gate(view.position, view.normal), view.apex, inPlane);
+}
+
 SurfaceEstimate::Seen SurfaceEstimate::look(const View& view, float turns,
                                             float radiusSquared) const {
-    const SinCos phi = sinCosTurns(turns - std::floor(turns));
-    const Vec3f inPlane =
-        (view.tangent * phi.cos + view.bitangent * phi.sin) * (std::sqrt(radiusSquared) * m_radius);
-    const PhotonGate gate = m_map.gate(view.position, view.normal);
-    const SeenArea seen = lookFor(m_scene, gate, view.apex, inPlane);
+    const SeenArea seen = lookAt(view, turns, std::sqrt(radiusSquared));
     const float distanceSquared = lengthSquared(seen.fromPoint);
     if (distanceSquared > m_radius * m_radius) return {};
-    return {seen.area, distanceSquared, gate.isInPlane(seen.fromPoint)};
+    return {seen.area, distanceSquared};
 }
 
 bool SurfaceEstimate::isWhole(const View& view, bool& isPlane) const {
@@ -107,9 +107,9 @@ bool SurfaceEstimate::isWhole(const View& view, bool& isPlane) const {
     for (std::uint32_t i = 0; i < kRimRays; ++i) {
         // Opposite sides first: an edge is on one of them.
         const std::uint32_t j = (i % 2) * (kRimRays / 2) + i / 2;
-        const Seen seen = look(view, view.turn + static_cast<float>(j) / kRimRays, 0.9f);
+        const SeenArea seen = lookAt(view, view.turn + static_cast<float>(j) / kRimRays, kRim);
         if (!(std::abs(seen.area - 1.0f) < kFlatTolerance)) return false;
-        isPlane = isPlane && seen.isInPlane;
+        isPlane = isPlane && m_map.gate(view.position, view.normal).isInPlane(seen.fromPoint);
     }
     return true;
 }
@@ -144,8 +144,20 @@ TwoRadii SurfaceEstimate::at(const Vec3f& position, const Vec3f& normal,
     const TwoRadii flux = m_map.fluxWithin(position, normal, m_radius);
     if (isBlack(flux.wide)) return {};
     if (const auto seen = ofWhatIsSeen(position, normal, pattern, flux, 0)) return *seen;
-    // What sees nothing at all is inside of something that stands there, and tells nothing.
-    return irradiance(flux, {});
+    return beside(position, normal, pattern);
+}
+
+// Where a ball touches the floor, in a gap that is lost in roundings, nothing is seen, but a little
+// aside it is. Black where that sees nothing, either: inside of something that stands there.
+TwoRadii SurfaceEstimate::beside(const Vec3f& position, const Vec3f& normal,
+                                 std::uint32_t pattern) const {
+    const Frame frame(normal);
+    for (const Vec3f& aside : {frame.tangent, frame.bitangent, -frame.tangent, -frame.bitangent}) {
+        const Vec3f place = position + aside * (kAside * m_radius);
+        const TwoRadii flux = m_map.fluxWithin(place, normal, m_radius);
+        if (const auto seen = ofWhatIsSeen(place, normal, pattern, flux, 0)) return *seen;
+    }
+    return {};
 }
 
 // Nothing where no surface is seen. flux: of all photons within the radius. halvings: of the first
@@ -208,12 +220,9 @@ SurfaceEstimate::Shares SurfaceEstimate::askRays(const Vec3f& position, const Ve
     }
     const Shares share = shares(view);
     if (share.wide < least || !(share.wide > 0.0f)) return share;
-    const float lift = liftSeenFrom(m_scene, height);
     flux = m_map.fluxWithin(position, normal, m_radius, [&](std::uint32_t index) {
         const Photon photon = m_map.photon(index);
-        // Ends a little above the photon, whose own surface must not hide it.
-        const Vec3f above = photon.position + photon.normal.unpack() * lift;
-        return !m_scene.occluded({view.apex, above - view.apex, 1.0f});
+        return isSeenFrom(m_scene, view.apex, photon.position, photon.normal.unpack());
     });
     return share;
 }

@@ -27,9 +27,9 @@ SeenArea lookFor(const Scene& scene, const PhotonGate& gate, const Vec3f& apex,
 // How far above a point to look from, scene units: enough to see a disc of this radius, but half as
 // high as whatever stands there; under a ball on the floor the apex must not be inside the ball.
 float apexHeight(const Scene& scene, const Vec3f& position, const Vec3f& normal, float radius);
-// How far off its surface a ray is to end, scene units, so that the surface doesn't hide it: seen
-// from an apex so high.
-float liftSeenFrom(const Scene& scene, float height);
+// Whether a point of a surface, lifted by Scene::liftOfPoints(), is seen from the apex. For a hit
+// that is pointUnderRay, so that a leaning wall is not passed on the way up.
+bool isSeenFrom(const Scene& scene, const Vec3f& apex, const Vec3f& position, const Vec3f& normal);
 
 // A pattern of rays that depends on the place alone.
 std::uint32_t patternAt(const Vec3f& position);
@@ -70,7 +70,6 @@ class SurfaceEstimate {
     // What a ray found: area as SeenArea has it, 0 beyond the radius.
     struct Seen {
         float area = 0.0f, distanceSquared = 0.0f;
-        bool isInPlane = false;  // of the point
     };
     // The point, what is above it, and how the rays are turned.
     struct View {
@@ -78,6 +77,7 @@ class SurfaceEstimate {
         Vec3f tangent, bitangent;
         float turn, shift;  // [0, 1)
     };
+    TwoRadii beside(const Vec3f& position, const Vec3f& normal, std::uint32_t pattern) const;
     std::optional<TwoRadii> ofWhatIsSeen(const Vec3f& position, const Vec3f& normal,
                                          std::uint32_t pattern, const TwoRadii& flux,
                                          int halvings) const;
@@ -86,6 +86,7 @@ class SurfaceEstimate {
     Shares askRays(const Vec3f& position, const Vec3f& normal, std::uint32_t pattern, float least,
                    TwoRadii& flux) const;
     TwoRadii irradiance(const TwoRadii& flux, const Shares& share) const;
+    SeenArea lookAt(const View& view, float turns, float radii) const;
     Seen look(const View& view, float turns, float radiusSquared) const;
     // isPlane: where it is, whether what tells so lies in the point's plane.
     bool isWhole(const View& view, bool& isPlane) const;

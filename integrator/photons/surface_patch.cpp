@@ -128,10 +128,8 @@ bool SurfacePatch::isInner(Place place) const {
                                 1) != 0;
 }
 
-// From a little above it, or its own surface would hide it.
 bool SurfacePatch::sees(const Scene& scene, const Vec3f& position, const Vec3f& normal) const {
-    return !scene.occluded(
-        {m_apex, position + normal * liftSeenFrom(scene, m_height) - m_apex, 1.0f});
+    return isSeenFrom(scene, m_apex, position, normal);
 }
 
 bool SurfacePatch::speaksFor(const Scene& scene, const Vec3f& position, const Vec3f& normal,

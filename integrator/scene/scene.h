@@ -71,6 +71,17 @@ class Scene {
     // Whether a ray that meets nothing sees light.
     bool seesFarLight(const Vec3f& direction) const;
 
+    // How far off its surface what was stored as a point of it has to be for no ray to meet that
+    // surface there: no less than surfaceOffset of any. Scene units.
+    float liftOfPoints() const {
+        constexpr float kRoundings = 36.0f * 0x1p-24f;
+        return kRoundings * static_cast<float>(m_radius);
+    }
+
+    // The height for pointUnderRay and rayOnwards, scene units: half of it is still off the
+    // surface.
+    float liftOfRays() const { return 2.0f * liftOfPoints(); }
+
     // True when all that reflects or lets light through are triangles in one plane (to rounding),
     // so that no light goes from one surface by way of another.
     bool isFlat() const { return m_isFlat; }

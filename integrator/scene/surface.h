@@ -50,4 +50,28 @@ inline Ray rayFrom(const Surface& surface, const Vec3f& direction) {
     return {rayOrigin(surface, direction), direction};
 }
 
+// The point beside a hit, on its surface's plane, over which the ray that led there passed at this
+// height: what is lifted by so much from there is on the ray's side of all that stands close by, as
+// a leaning wall. direction: the ray's, unit; way: its length; normal: unit, on its side; height,
+// in scene units as all. At grazing angles the point is moved by no more than eight heights, and
+// never by more than half of the way.
+inline Vec3f pointUnderRay(const Vec3f& position, const Vec3f& direction, float way,
+                           const Vec3f& normal, float height) {
+    constexpr float kLeastCosine = 0.125f;
+    const float cosine = -dot(direction, normal);
+    const float back = std::fmin(height / std::fmax(cosine, kLeastCosine), 0.5f * way);
+    return position - (direction + normal * cosine) * back;
+}
+inline Vec3f pointUnderRay(const Vec3f& position, const Ray& ray, const Vec3f& normal,
+                           float height) {
+    return pointUnderRay(position, ray.direction, length(position - ray.origin), normal, height);
+}
+
+// A ray onwards from such a point, on the normal's side. It starts at that height, and then by half
+// of it behind: a wall so close that roundings lose it at a ray's beginning is met all the same.
+inline Ray rayOnwards(const Vec3f& position, const Vec3f& normal, const Vec3f& direction,
+                      float height) {
+    return {position + (normal - direction * 0.5f) * height, direction};
+}
+
 }  // namespace pm

@@ -23,8 +23,9 @@ Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray
         if (bsdf.isBlackBody()) return result;
         if (bsdf.has(Lobe::kDiffuse)) {
             result.isWaiting = true;
-            result.position = surface.position;
             result.normal = bsdf.facingGeometricNormal();
+            result.position =
+                pointUnderRay(surface.position, path.ray, result.normal, scene.liftOfRays());
             result.reflected = path.throughput * bsdf.diffuse() * kInvPi;
             result.density = 0.0f;
             if (ends.caustics && result.rays == 1) {

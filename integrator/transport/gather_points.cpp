@@ -23,10 +23,10 @@ constexpr float kReach = 1.0f;
 // open.
 constexpr float kRefocusedReach = 0.25f;
 constexpr float kNarrowestRefocused = 0.3f;
-// Points nearer than this, over the clearance, are taken as in sight; others are looked for along
-// a line which is raised by so much of its length.
-constexpr float kSurelySeen = 0.5f;
-constexpr float kLift = 0.05f;
+// Points nearer than this, over the clearance, are taken as in sight; others look for the place
+// from a height of so much of the way, or of their headroom, whichever is less.
+constexpr float kSurelySeen = 0.25f;
+constexpr float kLift = 0.05f, kLiftOfHeadroom = 0.5f;
 // Points whose surface leans away more than this (25 degrees) see another half-space.
 constexpr float kNormalCosine = 0.9f;
 // Height of a point over the plane through the place, relative to its distance: more is another
@@ -133,9 +133,11 @@ void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
     followCameraPath(m_scene, first, sampler, [&](const PathStop& stop) {
         const bool chosen = stop.bsdf.has(Lobe::kDiffuse) && stop.sampler.next1D() < 0.5f;
         if (stop.next != Lobe::kDiffuse && !chosen) return true;
-        point.position = stop.surface.position;
+        const Vec3f& normal = stop.bsdf.facingGeometricNormal();
+        point.position =
+            pointUnderRay(stop.surface.position, stop.ray, normal, m_scene.liftOfRays());
         point.normal = stop.bsdf.facingShadingNormal();
-        tile.origins[cell.inTile()] = {stop.bsdf.facingGeometricNormal(), stop.surface.offset};
+        tile.origins[cell.inTile()] = {normal, stop.surface.offset};
         return false;
     });
 }
@@ -145,7 +147,6 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
                                          const Sampler& shared, std::size_t part,
                                          std::uint64_t& rays) const {
     const Vec3f& geometricNormal = origin.geometricNormal;
-    const Vec3f start = point.position + geometricNormal * origin.offset;
     const Frame frame(point.normal);
     const auto directions = directionsAt(point.position, frame);
     std::array<double, 6> sum{};
@@ -163,8 +164,10 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
         const float weight = 1 / density;
         const Vec3f direction = normalize(frame.toWorld(sampleCosineHemisphere(u)));
         if (dot(direction, geometricNormal) <= 0.0f) continue;
-        Gathered found =
-            followGather(m_scene, ends, {start, direction}, dot(direction, point.normal), sampler);
+        Gathered found = followGather(
+            m_scene, ends,
+            rayOnwards(point.position, geometricNormal, direction, m_scene.liftOfRays()),
+            dot(direction, point.normal), sampler);
         found.scale(weight);
         rays += found.rays;
         if (!found.hitAny) {
@@ -184,7 +187,7 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
         return Rgb(static_cast<float>(sum[at] * scale), static_cast<float>(sum[at + 1] * scale),
                    static_cast<float>(sum[at + 2] * scale));
     };
-    return {{irradiance(0), irradiance(3)}, lamps / static_cast<float>(count), clearance};
+    return {{irradiance(0), irradiance(3)}, lamps / static_cast<float>(count), clearance, 0.0f};
 }
 
 // The same of all cells that share directions and lamps.
@@ -216,6 +219,10 @@ GatherPoints::Value GatherPoints::compute(const Tile& tile, const Cell& cell,
     const Vec3f& normal = origin.geometricNormal;
     const Point& point = tile.points[cell.inTile()];
     Value value = gather(point, origin, shared, part, rays);
+    ++rays;
+    value.headroom = Surroundings(m_scene, point.position, normal, origin.offset, 0.0f)
+                         .distanceAlong(normal, value.clearance)
+                         .value_or(value.clearance);
     if (m_request.caustics) {
         const Rgb sampled = sampleCaustics(point, origin, cell);
         value.irradiance += {sampled, sampled};
@@ -264,8 +271,9 @@ void GatherPoints::fill(Tile& tile, const Cell& cell) const {
     std::uint64_t rays = 0;
     const Value value = compute(tile, cell, rays);
     const Rgb &wide = value.irradiance.wide, &narrow = value.irradiance.narrow;
-    const std::array<float, 8> numbers = {wide.r,   wide.g,   wide.b,          narrow.r,
-                                          narrow.g, narrow.b, value.lampShare, value.clearance};
+    const std::array<float, 9> numbers = {wide.r,          wide.g,          wide.b,
+                                          narrow.r,        narrow.g,        narrow.b,
+                                          value.lampShare, value.clearance, value.headroom};
     Kept& kept = tile.kept[cell.inTile()];
     for (std::size_t i = 0; i < numbers.size(); ++i)
         kept.numbers[i].store(numbers[i], std::memory_order_relaxed);
@@ -334,14 +342,16 @@ float GatherPoints::clearanceAt(const Place& place, std::span<const Near> near) 
 }
 
 // Behind a wall that stands between: so thin that no point saw it, it is beyond their clearance.
+// Where the point looks from is reached straight from it, so that a leaning wall is not passed on
+// the way up.
 bool GatherPoints::isHidden(const Place& place, const Near& point, float clearance) const {
     if (point.distanceSquared <= kSurelySeen * kSurelySeen * clearance * clearance) return false;
     const std::size_t at = point.cell.inTile();
-    const float lift = kLift * std::sqrt(point.distanceSquared) + m_planeTolerance;
-    const Vec3f from = place.position + place.geometricNormal * lift;
-    const Vec3f to =
+    const float lift = std::min(kLift * std::sqrt(point.distanceSquared) + m_planeTolerance,
+                                kLiftOfHeadroom * point.kept().headroom());
+    const Vec3f apex =
         point.tile->points[at].position + point.tile->origins[at].geometricNormal * lift;
-    return m_scene.occluded({from, to - from, 1.0f});
+    return !isSeenFrom(m_scene, apex, place.position, place.geometricNormal);
 }
 
 bool GatherPoints::estimate(const Place& place, Estimate& result) const {

@@ -128,18 +128,21 @@ class GatherPoints {
         TwoRadii irradiance;
         float lampShare = 0.0f;
         float clearance = 0.0f;  // smallest distance met, scene units
+        float headroom = 0.0f;   // straight up to what is met, scene units
     };
     // A Value that is computed when it is first asked for.
     struct Kept {
-        std::array<std::atomic<float>, 8> numbers;
+        std::array<std::atomic<float>, 9> numbers;
         std::atomic<std::uint32_t> ready{0};
 
         float number(std::size_t i) const { return numbers[i].load(std::memory_order_relaxed); }
         float clearance() const { return number(7); }
+        float headroom() const { return number(8); }
         Value value() const {
             return {{{number(0), number(1), number(2)}, {number(3), number(4), number(5)}},
                     number(6),
-                    clearance()};
+                    clearance(),
+                    headroom()};
         }
     };
     struct Tile {

@@ -48,6 +48,7 @@ struct PathWalk : Carried {
 
 // A surface, not black, that a camera path has met.
 struct PathStop {
+    const Ray& ray;  // that led there
     const Surface& surface;
     const Bsdf& bsdf;
     const Rgb& throughput;  // of the path up to here
@@ -68,8 +69,8 @@ void followCameraPath(const Scene& scene, const Ray& first, Sampler& sampler, co
         BsdfSample sample;
         const float uLobe = sampler.next1D();
         const bool goesOn = bsdf.sample(uLobe, sampler.next2D(), sample);
-        if (!visit(PathStop{surface, bsdf, path.throughput, sample.lobe, sampler}) || !goesOn ||
-            !path.scatter(surface, bsdf, sample, sampler))
+        if (!visit(PathStop{path.ray, surface, bsdf, path.throughput, sample.lobe, sampler}) ||
+            !goesOn || !path.scatter(surface, bsdf, sample, sampler))
             return;
     }
 }

@@ -131,6 +131,10 @@ void PhotonIntegrator::follow(Branch& branch, bool first, const Tree& tree) cons
         bsdf.followAll();
         if (first) recordFirstHit(surface, bsdf, result);
         if (bsdf.isBlackBody()) return;
+        // Where photons are looked up, and rays leave for lamps and light that was reflected.
+        if (bsdf.has(Lobe::kDiffuse))
+            surface.position = pointUnderRay(surface.position, path.ray,
+                                             bsdf.facingGeometricNormal(), m_scene.liftOfRays());
         const StillToFind still = addReflected(surface, bsdf, branch, tree);
         if (!followLobes(surface, bsdf, still, branch, tree)) return;
     }
@@ -197,15 +201,15 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(const Surface& surface,
     const Rgb reflected = branch.path.throughput * bsdf.diffuse() * kInvPi;
     StillToFind still;
     GatherPoints::Estimate indirect;
+    const Vec3f& normal = bsdf.facingGeometricNormal();
     const GatherPoints::Place place{tree.screen, surface.position, bsdf.facingShadingNormal(),
-                                    bsdf.facingGeometricNormal(), surface.offset};
+                                    normal, surface.offset};
     const bool kept = m_maps.points && m_maps.points->estimate(place, indirect);
     result.rays += indirect.rays;
     if (kept) {
         add(indirect.irradiance, reflected, result.indirect, result);
         if (indirect.lampShare < kLargeLampShare) still.lamps = LampStrategy::kNextEventOnly;
     }
-    const Vec3f& normal = bsdf.facingGeometricNormal();
     if (m_maps.caustic)
         add(m_maps.caustic->irradiance(surface.position, normal, tree.scratch), reflected,
             result.caustic, result);
@@ -250,7 +254,9 @@ void PhotonIntegrator::followDiffuse(const Surface& surface, const Bsdf& bsdf, c
         if (!bsdf.follow(Lobe::kDiffuse, sample, u)) continue;
         const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle,
                                branch.lampSamples};
-        gatherAlong(last, still, share * sample.weight / density, rays,
+        const Ray ray = rayOnwards(surface.position, bsdf.facingGeometricNormal(), sample.direction,
+                                   m_scene.liftOfRays());
+        gatherAlong(ray, last, still, share * sample.weight / density, rays,
                     dot(sample.direction, bsdf.facingShadingNormal()), part, tree.result);
     }
 }
@@ -269,10 +275,9 @@ void PhotonIntegrator::sampleCaustics(const Surface& surface, const Bsdf& bsdf,
 
 // Light that the ray finds at a lamp is direct, the other strategy of its next-event estimation;
 // light found by way of other lobes is a caustic and its map's business.
-void PhotonIntegrator::gatherAlong(const LastScatter& last, StillToFind still, const Rgb& weight,
-                                   std::uint32_t rays, float cosine, Sampler& sampler,
-                                   SampleRadiance& result) const {
-    const Ray ray = rayFrom(last.from, last.direction);
+void PhotonIntegrator::gatherAlong(const Ray& ray, const LastScatter& last, StillToFind still,
+                                   const Rgb& weight, std::uint32_t rays, float cosine,
+                                   Sampler& sampler, SampleRadiance& result) const {
     Gathered found;
     if (still.indirect) {
         found = finalGather(m_scene, {*m_maps.global, m_maps.lamps, rays}, ray, cosine, sampler);

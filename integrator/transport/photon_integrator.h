@@ -92,7 +92,7 @@ class PhotonIntegrator {
                       const Rgb& reflected, const Tree& tree) const;
     void followDiffuse(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
                        StillToFind still, float survival, const Tree& tree) const;
-    void gatherAlong(const LastScatter& last, StillToFind still, const Rgb& weight,
+    void gatherAlong(const Ray& ray, const LastScatter& last, StillToFind still, const Rgb& weight,
                      std::uint32_t rays, float cosine, Sampler& sampler,
                      SampleRadiance& result) const;
     void sampleCaustics(const Surface& surface, const Bsdf& bsdf, const Rgb& throughput,

@@ -54,6 +54,13 @@ void SceneMaker::quad(Vec3d p, Vec3d e0, Vec3d e1, std::uint32_t material,
     addMesh(description, std::move(mesh), material);
 }
 
+void SceneMaker::polygon(const std::vector<Vec3d>& corners, std::uint32_t material) {
+    TriangleMesh mesh;
+    for (const Vec3d& corner : corners) mesh.positions.push_back(Vec3f(corner));
+    for (std::uint32_t i = 2; i < corners.size(); ++i) mesh.triangles.push_back({0, i - 1, i});
+    addMesh(description, std::move(mesh), material);
+}
+
 void SceneMaker::box(Vec3d lo, Vec3d hi, std::uint32_t material, bool inwards) {
     const Vec3d size = hi - lo;
     const Vec3d x{size.x, 0, 0}, y{0, size.y, 0}, z{0, 0, size.z};
