@@ -160,8 +160,9 @@ void Session::buildScene(const ColourPipeline& colour, const PluginContext& cont
                          MaterialBuilder& materials, PluginScene& scene) {
     const WarningSink sink = [this](Warning code, const std::string& text) { warn(code, text); };
     SceneData data;
-    phase("readSceneSeconds",
-          [&] { data = readObjFile(m_options.scene, sink, throwIfInterrupted); });
+    phase("readSceneSeconds", [&] {
+        data = readObjFile(m_options.scene, sink, throwIfInterrupted, m_options.camera.eye);
+    });
     warnOfLampsWithoutArea(data, m_options.scene.string(), sink);
     m_mayWriteStatistics = false;
     checkNotInputs(allOutputs(m_options), inputsOf(m_options, &data));

@@ -6,6 +6,7 @@
 #include "host_shim/ingest/material_library.h"
 #include "host_shim/ingest/mesh_assembly.h"
 #include "host_shim/ingest/obj_text.h"
+#include "host_shim/ingest/scene_centre.h"
 #include "host_shim/pictures/host_error.h"
 
 #include <fmt/format.h>
@@ -17,6 +18,8 @@
 #include <cstring>
 #include <exception>
 #include <fstream>
+#include <functional>
+#include <limits>
 #include <sstream>
 #include <streambuf>
 #include <utility>
@@ -162,6 +165,26 @@ std::ifstream openFile(const fs::path& file) {
     return stream;
 }
 
+void visitFaces(const tinyobj::attrib_t& attributes, const std::vector<tinyobj::shape_t>& shapes,
+                const std::uint32_t* size, const std::function<void(const Bounds&)>& visit) {
+    for (const tinyobj::shape_t& shape : shapes) {
+        std::size_t corner = 0;
+        for (std::size_t face = 0; face < shape.mesh.num_face_vertices.size(); ++face, ++size) {
+            constexpr double kInfinity = std::numeric_limits<double>::infinity();
+            Bounds bounds{{kInfinity, kInfinity, kInfinity}, {-kInfinity, -kInfinity, -kInfinity}};
+            for (std::uint32_t i = 0; i < *size; ++i, ++corner)
+                for (std::size_t axis = 0; axis < 3; ++axis) {
+                    const auto vertex =
+                        static_cast<std::size_t>(shape.mesh.indices[corner].vertex_index);
+                    const double value = attributes.vertices[vertex * 3 + axis];
+                    bounds.low[axis] = std::min(bounds.low[axis], value);
+                    bounds.high[axis] = std::max(bounds.high[axis], value);
+                }
+            visit(bounds);
+        }
+    }
+}
+
 }  // namespace
 
 bool SceneData::hasLight() const {
@@ -173,7 +196,8 @@ bool SceneData::hasLight() const {
 }
 
 SceneData readObj(std::string_view text, const std::string& fileName, const fs::path& folder,
-                  const WarningSink& warn, const GoOn& goOn) {
+                  const WarningSink& warn, const GoOn& goOn,
+                  const std::optional<std::array<double, 3>>& eye) {
     const auto ask = [&goOn] {
         if (goOn) goOn();
     };
@@ -187,7 +211,10 @@ SceneData readObj(std::string_view text, const std::string& fileName, const fs::
     scene.materials = std::move(library.materials);
     scene.materialFiles = std::move(library.files);
     scene.bounds = boundsOfFaces(parsed.attributes, parsed.shapes);
-    scene.centre = scene.bounds.centre();
+    const EachFace forEachFace = [&](const auto& visit) {
+        visitFaces(parsed.attributes, parsed.shapes, objText.faceSizes.data(), visit);
+    };
+    scene.centre = centreFor(forEachFace, scene.bounds, eye);
     MeshAssembly assembly(parsed.attributes, scene.centre);
     const auto defaultMaterial = static_cast<std::uint32_t>(scene.materials.size() - 1);
     for (const tinyobj::shape_t& shape : parsed.shapes) {
@@ -205,9 +232,10 @@ SceneData readObj(std::string_view text, const std::string& fileName, const fs::
     return scene;
 }
 
-SceneData readObjFile(const fs::path& file, const WarningSink& warn, const GoOn& goOn) {
+SceneData readObjFile(const fs::path& file, const WarningSink& warn, const GoOn& goOn,
+                      const std::optional<std::array<double, 3>>& eye) {
     checkSceneFile(file);
-    return readObj(readWholeFile(file), file.string(), file.parent_path(), warn, goOn);
+    return readObj(readWholeFile(file), file.string(), file.parent_path(), warn, goOn, eye);
 }
 
 void checkSceneFile(const fs::path& file) {

@@ -66,6 +66,13 @@ Vec3f AimCaps::sample(float& uChoice, Vec2f u, float& pdfSolidAngle) const {
     return normal;
 }
 
+float AimCaps::pdfSolidAngle(const Vec3f& normal) const {
+    float pdf = m_evenShare / (4.0f * kPi);
+    for (std::size_t i = 0; i < m_count; ++i)
+        pdf += m_caps[i].share * m_caps[i].density(dot(normal, m_caps[i].axis));
+    return pdf;
+}
+
 float AimCaps::Cap::density(float cosine) const {
     return cosine > t ? (cosine - t) / (kPi * (1.0f - t) * (1.0f - t)) : 0.0f;
 }

@@ -23,6 +23,8 @@ class AimCaps {
 
     // Unit normal; its density over the unit sphere. uChoice: leaves what is left of it, in [0, 1).
     Vec3f sample(float& uChoice, Vec2f u, float& pdfSolidAngle) const;
+    // The density with which sample() finds a normal.
+    float pdfSolidAngle(const Vec3f& normal) const;
 
   private:
     struct Cap {

@@ -184,7 +184,8 @@ EmissionPoint AimedEmission::viewpoint(std::uint32_t index, Vec2f uPoint) const 
     const Light& light = m_scene.lights()[index];
     if (light.isAtPoint()) return pointLightView(light);
     if (light.isFar()) return farView(light, uPoint);
-    const Surface surface = m_scene.pointOnLight(light, uPoint);
+    float density;
+    const Surface surface = m_scene.pointOnLight(light, uPoint, density);
     EmissionPoint point;
     point.position = Vec3d(surface.position);
     point.axis = surface.geometricNormal;
@@ -277,6 +278,29 @@ void AimedEmission::refineSky(std::span<const EmissionRecord> pilot) {
     m_sky.setWorth(std::move(worth));
 }
 
+// Half of the points by where its texture shines, half by where the casters are.
+Surface AimedEmission::placeOnTexturedSphere(std::uint32_t index, float& uCaster, Vec2f uPoint,
+                                             float& pdfArea) const {
+    const Light& light = m_scene.lights()[index];
+    const SphereShape sphere = m_scene.sphere(light.shape);
+    const AimCaps caps(sphere, m_casters, worthOf(index));
+    const bool byTexture = uCaster < 0.5f;
+    uCaster = byTexture ? 2.0f * uCaster : 2.0f * uCaster - 1.0f;
+    float ofTexture, ofCaps;
+    Surface surface;
+    if (byTexture) {
+        surface = m_scene.pointOnLight(light, uPoint, ofTexture);
+        ofCaps = caps.pdfSolidAngle(surface.geometricNormal);
+    } else {
+        const Vec3f normal = caps.sample(uCaster, uPoint, ofCaps);
+        surface = m_scene.pointOnSphere(light.shape, Vec3d(normal));
+        ofTexture = m_scene.lampDensity(light, surface);
+    }
+    pdfArea = 0.5f *
+              (ofTexture / light.area + ofCaps / static_cast<float>(sphere.radius * sphere.radius));
+    return surface;
+}
+
 void AimedEmission::place(std::uint32_t index, float& uCaster, Vec2f uPoint, Origin& origin) const {
     const Light& light = m_scene.lights()[index];
     if (light.isAtPoint()) {
@@ -286,15 +310,18 @@ void AimedEmission::place(std::uint32_t index, float& uCaster, Vec2f uPoint, Ori
         return;
     }
     Surface surface;
-    float pdfArea = 1.0f / light.area;
-    if (light.kind == Light::Kind::kSphere) {
+    float density, pdfArea = 1.0f / light.area;
+    if (light.kind == Light::Kind::kSphere && m_scene.lampTexture(light)) {
+        surface = placeOnTexturedSphere(index, uCaster, uPoint, pdfArea);
+    } else if (light.kind == Light::Kind::kSphere) {
         const SphereShape sphere = m_scene.sphere(light.shape);
         const AimCaps caps(sphere, m_casters, worthOf(index));
         const Vec3f normal = caps.sample(uCaster, uPoint, pdfArea);
         pdfArea /= static_cast<float>(sphere.radius * sphere.radius);
         surface = m_scene.pointOnSphere(light.shape, Vec3d(normal));
     } else {
-        surface = m_scene.pointOnLight(light, uPoint);
+        surface = m_scene.pointOnLight(light, uPoint, density);
+        pdfArea *= density;
     }
     origin.point.position = Vec3d(surface.position);
     origin.point.axis = surface.geometricNormal;
@@ -351,7 +378,7 @@ bool AimedEmission::emitParallel(const Light& light, float probability, float uC
     AimShadows::Sample sample;
     if (!shadows.sample(uCaster, uPoint, sample)) return false;
     photon.caster = sample.caster;
-    photon.ray = {m_lights.startOfParallel(sample.point, parallel.direction), parallel.direction};
+    photon.ray = m_lights.parallelRay(sample.point, parallel.direction);
     photon.flux = parallel.irradiance *
                   static_cast<float>(static_cast<double>(factor) /
                                      (static_cast<double>(probability) * sample.pdfArea));

@@ -61,10 +61,11 @@ float nthOf(std::span<float> numbers, std::size_t count, std::uint32_t n) {
 
 }  // namespace
 
-PhotonMap::PhotonMap(std::span<const Photon> photons, const CancelCheck& cancel)
-    : m_tree(buildPhotonTree(photons, cancel)) {
-    const float largest = std::max(maxAbsComponent(m_tree.lo), maxAbsComponent(m_tree.hi));
-    const float tolerance = PhotonGate::kRounding * largest;
+PhotonMap::PhotonMap(std::span<const Photon> photons, const CancelCheck& cancel, float coreRadius)
+    : m_tree(buildPhotonTree(photons, cancel)),
+      m_coreRadius(coreRadius),
+      m_largest(std::max(maxAbsComponent(m_tree.lo), maxAbsComponent(m_tree.hi))) {
+    const float tolerance = PhotonGate::kRounding * m_largest;
     m_planeToleranceSquared = tolerance * tolerance;
 }
 

@@ -97,7 +97,10 @@ class PhotonMap {
     // Builds in parallel in the calling TBB arena. Photons whose position is not finite must not be
     // among them. They are copied.
     // Throws Error(kCancelled) soon after cancel is set.
-    explicit PhotonMap(std::span<const Photon> photons, const CancelCheck& cancel = {});
+    // coreRadius: of a scene of which some lies far beyond it (Scene::hasCore()): places within it
+    // are not rounded as those there are. Scene units.
+    explicit PhotonMap(std::span<const Photon> photons, const CancelCheck& cancel = {},
+                       float coreRadius = std::numeric_limits<float>::infinity());
 
     // While it is built, the photons that it is built from included; and once it is.
     static constexpr std::uint64_t kBytesPerPhoton = sizeof(Photon) + kTreeBuildBytesPerPhoton;
@@ -148,7 +151,10 @@ class PhotonMap {
 
     // Which photons count for a point, distance aside.
     PhotonGate gate(const Vec3f& position, const Vec3f& normal) const {
-        return {position, normal, m_planeToleranceSquared};
+        const float largest = std::max(m_coreRadius, maxAbsComponent(position));
+        if (!(largest < m_largest)) return {position, normal, m_planeToleranceSquared};
+        const float tolerance = PhotonGate::kRounding * largest;
+        return {position, normal, tolerance * tolerance};
     }
 
   private:
@@ -187,6 +193,7 @@ class PhotonMap {
     void visitWithin(const Vec3f& position, float reach, const Visit& visit) const;
 
     PhotonTree m_tree;
+    float m_coreRadius, m_largest = 0.0f;  // the largest coordinate of a photon
     float m_planeToleranceSquared = 0.0f;
     std::shared_ptr<const int> m_identity = std::make_shared<const int>(0);
 };

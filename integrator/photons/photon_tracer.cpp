@@ -129,8 +129,9 @@ class PhotonWalk {
             const Vec3f out = -ray.direction;
             const Bsdf bsdf(m_scene, surface, out, Transport::kPhotons, flux);
             if (bsdf.has(Lobe::kDiffuse)) {
-                surface.position = pointUnderRay(
-                    surface.position, ray, bsdf.facingGeometricNormal(), m_scene.liftOfRays());
+                surface.position =
+                    pointUnderRay(surface.position, ray, bsdf.facingGeometricNormal(),
+                                  m_scene.liftOfRays(surface.position));
                 landed += land(way, surface, bsdf, flux, batch);
             }
             BsdfSample sample;
@@ -156,7 +157,7 @@ class PhotonWalk {
             flux = scattered;
             ray = sample.lobe == Lobe::kDiffuse
                       ? rayOnwards(surface.position, bsdf.facingGeometricNormal(), sample.direction,
-                                   m_scene.liftOfRays())
+                                   m_scene.liftOfRays(surface.position))
                       : rayFrom(surface, sample.direction);
             ++events;
         }

@@ -70,14 +70,14 @@ SeenArea lookFor(const Scene& scene, const PhotonGate& gate, const Vec3f& apex,
 float apexHeight(const Scene& scene, const Vec3f& position, const Vec3f& normal, float radius) {
     const float height = kApexHeight * radius;
     // Off the surface itself, but below a ball as close to where it touches as can be told.
-    const Vec3f start = position + normal * scene.liftOfPoints();
+    const Vec3f start = position + normal * scene.liftOfPoints(position);
     Surface above;
     if (!scene.intersect({start, normal, 2.0f * height}, above)) return height;
     return std::min(height, 0.5f * dot(above.position - position, normal));
 }
 
 bool isSeenFrom(const Scene& scene, const Vec3f& apex, const Vec3f& position, const Vec3f& normal) {
-    const Vec3f way = position + normal * scene.liftOfPoints() - apex;
+    const Vec3f way = position + normal * scene.liftOfPoints(position) - apex;
     const float distance = length(way);
     return !(distance > 0.0f) || !scene.occluded({apex, way * (1.0f / distance), distance});
 }

@@ -27,7 +27,7 @@ SeenArea lookFor(const Scene& scene, const PhotonGate& gate, const Vec3f& apex,
 // How far above a point to look from, scene units: enough to see a disc of this radius, but half as
 // high as whatever stands there; under a ball on the floor the apex must not be inside the ball.
 float apexHeight(const Scene& scene, const Vec3f& position, const Vec3f& normal, float radius);
-// Whether a point of a surface, lifted by Scene::liftOfPoints(), is seen from the apex. For a hit
+// Whether a point of a surface, lifted by Scene::liftOfPoints, is seen from the apex. For a hit
 // that is pointUnderRay, so that a leaning wall is not passed on the way up.
 bool isSeenFrom(const Scene& scene, const Vec3f& apex, const Vec3f& position, const Vec3f& normal);
 

@@ -36,7 +36,7 @@ constexpr float kHiddenHeight = 0.02f;
 constexpr std::array<float, 2> kGaussNodes{0.21132487f, 0.78867513f};
 
 PhotonGate gateAt(const Scene& scene, const Vec3f& position, const Vec3f& normal) {
-    const float tolerance = PhotonGate::kRounding * static_cast<float>(scene.radius());
+    const float tolerance = PhotonGate::kRounding * scene.roundingRadius(position);
     return {position, normal, tolerance * tolerance};
 }
 

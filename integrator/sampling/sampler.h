@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 
@@ -59,6 +60,18 @@ constexpr std::uint32_t sobolSecondReversed(std::uint32_t i) {
 // In [0, 1): the upper 24 bits.
 constexpr float toUnitFloat(std::uint32_t x) {
     return static_cast<float>(x >> 8) * 0x1p-24f;
+}
+
+// The first of two such numbers, in finer steps than its own 2^-24, which ten thousand choices
+// would use up: the steps' fractions are made of both numbers' bits.
+inline double refined(Vec2f u) {
+    const std::uint64_t bits = mixBits(std::uint64_t{std::bit_cast<std::uint32_t>(u.x)} << 32 |
+                                       std::bit_cast<std::uint32_t>(u.y));
+    return static_cast<double>(u.x) + static_cast<double>(bits >> 40) * 0x1p-48;
+}
+
+inline float toBelowOne(double x) {
+    return std::min(static_cast<float>(x), 1.0f - 0x1p-24f);
 }
 
 // One sample's random numbers: a function of (seed, stream, sequence, index, dimension) alone.

@@ -20,7 +20,10 @@ constexpr double kNearRadii = 4.0;
 }  // namespace
 
 Camera::Camera(const Scene& scene, std::int32_t width, std::int32_t height)
-    : m_halfWidth(0.5 * width), m_halfHeight(0.5 * height), m_sceneRadius(scene.radius()) {
+    : m_scene(scene),
+      m_halfWidth(0.5 * width),
+      m_halfHeight(0.5 * height),
+      m_sceneRadius(scene.radius()) {
     const auto& camera = scene.description().camera;
     if (!camera) throw Error(Status::kInvalidScene, "the scene has no camera");
     const Transform& m = camera->cameraToWorld;
@@ -54,6 +57,7 @@ Ray Camera::ray(double x, double y) const {
     const Vec3d direction =
         normalize(m_forward + m_right * ((x - m_halfWidth) * m_scale * m_aspect) +
                   m_up * ((m_halfHeight - y) * m_scale));
+    if (m_scene.hasCore()) return m_scene.rayFromAfar(m_eye, direction);
     if (!m_isFar) return {Vec3f(m_eye), Vec3f(direction)};
     Vec3d origin = m_eye;
     // Entry into a sphere slightly larger than the scene's.

@@ -27,6 +27,7 @@ class Camera {
     float depth(const Vec3f& position) const;
 
   private:
+    const Scene& m_scene;
     Vec3d m_eye;  // scene's own coordinates
     Vec3d m_right, m_up, m_forward;
     double m_scale;                    // of a pixel on the plane at distance 1

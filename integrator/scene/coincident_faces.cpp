@@ -75,7 +75,7 @@ void Scene::CoincidentFaces::search(const Scene& scene, const Face& face, std::u
         scene.surfaceOnTriangle(record, face.primitive, corner, static_cast<double>(b.x),
                                 static_cast<double>(b.y), point);
         const float reach =
-            kWindow * surfaceOffset(point.position, static_cast<float>(scene.m_radius));
+            kWindow * surfaceOffset(point.position, scene.roundingRadius(point.position));
         const Vec3f& normal = point.geometricNormal;
         const Ray through{point.position + normal * reach, -normal, 2 * reach};
         scene.m_tracer.forEachHit(through, 0.0f, [&](const RayHit& hit) {

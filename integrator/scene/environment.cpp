@@ -52,8 +52,11 @@ std::size_t choose(std::span<const float> cumulative, float& u) {
 }  // namespace
 
 Environment::Environment(const EnvironmentDescription& description, const TextureSource* textures,
-                         const CancelCheck& cancel)
-    : m_scale(description.radiance), m_texture(description.texture), m_textures(textures) {
+                         const CancelCheck& cancel, bool hasBadTexels)
+    : m_scale(description.radiance),
+      m_texture(description.texture),
+      m_textures(textures),
+      m_hasBadTexels(hasBadTexels) {
     for (std::size_t axis = 0; axis < 3; ++axis)
         m_axes[axis] = Vec3f(Vec3d{description.toWorld[axis], description.toWorld[4 + axis],
                                    description.toWorld[8 + axis]});
@@ -79,7 +82,8 @@ Vec2f Environment::toPicture(const Vec3f& local) const {
 }
 
 Rgb Environment::texel(Vec2f uv) const {
-    const Texel t = m_textures->lookUp(m_texture, uv, 0.0f);
+    const Texel t = m_hasBadTexels ? m_textures->lookUpOfLight(m_texture, uv)
+                                   : m_textures->lookUp(m_texture, uv, 0.0f);
     return m_scale * Rgb(std::max(0.0f, t.r), std::max(0.0f, t.g), std::max(0.0f, t.b));
 }
 

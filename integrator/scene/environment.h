@@ -33,9 +33,10 @@ struct SkyLooks {
 class Environment {
   public:
     // textures: may be null without a texture; must outlive this. Looks at every texel, in parallel
-    // in the calling TBB arena. Throws Error(kCancelled) soon after `cancel` is set.
+    // in the calling TBB arena. hasBadTexels: some count as 0, see TextureSource::lookUpOfLight().
+    // Throws Error(kCancelled) soon after `cancel` is set.
     Environment(const EnvironmentDescription& description, const TextureSource* textures,
-                const CancelCheck& cancel = {});
+                const CancelCheck& cancel = {}, bool hasBadTexels = false);
 
     // Radiance that is seen along a unit direction; W m^-2 sr^-1, >= 0.
     Rgb radiance(const Vec3f& direction) const;
@@ -72,6 +73,7 @@ class Environment {
     Rgb m_scale;
     std::int32_t m_texture = kNoTexture;
     const TextureSource* m_textures = nullptr;
+    bool m_hasBadTexels = false;
     Vec3f m_axes[3];  // of the environment's space, in the world's
     double m_integral = 0;
     std::uint32_t m_columns = 0, m_rowCount = 0;  // of the table; 0: all directions alike

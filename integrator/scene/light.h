@@ -28,13 +28,14 @@ struct Light {
     std::uint32_t shape = 0;
     std::uint32_t primitive = 0;
     std::uint32_t material = 0;
-    std::uint32_t beam = 0;  // of a spot or directional light: its number in Scene::beams()
-    float area = 0.0f;       // scene units squared
-    Vec3d position;          // of a point light or spot
+    std::uint32_t beam = 0;     // of a spot or directional light: its number in Scene::beams()
+    std::int32_t texture = -1;  // its number in Scene::m_lampTextures; none: shines evenly
+    float area = 0.0f;          // scene units squared
+    Vec3d position;             // of a point light or spot
     Rgb intensity;         // of a point light or spot, W/sr; of a directional light with a disc its
                            // radiance, W m^-2 sr^-1, of parallel light its irradiance, W m^-2
-    double powerMean = 0;  // W, mean of the channels, textures of surfaces taken as 1; of what is
-                           // infinitely far, what enters the scene's box
+    double powerMean = 0;  // W, mean of the channels, never 0 of a surface; of what is infinitely
+                           // far, what enters the scene's box
 
     bool isFar() const { return kind >= Kind::kDirectional; }
     bool isAtPoint() const { return kind == Kind::kPoint || kind == Kind::kSpot; }

@@ -63,9 +63,11 @@ bool LightSampler::emitParallel(const Light& light, Vec2f u, ParallelLight& para
     return true;
 }
 
-Vec3f LightSampler::startOfParallel(const Vec3d& through, const Vec3f& direction) const {
+Ray LightSampler::parallelRay(const Vec3d& through, const Vec3f& direction) const {
     // A point of the scene's box is within its radius of the centre.
-    return Vec3f(through - Vec3d(direction) * (2.1 * m_scene.radius()));
+    const Vec3d start = through - Vec3d(direction) * (2.1 * m_scene.radius());
+    if (m_scene.hasCore()) return m_scene.rayFromAfar(start, Vec3d(direction));
+    return {Vec3f(start), direction};
 }
 
 bool LightSampler::emitFromAfar(const Light& light, float probability, Vec2f uPoint,
@@ -75,7 +77,7 @@ bool LightSampler::emitFromAfar(const Light& light, float probability, Vec2f uPo
     const BoxShadow scene(m_scene.halfSize(), Vec3d(parallel.direction));
     const double area = scene.area();
     if (!(area > 0)) return false;
-    photon.ray = {startOfParallel(scene.sample(uPoint), parallel.direction), parallel.direction};
+    photon.ray = parallelRay(scene.sample(uPoint), parallel.direction);
     photon.flux = parallel.irradiance * (static_cast<float>(area) / probability);
     return !isBlack(photon.flux);
 }
@@ -85,7 +87,7 @@ bool LightSampler::emit(float uLight, Vec2f uPoint, Vec2f uDirection, EmittedPho
     float probability;
     const std::size_t index = m_choice.choose(uLight, probability);
     const LampTriangle& lamp = m_scene.lampTriangle(index);
-    // Uniform area density 1/A and direction density cos/pi leave the radiance times pi A.
+    // Area density 1/A and direction density cos/pi leave the radiance times pi A.
     const auto emitFrom = [&](const LampPoint& point, const Rgb& radiance, float area) {
         const Frame frame(point.normal);
         photon.ray = {point.position + point.normal * point.offset,
@@ -98,9 +100,10 @@ bool LightSampler::emit(float uLight, Vec2f uPoint, Vec2f uDirection, EmittedPho
     const Light& light = m_scene.lights()[index];
     if (light.isAtPoint()) return emitFromPoint(light, probability, uDirection, photon);
     if (light.isFar()) return emitFromAfar(light, probability, uPoint, uDirection, photon);
-    const Surface point = m_scene.pointOnLight(light, uPoint);
+    float density;
+    const Surface point = m_scene.pointOnLight(light, uPoint, density);
     return emitFrom({point.position, point.offset, point.geometricNormal}, frontRadiance(point),
-                    light.area);
+                    light.area / density);
 }
 
 }  // namespace pm

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -41,6 +40,9 @@ double powerOf(std::span<const Light> lights) {
     return power;
 }
 
+// Of a textured sphere's samples: those that go by the texture and not by how it is seen.
+constexpr float kTextureShare = 0.5f;
+
 // Choices of guided lights that are made side by side.
 constexpr std::size_t kMostAtOnce = 16;
 
@@ -60,16 +62,6 @@ LightSampler::LightSampler(const Scene& scene, const CancelCheck& cancel)
 Receiver LightSampler::receiverAt(const Surface& surface, const Vec3f& side) {
     const bool front = dot(side, surface.geometricNormal) >= 0.0f;
     return {surface.position, front ? surface.shadingNormal : -surface.shadingNormal};
-}
-
-double LightSampler::refined(Vec2f u) {
-    const std::uint64_t bits = mixBits(std::uint64_t{std::bit_cast<std::uint32_t>(u.x)} << 32 |
-                                       std::bit_cast<std::uint32_t>(u.y));
-    return static_cast<double>(u.x) + static_cast<double>(bits >> 40) * 0x1p-48;
-}
-
-float LightSampler::toBelowOne(double x) {
-    return std::min(static_cast<float>(x), 1.0f - 0x1p-24f);
 }
 
 void LightSampler::choose(const Surface& surface, const Vec3f& side,
@@ -147,10 +139,7 @@ Rgb LightSampler::emittedRadiance(const Surface& surface, const Vec3f& direction
 }
 
 Rgb LightSampler::frontRadiance(const Surface& surface) const {
-    const MaterialDescription& material = m_scene.material(surface.material);
-    if (material.emissionTexture == kNoTexture) return material.emission;
-    const Texel texel = m_scene.textures()->lookUp(material.emissionTexture, surface.uv, 0.0f);
-    return material.emission * Rgb(texel.r, texel.g, texel.b);
+    return m_scene.emission(surface.material, surface.uv);
 }
 
 bool LightSampler::sample(const Surface& surface, const Vec3f& side, Vec2f uPoint,
@@ -172,10 +161,11 @@ bool LightSampler::sample(const ChosenLight& chosen, const Surface& surface,
     const Light& light = m_scene.lights()[chosen.light];
     switch (light.kind) {
         case Light::Kind::kTriangle: {
-            const Surface point = m_scene.pointOnLight(light, uPoint);
+            float density;
+            const Surface point = m_scene.pointOnLight(light, uPoint, density);
             sample.radiance = frontRadiance(point);
             return sampleTriangle(surface, {point.position, point.offset, point.geometricNormal},
-                                  probability, light.area, sample);
+                                  probability, light.area / density, sample);
         }
         case Light::Kind::kSphere:
             return sampleSphere(surface, light, probability, uPoint, sample);
@@ -189,7 +179,7 @@ bool LightSampler::sample(const ChosenLight& chosen, const Surface& surface,
     return false;
 }
 
-// All of a sample but its radiance, by a point uniform over the area of a triangle.
+// All of a sample but its radiance. area: of the triangle, over the density of its points.
 bool LightSampler::sampleTriangle(const Surface& surface, const LampPoint& point, float probability,
                                   float area, LightSample& sample) const {
     const Vec3f toLight = point.position - surface.position;
@@ -205,9 +195,15 @@ bool LightSampler::sampleTriangle(const Surface& surface, const LampPoint& point
     return true;
 }
 
-// Uniform over the solid angle that the sphere fills. Source: Shirley & Wang 1994.
+// Uniform over the solid angle that the sphere fills (source: Shirley & Wang 1994); where a texture
+// shows mostly some part of it, half of the choices by what it shows.
 bool LightSampler::sampleSphere(const Surface& surface, const Light& light, float probability,
                                 Vec2f u, LightSample& sample) const {
+    if (m_scene.lampTexture(light)) {
+        const bool byTexture = u.x < kTextureShare;
+        u.x = byTexture ? u.x / kTextureShare : (u.x - kTextureShare) / (1.0f - kTextureShare);
+        if (byTexture) return sampleTexturedSphere(surface, light, probability, u, sample);
+    }
     const SphereShape sphere = m_scene.sphere(light.shape);
     const Vec3d toCentre = sphere.centre - Vec3d(surface.position);
     const double d2 = lengthSquared(toCentre), r2 = sphere.radius * sphere.radius;
@@ -224,10 +220,39 @@ bool LightSampler::sampleSphere(const Surface& surface, const Light& light, floa
         m_scene.pointOnSphere(light.shape, Vec3d(surface.position) + direction * t - sphere.centre);
     sample.radiance = frontRadiance(point);
     sample.pdfSolidAngle = probability / (2.0f * kPi * oneMinusCos);
+    if (m_scene.lampTexture(light))
+        sample.pdfSolidAngle = probability * pdfOfTexturedSphere(surface, sample.direction, point);
     sample.isPoint = false;
     sample.shadowRay = shadowSegment(rayOrigin(surface, sample.direction), point.position,
                                      point.geometricNormal, point.offset);
     return true;
+}
+
+bool LightSampler::sampleTexturedSphere(const Surface& surface, const Light& light,
+                                        float probability, Vec2f u, LightSample& sample) const {
+    float density;
+    const Surface point = m_scene.pointOnLight(light, u, density);
+    if (!sampleTriangle(surface, {point.position, point.offset, point.geometricNormal}, probability,
+                        light.area / density, sample))
+        return false;
+    sample.radiance = frontRadiance(point);
+    sample.pdfSolidAngle = probability * pdfOfTexturedSphere(surface, sample.direction, point);
+    return true;
+}
+
+float LightSampler::pdfOfTexturedSphere(const Surface& from, const Vec3f& direction,
+                                        const Surface& point) const {
+    const Light& light = m_scene.lights()[static_cast<std::size_t>(point.light)];
+    const SphereShape sphere = m_scene.sphere(light.shape);
+    const double d2 = lengthSquared(sphere.centre - Vec3d(from.position));
+    const double r2 = sphere.radius * sphere.radius;
+    if (!(d2 > r2 * (1 + 1e-6))) return 0.0f;
+    const float even = 1.0f / (2.0f * kPi * oneMinusCosOfSphere(r2, d2));
+    const float cosine = -dot(direction, point.geometricNormal);
+    if (!(cosine > 0.0f)) return (1.0f - kTextureShare) * even;
+    return (1.0f - kTextureShare) * even + kTextureShare * m_scene.lampDensity(light, point) *
+                                               lengthSquared(point.position - from.position) /
+                                               (light.area * cosine);
 }
 
 bool LightSampler::samplePoint(const Surface& surface, const Light& light, float probability,
@@ -291,6 +316,8 @@ float LightSampler::pdfSolidAngle(const Surface& from, const Vec3f& direction,
     const Light& light = m_scene.lights()[index];
     const float probability = this->probability(from, direction, static_cast<std::uint32_t>(index));
     if (light.kind == Light::Kind::kSphere) {
+        if (m_scene.lampTexture(light))
+            return probability * pdfOfTexturedSphere(from, direction, onLight);
         const SphereShape sphere = m_scene.sphere(light.shape);
         const double d2 = lengthSquared(sphere.centre - Vec3d(from.position));
         const double r2 = sphere.radius * sphere.radius;
@@ -299,7 +326,8 @@ float LightSampler::pdfSolidAngle(const Surface& from, const Vec3f& direction,
     }
     const float cosine = -dot(direction, onLight.geometricNormal);
     if (!(cosine > 0.0f)) return 0.0f;
-    return probability * lengthSquared(onLight.position - from.position) / (light.area * cosine);
+    return probability * lengthSquared(onLight.position - from.position) / (light.area * cosine) *
+           m_scene.lampDensity(light, onLight);
 }
 
 }  // namespace pm

@@ -108,11 +108,11 @@ class LightSampler {
     // nothing; 0 of parallel light.
     float farPdfSolidAngle(const Surface& from, const Vec3f& direction, std::size_t far) const;
 
-    // A photon: light by power, point uniform over its area, direction by the cosine; of a spot, by
-    // its intensity. Of a point or spot outside the scene, where that is less, towards the sphere
-    // around the scene, and with the flux of that cone. Of what is infinitely far, direction first,
-    // by radiance, then a point of the scene's box as seen from there. False when it carries
-    // nothing.
+    // A photon: light by power, point uniform over its area or by what its texture shows, direction
+    // by the cosine; of a spot, by its intensity. Of a point or spot outside the scene, where that
+    // is less, towards the sphere around the scene, and with the flux of that cone. Of what is
+    // infinitely far, direction first, by radiance, then a point of the scene's box as seen from
+    // there. False when it carries nothing.
     bool emit(float uLight, Vec2f uPoint, Vec2f uDirection, EmittedPhoton& photon) const;
 
     // The cone that photons of a point light or spot fill: all directions in which it shines, or
@@ -122,8 +122,8 @@ class LightSampler {
 
     // Of a far light. False when it carries nothing.
     bool emitParallel(const Light& light, Vec2f u, ParallelLight& parallel) const;
-    // Where a photon of it starts that goes through a point of the scene: outside the scene.
-    Vec3f startOfParallel(const Vec3d& through, const Vec3f& direction) const;
+    // A photon of it that goes through a point of the scene: it starts outside, or near the core.
+    Ray parallelRay(const Vec3d& through, const Vec3f& direction) const;
 
     // Radiance that leaves a point of the scene along the unit direction: emission of its front.
     Rgb emittedRadiance(const Surface& surface, const Vec3f& direction) const;
@@ -135,10 +135,6 @@ class LightSampler {
 
   private:
     static Receiver receiverAt(const Surface& surface, const Vec3f& side);
-    // The random numbers have steps of 2^-24, which ten thousand lights would use up: the steps'
-    // own fractions are made of both numbers' bits.
-    static double refined(Vec2f u);
-    static float toBelowOne(double x);
 
     // Of up to kMost lights.
     template <std::size_t kMost>
@@ -158,6 +154,11 @@ class LightSampler {
                         float area, LightSample& sample) const;
     bool sampleSphere(const Surface& surface, const Light& light, float probability, Vec2f u,
                       LightSample& sample) const;
+    bool sampleTexturedSphere(const Surface& surface, const Light& light, float probability,
+                              Vec2f u, LightSample& sample) const;
+    // Of all of a textured sphere's strategies; without the light's probability.
+    float pdfOfTexturedSphere(const Surface& from, const Vec3f& direction,
+                              const Surface& point) const;
     bool samplePoint(const Surface& surface, const Light& light, float probability,
                      LightSample& sample) const;
 

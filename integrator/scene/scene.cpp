@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/scene/scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -18,9 +20,46 @@ constexpr std::size_t kTrianglesBetweenLooks = 1 << 16;
 
 Scene::~Scene() = default;
 
-std::array<double, 6> Scene::bounds() const {
-    const Vec3d lo = m_centre - m_halfSize, hi = m_centre + m_halfSize;
-    return {lo.x, lo.y, lo.z, hi.x, hi.y, hi.z};
+void Scene::place(const Box3d& whole, const std::optional<Box3d>& core) {
+    m_centre = whole.middle();
+    m_halfSize = whole.size() * 0.5;
+    Vec3d lo = m_centre - m_halfSize, hi = m_centre + m_halfSize;
+    if (core) {
+        lo = whole.lo;
+        hi = whole.hi;
+        m_centre = core->middle();
+        for (int axis = 0; axis < 3; ++axis)
+            m_halfSize[axis] = std::max(m_centre[axis] - lo[axis], hi[axis] - m_centre[axis]);
+    }
+    m_bounds = {lo.x, lo.y, lo.z, hi.x, hi.y, hi.z};
+    m_radius = length(m_halfSize);
+    m_coreRadius = core ? 0.5 * length(core->size()) : m_radius;
+    if (!core) return;
+    constexpr double kRounding = 0x1p-24;
+    const double farthest = maxAbsComponent(m_halfSize);
+    if (kRounding * farthest <= maxAbsComponent(core->size())) return;
+    m_notices.push_back(
+        {NoticeCode::kDegenerateGeometry,
+         fmt::format(
+             "the scene reaches {:.3g} units from where most of it lies, {:.3g} units wide: "
+             "the former is placed to {:.1g} units only, the latter to {:.1g}",
+             farthest, maxAbsComponent(core->size()), kRounding * farthest,
+             kRounding * 0.5 * maxAbsComponent(core->size()))});
+}
+
+Ray Scene::rayFromAfar(const Vec3d& origin, const Vec3d& direction) const {
+    const Ray ray{Vec3f(origin), Vec3f(direction)};
+    // Of the core's sphere: it holds what is rounded no more than the core is.
+    constexpr double kNearRadii = 2.0;
+    const double t =
+        intersectSphere(origin, direction, 1e300, Vec3d(0.0), kNearRadii * m_coreRadius);
+    if (!(t > 0) ||
+        !(lengthSquared(origin) > 4 * kNearRadii * kNearRadii * m_coreRadius * m_coreRadius))
+        return ray;
+    const Ray near{Vec3f(origin + direction * t), ray.direction};
+    // What is near the origin itself has been left.
+    const auto way = static_cast<float>(t * (1 - 1e-6));
+    return occluded({near.origin, -near.direction, way}) ? ray : near;
 }
 
 Rgb Scene::farRadiance(const Light& light, const Vec3f& direction) const {
@@ -95,6 +134,7 @@ std::uint64_t Scene::memoryBytes() const {
                      record.mesh->triangles.size() * (sizeof(TriangleMesh::Corners) + 8);
     }
     if (m_environment) bytes += m_environment->memoryBytes();
+    for (const LampTexture& texture : m_lampTextures) bytes += texture.memoryBytes();
     if (m_coincident) bytes += m_coincident->memoryBytes();
     return bytes + m_lights.size() * (sizeof(Light) + sizeof(LampTriangle));
 }

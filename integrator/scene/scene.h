@@ -2,17 +2,23 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "integrator/rays/ray_tracer.h"
 #include "integrator/scene/environment.h"
+#include "integrator/scene/lamp_texture.h"
 #include "integrator/scene/lamp_triangle.h"
 #include "integrator/scene/light.h"
+#include "integrator/scene/scene_core.h"
 #include "integrator/scene/scene_description.h"
 #include "integrator/scene/surface.h"
 #include "integrator/values/notice.h"
@@ -20,8 +26,9 @@
 namespace pm {
 
 // A scene as it is rendered: immutable, moved to its own centre, ray-tracing structure built. Its
-// own coordinates are world coordinates minus centre(), in float. Threads: all const functions from
-// any, at once.
+// own coordinates are world coordinates minus centre(), in float. The centre is the middle of all
+// shapes, or of its core, where a few lie far away from that (see findCore). Threads: all const
+// functions from any, at once.
 class Scene {
   public:
     // isa: see RayTracer. Builds in parallel in the calling TBB arena. Throws Error (kInvalidScene,
@@ -33,11 +40,30 @@ class Scene {
     bool intersect(const Ray& ray, Surface& surface) const;
     bool occluded(const Ray& ray) const { return m_tracer.occluded(ray); }
 
+    // The same as a ray that starts at `origin`, any distance away, along the unit direction; but
+    // it starts where it comes near the core, where nothing is in between: a float far away has no
+    // digits left for what it meets there.
+    Ray rayFromAfar(const Vec3d& origin, const Vec3d& direction) const;
+
     // World space: min x, y, z, max x, y, z.
-    std::array<double, 6> bounds() const;
+    const std::array<double, 6>& bounds() const { return m_bounds; }
     const Vec3d& centre() const { return m_centre; }
     // Radius of a sphere around the origin of the scene's own coordinates that holds all shapes.
     double radius() const { return m_radius; }
+    // The same without what lies far away from the core; radius() without a core.
+    double coreRadius() const { return m_coreRadius; }
+    bool hasCore() const { return m_coreRadius < m_radius; }
+    // For PhotonMap: infinity without a core.
+    float coreRadiusIfAny() const {
+        return hasCore() ? static_cast<float>(m_coreRadius)
+                         : std::numeric_limits<float>::infinity();
+    }
+    // What the roundings of a place and its surroundings go by: radius(), or with a core how far
+    // from the origin they may be.
+    float roundingRadius(const Vec3f& position) const {
+        if (!hasCore()) return static_cast<float>(m_radius);
+        return std::max(static_cast<float>(m_coreRadius), std::sqrt(lengthSquared(position)));
+    }
     // Half the size of the box around the origin that holds all shapes, along the axes.
     const Vec3d& halfSize() const { return m_halfSize; }
 
@@ -72,15 +98,14 @@ class Scene {
     bool seesFarLight(const Vec3f& direction) const;
 
     // How far off its surface what was stored as a point of it has to be for no ray to meet that
-    // surface there: no less than surfaceOffset of any. Scene units.
-    float liftOfPoints() const {
+    // surface there: no less than surfaceOffset of any near it. Scene units.
+    float liftOfPoints(const Vec3f& position) const {
         constexpr float kRoundings = 36.0f * 0x1p-24f;
-        return kRoundings * static_cast<float>(m_radius);
+        return kRoundings * roundingRadius(position);
     }
-
     // The height for pointUnderRay and rayOnwards, scene units: half of it is still off the
     // surface.
-    float liftOfRays() const { return 2.0f * liftOfPoints(); }
+    float liftOfRays(const Vec3f& position) const { return 2.0f * liftOfPoints(position); }
 
     // True when all that reflects or lets light through are triangles in one plane (to rounding),
     // so that no light goes from one surface by way of another.
@@ -92,6 +117,17 @@ class Scene {
 
     // A point on an area light's primitive, uniform over its area, as a Surface.
     Surface pointOnLight(const Light& light, Vec2f u) const;
+    // The same, chosen by what the light's texture shows; density: times the light's area.
+    Surface pointOnLight(const Light& light, Vec2f u, float& density) const;
+    // That density at any point of the light; 1 of a light that shines evenly.
+    float lampDensity(const Light& light, const Surface& point) const;
+    // Null of a light that shines evenly.
+    const LampTexture* lampTexture(const Light& light) const {
+        return light.texture < 0 ? nullptr
+                                 : &m_lampTextures[static_cast<std::size_t>(light.texture)];
+    }
+    // Radiance of a material's front, W m^-2 sr^-1, >= 0.
+    Rgb emission(std::uint32_t material, Vec2f uv) const;
     // The point of a sphere shape that lies in a direction (of any length) from its centre.
     Surface pointOnSphere(std::uint32_t shape, const Vec3d& direction) const;
     // Of the light of that number; says no of one that is no triangle, has a texture, or is
@@ -120,22 +156,33 @@ class Scene {
         Vec3d vertex, e1, e2;
     };
     struct Facet;
+    // Sets centre and bounds.
+    void place(const Box3d& whole, const std::optional<Box3d>& core);
     bool findFlat(const CancelCheck& cancel) const;
     void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, const Corner& corner,
                            double b1, double b2, Surface& surface) const;
+    // Of a texture of lights; gives notice the first time.
+    bool findBadTexels(std::int32_t texture, const CancelCheck& cancel);
+    LampTexture lookAtLamp(const Light& light, std::size_t mostLooks,
+                           const CancelCheck& cancel) const;
+    // For the powers of textured lamps, and where on them light is.
+    void lookAtTextures(const CancelCheck& cancel);
     void surfaceOnSphere(const ShapeRecord& shape, const Vec3d& direction, Surface& surface) const;
 
     SceneDescription m_description;
     std::vector<ShapeRecord> m_shapes;
     std::vector<Light> m_lights;
     std::vector<LampTriangle> m_lampTriangles;  // of the lights
+    std::vector<LampTexture> m_lampTextures;
+    std::vector<bool> m_hasBadTexels;  // of the textures of lights, by their numbers
     std::size_t m_nearLightCount = 0;
     std::vector<Beam> m_beams;
     std::unique_ptr<const Environment> m_environment;
     std::vector<Notice> m_notices;
     Vec3d m_centre;
     Vec3d m_halfSize;
-    double m_radius = 0;
+    std::array<double, 6> m_bounds{};
+    double m_radius = 0, m_coreRadius = 0;
     std::uint64_t m_triangleCount = 0;
     double m_triangleArea = 0;  // of all
     bool m_isFlat = false, m_hasSheets = false;

@@ -7,10 +7,12 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "integrator/scene/coincident_faces.h"
 #include "integrator/scene/huge_triangles.h"
 #include "integrator/scene/scene.h"
+#include "integrator/scene/scene_core.h"
 #include "integrator/scene/shape_record.h"
 #include "integrator/values/error.h"
 
@@ -83,6 +85,7 @@ class Scene::Builder {
         m_scene.m_hasSheets = findSheets();
         addToTracer();
         for (std::uint32_t i = 0; i < m_scene.m_shapes.size(); ++i) findLights(i);
+        m_scene.lookAtTextures(m_cancel);
         m_scene.m_coincident = CoincidentFaces::find(m_scene, m_scene.m_notices, m_cancel);
         addPointLights(m_scene.m_description, m_scene.m_centre, m_scene.m_lights, m_scene.m_beams);
         m_scene.m_nearLightCount = m_scene.m_lights.size();
@@ -147,39 +150,48 @@ class Scene::Builder {
                                     instance.name, instance.materials.size(), slots));
     }
 
-    void findBounds() {
-        constexpr double kInfinity = std::numeric_limits<double>::infinity();
-        Vec3d lo(kInfinity), hi(-kInfinity);
-        const auto grow = [&](const Vec3d& p, double r) {
-            for (int axis = 0; axis < 3; ++axis) {
-                lo[axis] = std::min(lo[axis], p[axis] - r);
-                hi[axis] = std::max(hi[axis], p[axis] + r);
-            }
-        };
+    // With the box of each triangle and sphere, world.
+    template <typename Visit>
+    void forEachBox(const Visit& visit) {
         for (const InstanceDescription& instance : m_scene.m_description.instances) {
+            const Transform& transform = instance.transform;
             if (const auto* mesh =
                     std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape)) {
                 const TriangleMesh& m = **mesh;
                 for (const auto& triangle : m.triangles) {
                     goOn();
-                    for (const std::uint32_t v : triangle)
-                        grow(transformPoint(instance.transform, Vec3d(m.positions[v])), 0.0);
+                    Box3d box;
+                    for (const std::uint32_t v : triangle) {
+                        const Vec3d p = transformPoint(transform, Vec3d(m.positions[v]));
+                        box.grow({p, p});
+                    }
+                    visit(box);
                 }
             } else {
                 const auto& sphere = std::get<SphereShape>(instance.shape);
-                grow(transformPoint(instance.transform, sphere.centre),
-                     sphere.radius * uniformScale(instance.transform));
+                const Vec3d centre = transformPoint(transform, sphere.centre);
+                const Vec3d r(sphere.radius * uniformScale(transform));
+                visit(Box3d{centre - r, centre + r});
             }
         }
-        if (!(lo.x <= hi.x)) throw Error(Status::kInvalidScene, "the scene has no geometry");
+    }
+
+    void findBounds() {
+        Box3d whole;
+        forEachBox([&](const Box3d& box) { whole.grow(box); });
+        if (whole.empty()) throw Error(Status::kInvalidScene, "the scene has no geometry");
         const double largest = RayTracer::kLargestCoordinate;
-        if (!isFinite(lo) || !isFinite(hi) || maxAbsComponent(hi - lo) > largest)
+        if (!isFinite(whole.lo) || !isFinite(whole.hi) || maxAbsComponent(whole.size()) > largest)
             throw Error(Status::kInvalidScene,
                         fmt::format("the scene is {} units wide; at most {} is allowed",
-                                    maxAbsComponent(hi - lo), largest));
-        m_scene.m_centre = (lo + hi) * 0.5;
-        m_scene.m_halfSize = (hi - lo) * 0.5;
-        m_scene.m_radius = length(m_scene.m_halfSize);
+                                    maxAbsComponent(whole.size()), largest));
+        std::optional<Vec3d> eye;
+        if (const auto& camera = m_scene.m_description.camera)
+            eye = Vec3d{camera->cameraToWorld[3], camera->cameraToWorld[7],
+                        camera->cameraToWorld[11]};
+        const auto core = findCore(
+            whole, [&](const auto& visit) { forEachBox(visit); }, eye);
+        m_scene.place(whole, core);
     }
 
     void addShape(const InstanceDescription& instance) {
@@ -336,8 +348,10 @@ class Scene::Builder {
     void addEnvironment() {
         const auto& description = m_scene.m_description.environment;
         if (!description || isBlack(description->radiance)) return;
+        const bool hasBadTexels = description->texture != kNoTexture &&
+                                  m_scene.findBadTexels(description->texture, m_cancel);
         auto environment = std::make_unique<const Environment>(
-            *description, m_scene.m_description.textures.get(), m_cancel);
+            *description, m_scene.m_description.textures.get(), m_cancel, hasBadTexels);
         if (!(environment->integral() > 0)) return;
         Light light;
         light.kind = Light::Kind::kEnvironment;

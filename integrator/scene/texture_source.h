@@ -4,7 +4,10 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
+#include <string>
 
+#include "integrator/values/cancel_check.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
@@ -17,6 +20,13 @@ struct Texel {
     float r{}, g{}, b{}, a{1.0f};
 };
 
+// Texels of which no light can be: with a colour channel below 0, or one that is infinite or NaN.
+struct BadTexels {
+    std::uint64_t negative = 0, notFinite = 0;
+
+    bool any() const { return negative + notFinite > 0; }
+};
+
 // Where texture look-ups come from; the host side of the plugin implements it, so that the
 // integrator knows no picture files. Texels are in the rendering space, or data.
 class TextureSource {
@@ -27,6 +37,23 @@ class TextureSource {
     // the finest level). Threads: any, at once; the value depends on the arguments only. Errors: a
     // failed look-up returns 0 and counts; it never throws.
     virtual Texel lookUp(std::int32_t index, Vec2f uv, float width) const = 0;
+
+    // The finest level at uv, of a light: texels below 0, infinite ones and NaN count as 0 before
+    // anything is interpolated. Threads and errors as above.
+    virtual Texel lookUpOfLight(std::int32_t index, Vec2f uv) const {
+        Texel texel = lookUp(index, uv, 0.0f);
+        for (float* const channel : {&texel.r, &texel.g, &texel.b})
+            if (!(*channel >= 0.0f && *channel <= std::numeric_limits<float>::max()))
+                *channel = 0.0f;
+        return texel;
+    }
+
+    // How many texels of the finest level such a light has. Throws Error(kCancelled) soon after
+    // cancel is set.
+    virtual BadTexels badTexels(std::int32_t, const CancelCheck&) const { return {}; }
+
+    // What a user knows texture `index` by.
+    virtual std::string name(std::int32_t index) const { return std::to_string(index); }
 
     // Texels across and down of texture `index` over the unit square of uv, at the finest level.
     virtual std::array<std::uint32_t, 2> texels(std::int32_t index) const = 0;

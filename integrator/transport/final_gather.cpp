@@ -24,8 +24,8 @@ Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray
         if (bsdf.has(Lobe::kDiffuse)) {
             result.isWaiting = true;
             result.normal = bsdf.facingGeometricNormal();
-            result.position =
-                pointUnderRay(surface.position, path.ray, result.normal, scene.liftOfRays());
+            result.position = pointUnderRay(surface.position, path.ray, result.normal,
+                                            scene.liftOfRays(surface.position));
             result.reflected = path.throughput * bsdf.diffuse() * kInvPi;
             result.density = 0.0f;
             if (ends.caustics && result.rays == 1) {

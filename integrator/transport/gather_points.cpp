@@ -67,7 +67,6 @@ GatherPoints::GatherPoints(const Scene& scene, const Camera& camera, const Irrad
       m_request(request),
       m_radius(kScreenRadius * request.spacing * request.radiusFactor),
       m_tiles(tilesOf(request.width, request.height, request.spacing, request.radiusFactor)),
-      m_planeTolerance(8.0f * 0x1p-24f * static_cast<float>(scene.radius())),
       m_slots(std::make_unique<TileSlot[]>(m_tiles.count())) {}
 
 GatherPoints::~GatherPoints() {
@@ -134,8 +133,8 @@ void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
         const bool chosen = stop.bsdf.has(Lobe::kDiffuse) && stop.sampler.next1D() < 0.5f;
         if (stop.next != Lobe::kDiffuse && !chosen) return true;
         const Vec3f& normal = stop.bsdf.facingGeometricNormal();
-        point.position =
-            pointUnderRay(stop.surface.position, stop.ray, normal, m_scene.liftOfRays());
+        point.position = pointUnderRay(stop.surface.position, stop.ray, normal,
+                                       m_scene.liftOfRays(stop.surface.position));
         point.normal = stop.bsdf.facingShadingNormal();
         tile.origins[cell.inTile()] = {normal, stop.surface.offset};
         return false;
@@ -147,6 +146,7 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
                                          const Sampler& shared, std::size_t part,
                                          std::uint64_t& rays) const {
     const Vec3f& geometricNormal = origin.geometricNormal;
+    const float least = planeTolerance(point.position);
     const Frame frame(point.normal);
     const auto directions = directionsAt(point.position, frame);
     std::array<double, 6> sum{};
@@ -164,10 +164,10 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
         const float weight = 1 / density;
         const Vec3f direction = normalize(frame.toWorld(sampleCosineHemisphere(u)));
         if (dot(direction, geometricNormal) <= 0.0f) continue;
-        Gathered found = followGather(
-            m_scene, ends,
-            rayOnwards(point.position, geometricNormal, direction, m_scene.liftOfRays()),
-            dot(direction, point.normal), sampler);
+        Gathered found = followGather(m_scene, ends,
+                                      rayOnwards(point.position, geometricNormal, direction,
+                                                 m_scene.liftOfRays(point.position)),
+                                      dot(direction, point.normal), sampler);
         found.scale(weight);
         rays += found.rays;
         if (!found.hitAny) {
@@ -177,7 +177,7 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
         if (found.first.light != kNoLight && dot(direction, found.first.geometricNormal) < 0)
             lamps += weight;
         const float distance = length(found.first.position - point.position);
-        clearance = std::min(clearance, std::max(distance, m_planeTolerance));
+        clearance = std::min(clearance, std::max(distance, least));
         addLast();
         last = found;
     }
@@ -240,8 +240,13 @@ float GatherPoints::reachOfClearance() const {
     return kReach * m_request.radiusFactor;
 }
 
+float GatherPoints::planeTolerance(const Vec3f& position) const {
+    return 8.0f * 0x1p-24f * m_scene.roundingRadius(position);
+}
+
 Surroundings GatherPoints::surroundingsOf(const Place& place) const {
-    return {m_scene, place.position, place.geometricNormal, place.offset, m_planeTolerance};
+    return {m_scene, place.position, place.geometricNormal, place.offset,
+            planeTolerance(place.position)};
 }
 
 float GatherPoints::refocusedRadius(const Vec3f& position, const Vec3f& normal) const {
@@ -295,6 +300,7 @@ std::size_t GatherPoints::findNear(const Place& place, std::array<Near, kMostNea
     const std::int32_t y1 =
         std::min(m_tiles.rows() - 1, cellOf(place.screen.y + m_radius, m_tiles.rows()));
     const float inverse = 1.0f / (m_radius * m_radius);
+    const float tolerance = planeTolerance(place.position);
     std::size_t count = 0;
     Tile* tile = nullptr;
     std::size_t slot = 0;
@@ -313,8 +319,7 @@ std::size_t GatherPoints::findNear(const Place& place, std::array<Near, kMostNea
             const Vec3f away = point.position - place.position;
             const float height = dot(away, place.geometricNormal);
             const float distanceSquared = lengthSquared(away);
-            if (height * height >
-                kFlatness * kFlatness * distanceSquared + m_planeTolerance * m_planeTolerance)
+            if (height * height > kFlatness * kFlatness * distanceSquared + tolerance * tolerance)
                 continue;
             if (count < kMostNear) near[count++] = {tile, cell, screen, distanceSquared};
         }
@@ -347,8 +352,9 @@ float GatherPoints::clearanceAt(const Place& place, std::span<const Near> near) 
 bool GatherPoints::isHidden(const Place& place, const Near& point, float clearance) const {
     if (point.distanceSquared <= kSurelySeen * kSurelySeen * clearance * clearance) return false;
     const std::size_t at = point.cell.inTile();
-    const float lift = std::min(kLift * std::sqrt(point.distanceSquared) + m_planeTolerance,
-                                kLiftOfHeadroom * point.kept().headroom());
+    const float lift =
+        std::min(kLift * std::sqrt(point.distanceSquared) + planeTolerance(place.position),
+                 kLiftOfHeadroom * point.kept().headroom());
     const Vec3f apex =
         point.tile->points[at].position + point.tile->origins[at].geometricNormal * lift;
     return !isSeenFrom(m_scene, apex, place.position, place.geometricNormal);

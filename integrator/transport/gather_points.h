@@ -187,6 +187,8 @@ class GatherPoints {
     std::size_t sequenceOf(const Cell& cell) const;
     Rgb sampleCaustics(const Point& point, const Origin& origin, const Cell& cell) const;
     Value compute(const Tile& tile, const Cell& cell, std::uint64_t& rays) const;
+    // What rounding may lift a point off its plane, scene units.
+    float planeTolerance(const Vec3f& position) const;
 
     const Scene& m_scene;
     const Camera& m_camera;
@@ -194,7 +196,6 @@ class GatherPoints {
     Request m_request;
     float m_radius;  // of the mean, pixels
     PointTiles m_tiles;
-    float m_planeTolerance;  // scene units; what rounding may lift a point off its plane
     std::unique_ptr<TileSlot[]> m_slots;
     // Written with every point: not in a cache line with what every look-up reads.
     static constexpr std::size_t kCacheLine = 64;

@@ -133,8 +133,9 @@ void PhotonIntegrator::follow(Branch& branch, bool first, const Tree& tree) cons
         if (bsdf.isBlackBody()) return;
         // Where photons are looked up, and rays leave for lamps and light that was reflected.
         if (bsdf.has(Lobe::kDiffuse))
-            surface.position = pointUnderRay(surface.position, path.ray,
-                                             bsdf.facingGeometricNormal(), m_scene.liftOfRays());
+            surface.position =
+                pointUnderRay(surface.position, path.ray, bsdf.facingGeometricNormal(),
+                              m_scene.liftOfRays(surface.position));
         const StillToFind still = addReflected(surface, bsdf, branch, tree);
         if (!followLobes(surface, bsdf, still, branch, tree)) return;
     }
@@ -255,7 +256,7 @@ void PhotonIntegrator::followDiffuse(const Surface& surface, const Bsdf& bsdf, c
         const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle,
                                branch.lampSamples};
         const Ray ray = rayOnwards(surface.position, bsdf.facingGeometricNormal(), sample.direction,
-                                   m_scene.liftOfRays());
+                                   m_scene.liftOfRays(surface.position));
         gatherAlong(ray, last, still, share * sample.weight / density, rays,
                     dot(sample.direction, bsdf.facingShadingNormal()), part, tree.result);
     }

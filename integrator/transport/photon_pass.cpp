@@ -143,7 +143,8 @@ BigVector<Photon> PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
         maps.lamps = std::make_unique<VirtualLamps>(m_scene, maps.caustic->photons(),
                                                     radius * factor, patchesOfSites(radius), factor,
                                                     combineBits(m_settings.seed, maps.pass), check);
-        maps.refocusedPhotons = std::make_unique<PhotonMap>(refocusedOf(traced.descended), check);
+        maps.refocusedPhotons = std::make_unique<PhotonMap>(refocusedOf(traced.descended), check,
+                                                            m_scene.coreRadiusIfAny());
         maps.refocused = std::make_unique<SurfaceEstimate>(m_scene, *maps.refocusedPhotons,
                                                            m_refocusedRadius->typical() * factor);
         noteBuilding(maps, maps.refocusedPhotons->size());
@@ -167,7 +168,8 @@ void PhotonPass::buildIndirect(PassMaps& maps, BigVector<Photon> descended, Cont
     const float factor = radiusFactor(maps.pass);
     if (!descended.empty()) traced.photons = join(traced.photons, descended);
     BigVector<Photon>().swap(descended);
-    maps.global = std::make_unique<PhotonMap>(traced.photons, CancelCheck(control.cancelled));
+    maps.global = std::make_unique<PhotonMap>(traced.photons, CancelCheck(control.cancelled),
+                                              m_scene.coreRadiusIfAny());
     noteBuilding(maps, maps.global->size());
     maps.sites = std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor,
                                                    patchesOfSites(m_globalRadius), factor, m_focus);

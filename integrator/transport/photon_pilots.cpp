@@ -109,19 +109,19 @@ BigVector<Photon> PhotonPass::findCausticRadii(float fallback, Control& control)
 void PhotonPass::findGlobalRadius(std::span<const Photon> pilot, float fallback,
                                   const CancelCheck& check) {
     if (m_focus.isEverywhere()) {
-        const PhotonMap map(pilot, check);
+        const PhotonMap map(pilot, check, m_scene.coreRadiusIfAny());
         m_globalRadius = PilotRadius::typicalOf(map, m_settings.estimatePhotons, fallback);
         chooseGatherRays(map, check);
     } else {
         m_globalRadius = PilotRadius::typicalOf(PhotonMap(inFocus(pilot, m_focus), check),
                                                 m_settings.estimatePhotons, fallbackIn(m_focus));
-        chooseGatherRays(PhotonMap(pilot, check), check);
+        chooseGatherRays(PhotonMap(pilot, check, m_scene.coreRadiusIfAny()), check);
     }
 }
 
 void PhotonPass::findRadii(Control& control) {
     // Where a pilot finds next to nothing, estimates reach a hundredth of the scene.
-    const auto fallback = static_cast<float>(0.01 * m_scene.radius());
+    const auto fallback = static_cast<float>(0.01 * m_scene.coreRadius());
     const CancelCheck check(control.cancelled);
     BigVector<Photon> global;
     if (m_plan.globalMap) {

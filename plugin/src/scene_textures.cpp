@@ -29,6 +29,24 @@ Texel SceneTextures::lookUp(std::int32_t index, Vec2f uv, float width) const {
     return texel;
 }
 
+Texel SceneTextures::lookUpOfLight(std::int32_t index, Vec2f uv) const {
+    Texel texel;
+    const TextureObject& texture = *m_textures[static_cast<std::size_t>(index)];
+    if (!texture.context()->textures().lookUpOfLight(texture.picture(), uv, texel))
+        m_failures.fetch_add(1, std::memory_order_relaxed);
+    return texel;
+}
+
+BadTexels SceneTextures::badTexels(std::int32_t index, const CancelCheck& cancel) const {
+    const TextureObject& texture = *m_textures[static_cast<std::size_t>(index)];
+    return texture.context()->textures().badTexels(texture.picture(), cancel);
+}
+
+std::string SceneTextures::name(std::int32_t index) const {
+    const std::string& file = m_textures[static_cast<std::size_t>(index)]->picture().fileName;
+    return file.substr(file.find_last_of('/') + 1);
+}
+
 std::array<std::uint32_t, 2> SceneTextures::texels(std::int32_t index) const {
     const TexturePicture& picture = m_textures[static_cast<std::size_t>(index)]->picture();
     const auto over = [](std::uint32_t texels, float scale) {

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "integrator/scene/texture_source.h"
@@ -28,6 +29,9 @@ class SceneTextures final : public TextureSource {
     std::vector<const TexturePicture*> pictures() const;
 
     Texel lookUp(std::int32_t index, Vec2f uv, float width) const override;
+    Texel lookUpOfLight(std::int32_t index, Vec2f uv) const override;
+    BadTexels badTexels(std::int32_t index, const CancelCheck& cancel) const override;
+    std::string name(std::int32_t index) const override;
     std::array<std::uint32_t, 2> texels(std::int32_t index) const override;
     std::uint64_t failureCount() const override;
 

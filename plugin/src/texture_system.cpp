@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include "plugin/src/call_error.h"
@@ -64,6 +65,24 @@ Texel toTexel(const std::array<float, 4>& values, int channelCount) {
         default:
             return {values[0], values[1], values[2], values[3]};
     }
+}
+
+// Origin upper left, as pictures are stored.
+Vec2f placeIn(const TexturePicture& picture, Vec2f uv) {
+    return {uv.x * picture.uvScale.x + picture.uvOffset.x,
+            1.0f - (uv.y * picture.uvScale.y + picture.uvOffset.y)};
+}
+
+Texel withGain(const TexturePicture& picture, Texel texel) {
+    texel.r = picture.base + picture.gain * texel.r;
+    texel.g = picture.base + picture.gain * texel.g;
+    texel.b = picture.base + picture.gain * texel.b;
+    return texel;
+}
+
+// Not below 0, infinite or NaN.
+bool isLight(float value) {
+    return value >= 0.0f && value <= std::numeric_limits<float>::max();
 }
 
 bool isFinite(const Texel& texel) {
@@ -155,8 +174,7 @@ TexturePicture TextureSystem::open(const PmrTextureDesc& desc) {
 bool TextureSystem::lookUp(const TexturePicture& picture, Vec2f uv, float width,
                            Texel& texel) const {
     texel = {0.0f, 0.0f, 0.0f, 0.0f};
-    const float s = uv.x * picture.uvScale.x + picture.uvOffset.x;
-    const float t = 1.0f - (uv.y * picture.uvScale.y + picture.uvOffset.y);
+    const auto [s, t] = placeIn(picture, uv);
     if (!std::isfinite(s) || !std::isfinite(t) || !std::isfinite(width)) return false;
     OIIO::TextureOpt options;
     options.swrap = picture.wrapS;
@@ -173,13 +191,73 @@ bool TextureSystem::lookUp(const TexturePicture& picture, Vec2f uv, float width,
         m_system->geterror();  // or the texts pile up
         return false;
     }
-    Texel found = toTexel(values, channelCount);
-    found.r = picture.base + picture.gain * found.r;
-    found.g = picture.base + picture.gain * found.g;
-    found.b = picture.base + picture.gain * found.b;
+    const Texel found = withGain(picture, toTexel(values, channelCount));
     if (!isFinite(found)) return false;
     texel = found;
     return true;
+}
+
+bool TextureSystem::lookUpOfLight(const TexturePicture& picture, Vec2f uv, Texel& texel) const {
+    texel = {0.0f, 0.0f, 0.0f, 0.0f};
+    const auto [s, t] = placeIn(picture, uv);
+    if (!std::isfinite(s) || !std::isfinite(t)) return false;
+    OIIO::TextureOpt options;
+    options.swrap = picture.wrapS;
+    options.twrap = picture.wrapT;
+    options.mipmode = OIIO::TextureOpt::MipModeNoMIP;
+    options.interpmode = OIIO::TextureOpt::InterpClosest;
+    const auto width = static_cast<float>(picture.width),
+               height = static_cast<float>(picture.height);
+    const float x = s * width - 0.5f, y = t * height - 0.5f;
+    const float x0 = std::floor(x), y0 = std::floor(y);
+    const int channelCount = std::min(picture.channelCount, 4);
+    for (const float j : {0.0f, 1.0f})
+        for (const float i : {0.0f, 1.0f}) {
+            std::array<float, 4> values{};
+            if (!m_system->texture(picture.handle, m_system->get_perthread_info(), options,
+                                   (x0 + i + 0.5f) / width, (y0 + j + 0.5f) / height, 0.0f, 0.0f,
+                                   0.0f, 0.0f, channelCount, values.data())) {
+                m_system->geterror();  // or the texts pile up
+                return false;
+            }
+            const Texel found = withGain(picture, toTexel(values, channelCount));
+            const float weight =
+                (i > 0 ? x - x0 : 1.0f - (x - x0)) * (j > 0 ? y - y0 : 1.0f - (y - y0));
+            texel.r += weight * (isLight(found.r) ? found.r : 0.0f);
+            texel.g += weight * (isLight(found.g) ? found.g : 0.0f);
+            texel.b += weight * (isLight(found.b) ? found.b : 0.0f);
+            texel.a += weight * (isLight(found.a) ? found.a : 0.0f);
+        }
+    return true;
+}
+
+BadTexels TextureSystem::badTexels(const TexturePicture& picture, const CancelCheck& cancel) const {
+    constexpr std::uint32_t kRows = kTilePixels;
+    const int channelCount = std::min(picture.channelCount, 4);
+    const auto channels = static_cast<std::size_t>(channelCount);
+    std::vector<float> texels(std::size_t{picture.width} * kRows * channels);
+    OIIO::TextureOpt options;
+    BadTexels bad;
+    for (std::uint32_t row = 0; row < picture.height; row += kRows) {
+        cancel.throwIfSet("looking at a light's texels");
+        const std::uint32_t rows = std::min(kRows, picture.height - row);
+        if (!m_system->get_texels(picture.handle, m_system->get_perthread_info(), options, 0, 0,
+                                  static_cast<int>(picture.width), static_cast<int>(row),
+                                  static_cast<int>(row + rows), 0, 1, 0, channelCount,
+                                  OIIO::TypeDesc::FLOAT, texels.data()))
+            throwUnreadable(picture.fileName, m_system->geterror());
+        const std::size_t count = std::size_t{picture.width} * rows;
+        for (std::size_t i = 0; i < count; ++i) {
+            std::array<float, 4> values{};
+            std::copy_n(&texels[i * channels], channels, values.begin());
+            const Texel texel = withGain(picture, toTexel(values, channelCount));
+            if (!std::isfinite(texel.r) || !std::isfinite(texel.g) || !std::isfinite(texel.b))
+                ++bad.notFinite;
+            else if (texel.r < 0.0f || texel.g < 0.0f || texel.b < 0.0f)
+                ++bad.negative;
+        }
+    }
+    return bad;
 }
 
 }  // namespace pm::plugin

@@ -57,6 +57,13 @@ class TextureSystem {
     // Returns false, and a texel of 0, when the look-up failed or gave no finite number.
     bool lookUp(const TexturePicture& picture, Vec2f uv, float width, Texel& texel) const;
 
+    // The same of a light, at the finest level: each texel without what is no light in it, then
+    // interpolated. See TextureSource.
+    bool lookUpOfLight(const TexturePicture& picture, Vec2f uv, Texel& texel) const;
+    // Looks at all texels of the finest level. Throws CallError(IO); Error(kCancelled) soon after
+    // cancel is set.
+    BadTexels badTexels(const TexturePicture& picture, const CancelCheck& cancel) const;
+
   private:
     OIIO::TextureSystem& system();
 

@@ -22,7 +22,8 @@ std::string writePicture() {
     return name;
 }
 
-// The middle pixels of the four quarters: top left, top right, bottom left, bottom right.
+// The middle pixels of the four quarters: top left, top right, bottom left, bottom right; and one
+// in the middle of the top row.
 std::vector<std::vector<float>> renderQuarters(PmrTextureDesc texture) {
     const BoxHost host;
     const std::string name = writePicture();
@@ -72,8 +73,9 @@ std::vector<std::vector<float>> renderQuarters(PmrTextureDesc texture) {
     EXPECT_EQ(PMR_OK, api().startRender(render)) << host.lastError();
     EXPECT_EQ(PMR_OK, api().waitRender(render, -1.0)) << host.lastError();
     std::vector<std::vector<float>> quarters;
-    for (const PmrRectangle corner : {PmrRectangle{2, 2, 3, 3}, PmrRectangle{29, 2, 30, 3},
-                                      PmrRectangle{2, 29, 3, 30}, PmrRectangle{29, 29, 30, 30}})
+    for (const PmrRectangle corner :
+         {PmrRectangle{2, 2, 3, 3}, PmrRectangle{29, 2, 30, 3}, PmrRectangle{2, 29, 3, 30},
+          PmrRectangle{29, 29, 30, 30}, PmrRectangle{16, 2, 17, 3}})
         quarters.push_back(readLayer(render, "emission", 3, corner));
     EXPECT_EQ(PMR_OK, api().destroyRender(render));
     EXPECT_EQ(PMR_OK, api().releaseScene(scene));
@@ -109,6 +111,18 @@ TEST(Textures, OffsetGainAndBase) {
     const auto quarters = renderQuarters(desc);
     expectColour(quarters[0], 0.5f, 1.5f, 0.5f);
     expectColour(quarters[2], 1.5f, 1.5f, 1.5f);
+}
+
+// Of a light, and before anything is interpolated: halfway from red to green there is some of both.
+TEST(Textures, TexelsBelowNothingShineNot) {
+    PmrTextureDesc desc = PMR_INIT(PmrTextureDesc);
+    desc.wrapS = desc.wrapT = PMR_WRAP_CLAMP;
+    desc.base = -0.5f;
+    const auto quarters = renderQuarters(desc);
+    expectColour(quarters[0], 1, 0, 0);
+    expectColour(quarters[1], 0, 1, 0);
+    expectColour(quarters[3], 1, 1, 1);
+    expectColour(quarters[4], 0.47f, 0.53f, 0);
 }
 
 TEST(Textures, WrapModes) {

@@ -33,6 +33,22 @@ TEST(Obj, keepsPolygonsAndRecentresThem) {
     EXPECT_EQ(quad.meshes[0].faceSizes, std::vector<std::uint32_t>{4});
 }
 
+// A quad of width 1, and other vertices far away: the former keeps its digits where the camera
+// stands there, or where it is more.
+TEST(Obj, whatIsFarAwayLeavesDigitsToTheRest) {
+    const std::string room = "v 0 0 0.1\nv 1 0 0.1\nv 1 1 0.1\nv 0 1 0.1\nf 1 2 3 4\n";
+    std::string stray = "v 1e8 0 0\nv 1e8 1 0\nv 1e8 0 1\nf -3 -2 -1\n";
+    EXPECT_EQ(read(room + stray).centre, (std::array<double, 3>{0.5, 0.5, 0.1}));
+    for (int i = 0; i < 3; ++i) stray += stray;
+    const std::array<double, 3> eye = {0.5, 0.5, 3};
+    const SceneData near = readObj(
+        room + stray, "scene.obj", ".", [](Warning, const std::string&) {}, {}, eye);
+    EXPECT_EQ(near.centre, (std::array<double, 3>{0.5, 0.5, 0.1}));
+    EXPECT_GT(read(room + stray).centre[0], 9e7);
+    // Less far than that it is as it was: the middle of all.
+    EXPECT_EQ(read(room + "v 100 0 0\nv 100 1 0\nv 100 0 1\nf 5 6 7\n").centre[0], 50.0);
+}
+
 TEST(Obj, boundsLeaveOutVerticesThatNoFaceHas) {
     const SceneData scene = read(kQuad + "v 1000 0 0\nf 1 2 3\n");
     EXPECT_EQ(scene.bounds.high[0], 1.0);

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Scene: lamps whose radiance comes from a texture, and points on them.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "integrator/sampling/pinned_math.h"
+#include "integrator/sampling/warps.h"
+#include "integrator/scene/scene.h"
+#include "integrator/scene/shape_record.h"
+
+namespace pm {
+
+namespace {
+
+// Looks at all lamps of a scene together, where that is enough for one at each.
+constexpr std::size_t kMostLooks = 1 << 24;
+// A lamp that shows nothing has this share of the power that its whole texture would give it at 1:
+// something may have been overlooked.
+constexpr double kLeastPower = 1e-6;
+// Sines of a sphere's latitude-longitude picture at its poles.
+constexpr float kLeastSine = 1e-4f;
+
+bool isTextured(const Scene& scene, const Light& light) {
+    return (light.kind == Light::Kind::kTriangle || light.kind == Light::Kind::kSphere) &&
+           scene.material(light.material).emissionTexture != kNoTexture;
+}
+
+// Of the circle on which a picture's row lies, the sphere's radius being 1.
+float sineOfRow(float v) {
+    return std::max(kLeastSine, std::abs(sinCosTurns(0.5f * v).sin));
+}
+
+}  // namespace
+
+Rgb Scene::emission(std::uint32_t index, Vec2f uv) const {
+    const MaterialDescription& material = this->material(index);
+    if (material.emissionTexture == kNoTexture) return material.emission;
+    const auto texture = static_cast<std::size_t>(material.emissionTexture);
+    const bool isBad = texture < m_hasBadTexels.size() && m_hasBadTexels[texture];
+    const Texel t = isBad ? textures()->lookUpOfLight(material.emissionTexture, uv)
+                          : textures()->lookUp(material.emissionTexture, uv, 0.0f);
+    return material.emission * Rgb(std::max(0.0f, t.r), std::max(0.0f, t.g), std::max(0.0f, t.b));
+}
+
+bool Scene::findBadTexels(std::int32_t texture, const CancelCheck& cancel) {
+    const auto index = static_cast<std::size_t>(texture);
+    if (index < m_hasBadTexels.size() && m_hasBadTexels[index]) return true;
+    const BadTexels bad = textures()->badTexels(texture, cancel);
+    if (!bad.any()) return false;
+    m_hasBadTexels.resize(std::max(m_hasBadTexels.size(), index + 1));
+    m_hasBadTexels[index] = true;
+    std::string whose = "the environment";
+    for (const MaterialDescription& one : m_description.materials)
+        if (one.emissionTexture == texture) whose = fmt::format("material '{}'", one.name);
+    m_notices.push_back(
+        {NoticeCode::kTexture,
+         fmt::format("the light of {} has {} texels below 0 and {} that are infinite or not "
+                     "numbers; they count as 0 ({})",
+                     whose, bad.negative, bad.notFinite, textures()->name(texture))});
+    return true;
+}
+
+LampTexture Scene::lookAtLamp(const Light& light, std::size_t mostLooks,
+                              const CancelCheck& cancel) const {
+    const ShapeRecord& record = m_shapes[light.shape];
+    const auto [across, down] = textures()->texels(material(light.material).emissionTexture);
+    LampTexture::Lamp lamp;
+    lamp.mostLooks = mostLooks;
+    if (!record.mesh) {
+        lamp.domain = LampTexture::Domain::kSquare;
+        lamp.texels = std::max(across, down);
+        lamp.look = [&, this](Vec2f uv) {
+            return LampTexture::Look{
+                channelMean(emission(light.material, uv)),
+                0.5 * std::numbers::pi * static_cast<double>(sinCosTurns(0.5f * uv.y).sin)};
+        };
+        return LampTexture(lamp, cancel);
+    }
+    const Corner corner = record.corner(light.primitive);
+    const auto uvAt = [&](Vec2f b) {
+        Surface surface;
+        surfaceOnTriangle(record, light.primitive, corner, static_cast<double>(b.x),
+                          static_cast<double>(b.y), surface);
+        return surface.uv;
+    };
+    const Vec2f uv[] = {uvAt({0, 0}), uvAt({1, 0}), uvAt({0, 1})};
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Vec2f a = uv[i], b = uv[(i + 1) % 3];
+        lamp.texels = std::max({lamp.texels, std::abs(static_cast<double>(b.x - a.x)) * across,
+                                std::abs(static_cast<double>(b.y - a.y)) * down});
+    }
+    lamp.look = [&, this](Vec2f b) {
+        return LampTexture::Look{channelMean(emission(light.material, uvAt(b)))};
+    };
+    return LampTexture(lamp, cancel);
+}
+
+void Scene::lookAtTextures(const CancelCheck& cancel) {
+    const auto count = static_cast<std::size_t>(std::ranges::count_if(
+        m_lights, [&](const Light& light) { return isTextured(*this, light); }));
+    if (count == 0) return;
+    std::set<std::int32_t> textures;
+    for (const Light& light : m_lights)
+        if (isTextured(*this, light)) textures.insert(material(light.material).emissionTexture);
+    for (const std::int32_t texture : textures) findBadTexels(texture, cancel);
+    for (Light& light : m_lights) {
+        if (!isTextured(*this, light)) continue;
+        LampTexture texture =
+            lookAtLamp(light, std::max<std::size_t>(1, kMostLooks / count), cancel);
+        const double whole = channelMean(material(light.material).emission);
+        light.powerMean = std::numbers::pi * static_cast<double>(light.area) *
+                          std::max(texture.mean(), kLeastPower * whole);
+        if (texture.isEven()) continue;
+        light.texture = static_cast<std::int32_t>(m_lampTextures.size());
+        m_lampTextures.push_back(std::move(texture));
+    }
+}
+
+Surface Scene::pointOnLight(const Light& light, Vec2f u, float& density) const {
+    density = 1.0f;
+    const LampTexture* const texture = lampTexture(light);
+    if (!texture) return pointOnLight(light, u);
+    const ShapeRecord& record = m_shapes[light.shape];
+    const Vec2f at = texture->sample(u, density);
+    Surface surface;
+    surface.shape = light.shape;
+    if (record.mesh) {
+        surfaceOnTriangle(record, light.primitive, record.corner(light.primitive),
+                          static_cast<double>(at.x), static_cast<double>(at.y), surface);
+        return surface;
+    }
+    // See SphereShape.
+    const SinCos turn = sinCosTurns(at.x - 0.5f), up = sinCosTurns(0.5f * at.y);
+    const Vec3d local(Vec3f{up.sin * turn.sin, -up.cos, up.sin * turn.cos});
+    surfaceOnSphere(record,
+                    record.sphereAxes[0] * local.x + record.sphereAxes[1] * local.y +
+                        record.sphereAxes[2] * local.z,
+                    surface);
+    density *= 2.0f * kInvPi / sineOfRow(surface.uv.y);
+    return surface;
+}
+
+float Scene::lampDensity(const Light& light, const Surface& point) const {
+    const LampTexture* const texture = lampTexture(light);
+    if (!texture) return 1.0f;
+    const ShapeRecord& record = m_shapes[light.shape];
+    if (!record.mesh) return texture->density(point.uv) * (2.0f * kInvPi / sineOfRow(point.uv.y));
+    // The barycentric coordinates of the point that is nearest to it on the plane.
+    const auto [vertex, e1, e2] = record.corner(light.primitive);
+    const Vec3d normal = cross(e1, e2), way = Vec3d(point.position) - vertex;
+    const double squared = lengthSquared(normal);
+    return texture->density({static_cast<float>(dot(cross(way, e2), normal) / squared),
+                             static_cast<float>(dot(cross(e1, way), normal) / squared)});
+}
+
+}  // namespace pm
