@@ -44,9 +44,12 @@ struct FrameError {
     double bias = 0;
     // Of `bias`, from squares of 32 x 32 pixels; nothing where there is one square only.
     std::optional<double> biasStandardError;
+    // relMSE at most of what is missing since light was cut off that nothing can end; whoever
+    // renders knows it.
+    double cut = 0;
 
-    double total() const { return noise + std::max(0.0, bias); }
-    double totalTrimmed() const { return noiseTrimmed + std::max(0.0, bias); }
+    double total() const { return noise + std::max(0.0, bias) + cut; }
+    double totalTrimmed() const { return noiseTrimmed + std::max(0.0, bias) + cut; }
 };
 
 // Of the pixels, those left out of the trimmed figure.

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "integrator/materials/bsdf.h"
+#include "integrator/sampling/event_count.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/values/cancel_check.h"
 
@@ -22,9 +23,6 @@ namespace {
 // Small enough for a pass's photons to be shared evenly among many threads: eight batches of 4096
 // left two of these at 1.83 times the speed of one.
 constexpr std::uint64_t kBatchSize = 512;
-// Light can be caught for ever between lossless surfaces; what is still on its way after this many
-// events is counted as lost.
-constexpr int kMaxEvents = 1000;
 // Glass reflects 4 % of most light, often to where it is all there is: there so little flux would
 // lie in a few bright photons. A caustic photon divides at the first of its events, and its smaller
 // part goes on at least so often. See docs/decisions.md.
@@ -36,6 +34,7 @@ struct Batch {
     PhotonBalance balance;
     std::vector<Photon> descended;
     std::vector<EmissionRecord> records;
+    std::uint64_t metCaster = 0;
 };
 
 class PhotonWalk {
@@ -45,6 +44,10 @@ class PhotonWalk {
           m_lights(lights),
           m_request(request),
           m_aim(request.aim && !request.aim->empty() ? request.aim : nullptr),
+          m_chains(request.oneInChains, request.count,
+                   isCaustic(request.kind) ? request.descent : 1.0f,
+                   combineBits(combineBits(request.seed, request.pass),
+                               static_cast<std::uint64_t>(request.kind))),
           m_scale(1.0f / static_cast<float>(request.count)) {}
 
     void trace(std::uint64_t index, Batch& batch) const {
@@ -57,7 +60,7 @@ class PhotonWalk {
         if (!emit(sampler, photon)) return;
         photon.flux *= m_scale;
         batch.balance.fluxEmitted += channelSum(photon.flux);
-        const double landed = walk(photon, sampler, batch);
+        const double landed = walk(photon, static_cast<std::uint32_t>(index), sampler, batch);
         if (m_aim && m_request.keepRecords)
             batch.records.push_back({photon.light, photon.caster,
                                      static_cast<float>(channelSum(photon.flux)),
@@ -94,8 +97,9 @@ class PhotonWalk {
     struct Part {
         Ray ray;
         Rgb flux;
+        LongChains::Chain chain{};
         Way way{};
-        int events = 0;
+        EventCount events{};
     };
     // Parts of one photon that wait to be followed.
     struct Waiting {
@@ -104,9 +108,10 @@ class PhotonWalk {
     };
 
     // Returns the flux that landed as asked for, W, summed over the channels.
-    double walk(const EmittedPhoton& photon, Sampler& sampler, Batch& batch) const {
+    double walk(const EmittedPhoton& photon, std::uint32_t index, Sampler& sampler,
+                Batch& batch) const {
         Waiting waiting;
-        waiting.parts[waiting.count++] = {photon.ray, photon.flux};
+        waiting.parts[waiting.count++] = {photon.ray, photon.flux, {.index = index}};
         double landed = 0;
         while (waiting.count > 0) {
             const Part part = waiting.parts[--waiting.count];
@@ -117,9 +122,9 @@ class PhotonWalk {
 
     double walk(Part part, Sampler& sampler, Waiting& waiting, Batch& batch) const {
         PhotonBalance& balance = batch.balance;
-        auto& [ray, flux, way, events] = part;
+        auto& [ray, flux, chain, way, events] = part;
         double landed = 0;
-        while (events < kMaxEvents) {
+        while (true) {
             Surface surface;
             ++balance.rays;
             if (!m_scene.intersect(ray, surface)) {
@@ -132,23 +137,29 @@ class PhotonWalk {
                 surface.position =
                     pointUnderRay(surface.position, ray, bsdf.facingGeometricNormal(),
                                   m_scene.liftOfRays(surface.position));
-                landed += land(way, surface, bsdf, flux, batch);
+                landed += land(part, surface, bsdf, sampler, batch);
             }
             BsdfSample sample;
-            const float uLobe = sampler.next1D();
+            float uLobe = sampler.next1D();
             const Vec2f u = sampler.next2D();
             if (divides(part, bsdf)) {
+                batch.metCaster += events.count() == 0;
                 if (divide(part, surface, bsdf, {uLobe, u.x}, waiting, balance)) continue;
                 return landed;
             }
+            batch.metCaster += events.count() == 0 && !bsdf.isDiffuseOnly();
+            const float survival = probabilityOfAll(bsdf);
+            const bool keeps =
+                LongChains::keeps(chain, static_cast<float>(channelSum(flux)) * survival);
+            if (keeps) uLobe *= survival;
             if ((bsdf.isDiffuseOnly() && endsAtDiffuse(way)) || !bsdf.sample(uLobe, u, sample) ||
                 (sample.lobe == Lobe::kDiffuse &&
                  (endsAtDiffuse(way) || !aimScattered(surface, bsdf, sampler, sample)))) {
                 balance.fluxAbsorbed += channelSum(flux);
                 return landed;
             }
-            Rgb scattered = flux * sample.weight;
-            if (!advance(way, sample.lobe, sampler, scattered)) {
+            Rgb scattered = flux * sample.weight * (keeps ? survival : 1.0f);
+            if (!advance(part, sample.lobe, sampler, scattered)) {
                 balance.fluxAbsorbed += channelSum(flux);
                 return landed;
             }
@@ -159,11 +170,25 @@ class PhotonWalk {
                       ? rayOnwards(surface.position, bsdf.facingGeometricNormal(), sample.direction,
                                    m_scene.liftOfRays(surface.position))
                       : rayFrom(surface, sample.direction);
-            ++events;
+            const float goesOn = events.add(survival);
+            if (goesOn < survival) {
+                balance.fluxAbsorbed += channelSum(flux);
+                if (!(sampler.next1D() * survival < goesOn)) return landed;
+                flux *= survival / goesOn;
+                balance.fluxAbsorbed -= channelSum(flux);
+            }
+            if (events.isOver()) break;
         }
         ++balance.lost;
         balance.fluxLost += channelSum(flux);
         return landed;
+    }
+
+    static float probabilityOfAll(const Bsdf& bsdf) {
+        if (bsdf.isDiffuseOnly()) return bsdf.probability(Lobe::kDiffuse);
+        float sum = 0.0f;
+        for (std::size_t i = 0; i < kLobeCount; ++i) sum += bsdf.probability(static_cast<Lobe>(i));
+        return std::min(sum, 1.0f);
     }
 
     // Of what is scattered diffusely where photons are aimed at a focus far away. False: nothing
@@ -183,7 +208,7 @@ class PhotonWalk {
 
     // At glass and nothing else, on the way to a caustic.
     bool divides(const Part& part, const Bsdf& bsdf) const {
-        return isCaustic(m_request.kind) && part.events < kDividedEvents &&
+        return isCaustic(m_request.kind) && part.events.count() < kDividedEvents &&
                part.way.stage <= Stage::kSpecular && bsdf.has(Lobe::kReflection) &&
                bsdf.has(Lobe::kRefraction) && !bsdf.has(Lobe::kStraight);
     }
@@ -203,7 +228,7 @@ class PhotonWalk {
             next.ray = rayFrom(surface, sample.direction);
             next.flux *= sample.weight * (1.0f / survival);
             next.way.stage = Stage::kSpecular;
-            ++next.events;
+            next.events.add(survival);
             balance.fluxAbsorbed -= channelSum(next.flux);
             return true;
         };
@@ -215,7 +240,8 @@ class PhotonWalk {
 
     // By a lobe, with the flux that it carries on. False: the photon is not of the share that is
     // followed.
-    bool advance(Way& way, Lobe lobe, Sampler& sampler, Rgb& flux) const {
+    bool advance(Part& part, Lobe lobe, Sampler& sampler, Rgb& flux) const {
+        Way& way = part.way;
         if (lobe != Lobe::kDiffuse) {
             if (way.stage == Stage::kStraight) way.stage = Stage::kSpecular;
             if (way.stage == Stage::kDescended) way.stage = Stage::kRefocused;
@@ -223,13 +249,18 @@ class PhotonWalk {
             way.stage = Stage::kDiffuse;
         } else if (way.stage == Stage::kSpecular) {
             way.stage = Stage::kDescended;
-            if (isCaustic(m_request.kind)) way.isFollowed = sampler.next1D() < m_request.descent;
+            if (isCaustic(m_request.kind))
+                way.isFollowed = m_chains.areOn() ? m_chains.begins(part.chain.index)
+                                                  : sampler.next1D() < m_request.descent;
         } else if (way.stage == Stage::kDescended || way.stage == Stage::kRefocused) {
             way.stage = Stage::kLater;
             if (isCaustic(m_request.kind)) flux *= 1.0f / m_request.descent;
-            return way.isFollowed;
+            if (!way.isFollowed) return false;
         }
-        return true;
+        if (lobe != Lobe::kDiffuse || part.chain.landings == 0) return true;
+        const float factor = m_chains.goOn(part.chain);
+        flux *= factor;
+        return factor > 0.0f;
     }
 
     // Nothing that comes after a diffuse scattering on this way is asked for.
@@ -241,28 +272,43 @@ class PhotonWalk {
 
     // Stores a photon where its way is asked for. Returns its flux if so; of light that descends
     // from caustics 0.
-    double land(const Way& way, const Surface& surface, const Bsdf& bsdf, const Rgb& flux,
+    double land(Part& part, const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
                 Batch& batch) const {
+        const Way& way = part.way;
+        const Rgb& flux = part.flux;
         if (isCaustic(m_request.kind)) {
             if (way.stage == Stage::kSpecular)
                 store(surface, bsdf, flux, batch, batch.photons);
             else if (way.stage != Stage::kStraight)
-                landDescended(way, surface, bsdf, flux, batch);
+                landDescended(part, surface, bsdf, sampler, batch);
             return way.stage == Stage::kSpecular ? channelSum(flux) : 0;
         }
         if (way.stage == Stage::kSpecular && m_request.withoutCaustics) return 0;
-        store(surface, bsdf, flux, batch, batch.photons);
+        storeOfChain(part, surface, bsdf, sampler, batch, batch.photons);
         return channelSum(flux);
     }
 
     // What caustics send straight to a surface is even: the share that is followed carries it.
-    void landDescended(const Way& way, const Surface& surface, const Bsdf& bsdf, const Rgb& flux,
+    void landDescended(Part& part, const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
                        Batch& batch) const {
+        const Way& way = part.way;
+        if (way.stage == Stage::kLater)
+            return storeOfChain(part, surface, bsdf, sampler, batch, batch.descended);
         const bool isStraight = way.stage == Stage::kDescended;
         if (isStraight && !way.isFollowed) return;
-        store(surface, bsdf, isStraight ? flux * (1.0f / m_request.descent) : flux, batch,
+        store(surface, bsdf, isStraight ? part.flux * (1.0f / m_request.descent) : part.flux, batch,
               batch.descended);
         if (way.stage == Stage::kRefocused) batch.descended.back().normal.mark();
+    }
+
+    void storeOfChain(Part& part, const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
+                      Batch& batch, std::vector<Photon>& photons) const {
+        if (!m_chains.areOn()) return store(surface, bsdf, part.flux, batch, photons);
+        const auto flux = static_cast<float>(channelSum(part.flux));
+        LongChains::land(part.chain, flux);
+        const float probability = m_chains.storing(part.chain, flux);
+        if (probability < 1.0f && !(sampler.next1D() < probability)) return;
+        store(surface, bsdf, part.flux * (1.0f / probability), batch, photons);
     }
 
     static void store(const Surface& surface, const Bsdf& bsdf, const Rgb& flux, Batch& batch,
@@ -276,6 +322,7 @@ class PhotonWalk {
     const LightSampler& m_lights;
     const PhotonTraceRequest& m_request;
     const AimedEmission* m_aim;
+    LongChains m_chains;
     float m_scale;
 };
 
@@ -322,7 +369,10 @@ PhotonTraceResult tracePhotons(const Scene& scene, const LightSampler& lights,
     tbb::parallel_for(std::size_t{0}, batchCount, [&](std::size_t b) {
         if (cancelled.load(std::memory_order_relaxed)) return;
         const std::uint64_t end = std::min(request.count, (b + 1) * kBatchSize);
-        for (std::uint64_t i = b * kBatchSize; i < end; ++i) walk.trace(i, batches[b]);
+        // Where next to nothing is absorbed a single photon takes its time.
+        for (std::uint64_t i = b * kBatchSize;
+             i < end && !cancelled.load(std::memory_order_relaxed); ++i)
+            walk.trace(i, batches[b]);
         if (!progress) return;
         const std::lock_guard lock(progressMutex);
         progress(static_cast<double>(++done) / static_cast<double>(batchCount));
@@ -332,7 +382,10 @@ PhotonTraceResult tracePhotons(const Scene& scene, const LightSampler& lights,
     join(batches, &Batch::photons, result.photons, check);
     join(batches, &Batch::descended, result.descended, check);
     join(batches, &Batch::records, result.records, check);
-    for (const Batch& batch : batches) result.balance += batch.balance;
+    for (const Batch& batch : batches) {
+        result.balance += batch.balance;
+        result.metCaster += batch.metCaster;
+    }
     return result;
 }
 

@@ -9,6 +9,7 @@
 
 #include "integrator/photons/aimed_emission.h"
 #include "integrator/photons/big_array.h"
+#include "integrator/photons/long_chains.h"
 #include "integrator/photons/photon_map.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
@@ -54,6 +55,9 @@ struct PhotonTraceRequest {
     // else's business and ends there.
     bool withoutCaustics = false;
     bool keepRecords = false;  // for AimedEmission::refine
+    // Where photons land very often: of those that landed, one in so many goes on (LongChains), a
+    // power of two. 0: all go on, and all landings are stored.
+    std::uint32_t oneInChains = 0;
 };
 
 struct PhotonTraceResult {
@@ -64,6 +68,8 @@ struct PhotonTraceResult {
     BigVector<Photon> descended;
     BigVector<EmissionRecord> records;  // of each photon that carried something, if asked for
     Focus focus;                        // that global photons were aimed at
+    // Of the caustic ones, those that began by another lobe than a diffuse one.
+    std::uint64_t metCaster = 0;
 };
 
 // Traces photons from the lights, in parallel in the calling TBB arena: batches of fixed size, each

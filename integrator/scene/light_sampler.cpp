@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "integrator/sampling/sampler.h"
@@ -48,8 +49,15 @@ constexpr std::size_t kMostAtOnce = 16;
 
 }  // namespace
 
+LightSampler::LightSampler(const Scene& scene, LightChoice choice)
+    : m_scene(scene), m_choice(std::move(choice)) {}
+
+LightSampler LightSampler::forPhotons(const Scene& scene) {
+    return {scene, choiceByPower(scene.lights())};
+}
+
 LightSampler::LightSampler(const Scene& scene, const CancelCheck& cancel)
-    : m_scene(scene), m_choice(choiceByPower(scene.lights())) {
+    : LightSampler(scene, choiceByPower(scene.lights())) {
     if (empty() || scene.nearLights().size() <= kFewLights) return;
     m_tree = std::make_unique<LightTree>(scene, cancel);
     m_farChoice = choiceByPower(scene.farLights());

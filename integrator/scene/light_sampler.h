@@ -68,6 +68,8 @@ class LightSampler {
     // Of many lights in parallel in the calling TBB arena. Throws Error(kCancelled) soon after
     // cancel is set.
     explicit LightSampler(const Scene& scene, const CancelCheck& cancel = {});
+    // For emit() alone: takes next to no time.
+    static LightSampler forPhotons(const Scene& scene);
 
     // More lights than this, those infinitely far not counted, are many.
     static constexpr std::size_t kFewLights = 16;
@@ -134,6 +136,7 @@ class LightSampler {
     std::uint64_t memoryBytes() const;
 
   private:
+    LightSampler(const Scene& scene, LightChoice choice);
     static Receiver receiverAt(const Surface& surface, const Vec3f& side);
 
     // Of up to kMost lights.

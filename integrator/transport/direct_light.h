@@ -51,7 +51,14 @@ struct SampleRadiance {
     Vec3f firstPosition;
     std::uint32_t firstShape = 0, firstMaterial = 0;
     std::uint32_t rays = 0;
+    // Ended for their number of events, and what light found from there on would have counted for.
+    std::uint32_t pathsCut = 0;
+    float throughputCut = 0.0f;
 
+    void addCut(float throughput) {
+        ++pathsCut;
+        throughputCut += throughput;
+    }
     Rgb& of(PathClass c) {
         switch (c) {
             case PathClass::kEmission:

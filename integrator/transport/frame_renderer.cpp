@@ -28,12 +28,25 @@ namespace {
 // A render at level l has 4^(l-1) samples a pixel in this many passes.
 constexpr std::uint32_t kPassesOfALevel = 4;
 
+// Of throughputs, which are added up in whole ones: in any order the same sum.
+constexpr double kThroughputStep = 0x1p-20;
+
 // Of a pixel's group of 2 x 2, the first; also below 0.
 std::int32_t firstOfGroup(std::int32_t coordinate) {
     return coordinate & ~1;
 }
 
+double shareOf(double part, double whole) {
+    return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0;
+}
+
 }  // namespace
+
+double RenderCounters::shareCut() const {
+    const double ofPaths = shareOf(throughputCut, static_cast<double>(cameraSamples));
+    return std::min(1.0, ofPaths + std::max(shareOf(fluxLost, fluxEmitted),
+                                            shareOf(causticFluxLost, causticFluxEmitted)));
+}
 
 SampleRun fixedSamples(const RenderSettings& settings, std::int32_t x, std::int32_t y,
                        std::uint32_t pass) {
@@ -79,8 +92,9 @@ struct FrameRenderer::Impl {
     PhotonPass& photonsOfPass(std::uint32_t pass, const std::atomic<bool>& cancelled);
     SampleRadiance sample(std::uint32_t pass, const PixelCell& cell, Sampler sampler,
                           std::uint32_t index, NearestPhotons& scratch) const;
+    struct Local;
     void renderCell(std::uint32_t pass, const PixelCell& cell, SampleRun run, float* pixel,
-                    NearestPhotons& scratch, RenderCounters& local) const;
+                    Local& local) const;
 
     const std::shared_ptr<const Scene> scene;
     const RenderSettings settings;
@@ -90,10 +104,21 @@ struct FrameRenderer::Impl {
     const PhotonSource* photonSource = nullptr;
     std::unique_ptr<Prepared> prepared;
     std::uint32_t lastPass = 0;  // begun or added
-    bool badValuesReported = false;
+    bool badValuesReported = false, cutsReported = false;
     mutable std::mutex mutex;  // of what follows, and for others than the passes of `prepared`
     mutable RenderCounters counters;
+    mutable std::uint64_t throughputStepsCut = 0;
     std::vector<Notice> notices;
+};
+
+// Of one call that renders pixels.
+struct FrameRenderer::Impl::Local {
+    NearestPhotons scratch;
+    const std::atomic<bool>& cancelled;
+    RenderCounters counters{};
+    std::uint64_t throughputStepsCut = 0;
+
+    bool isCancelled() const { return cancelled.load(std::memory_order_relaxed); }
 };
 
 void FrameRenderer::Impl::prepare(const std::atomic<bool>& cancelled) {
@@ -136,23 +161,27 @@ SampleRadiance FrameRenderer::Impl::sample(std::uint32_t pass, const PixelCell& 
 }
 
 void FrameRenderer::Impl::renderCell(std::uint32_t pass, const PixelCell& cell, SampleRun run,
-                                     float* pixel, NearestPhotons& scratch,
-                                     RenderCounters& local) const {
+                                     float* pixel, Local& local) const {
     PixelSums sums;
     const Sampler cellSampler(settings.seed, cell.stream(pass), cell.key(), 0);
     for (std::uint32_t i = 0; i < run.count; ++i) {
+        // Where next to nothing is absorbed a single one takes its time.
+        if (local.isCancelled()) return;
         const std::uint32_t index = run.first + i;
-        const SampleRadiance s = sample(pass, cell, cellSampler.at(index), index, scratch);
-        local.rays += s.rays;
+        const SampleRadiance s = sample(pass, cell, cellSampler.at(index), index, local.scratch);
+        local.counters.rays += s.rays;
+        local.counters.pathsCut += s.pathsCut;
+        local.throughputStepsCut += static_cast<std::uint64_t>(
+            std::clamp(static_cast<double>(s.throughputCut), 0.0, 1e3) / kThroughputStep);
         if (!PixelSums::accepts(s)) {
-            ++local.badSamples;
+            ++local.counters.badSamples;
             continue;
         }
         const double depth =
             s.coverage == 0.0f ? 0.0 : static_cast<double>(camera.depth(s.firstPosition));
         sums.add(s, depth, i < run.seen);
     }
-    local.cameraSamples += run.count;
+    local.counters.cameraSamples += run.count;
     sums.write(layout, run.count, pixel);
 }
 
@@ -209,12 +238,11 @@ void FrameRenderer::renderRegion(std::uint32_t pass, const Rect& region,
                                  std::span<const SampleRun> runs, std::span<float> pixels,
                                  const std::atomic<bool>& cancelled) const {
     std::fill(pixels.begin(), pixels.end(), 0.0f);
-    NearestPhotons scratch;
-    RenderCounters local;
+    Impl::Local local{.scratch = {}, .cancelled = cancelled};
     std::size_t i = 0;
     const auto channels = static_cast<std::size_t>(m_impl->layout.count);
     for (std::int32_t y = region.y0; y < region.y1; ++y) {
-        if (cancelled.load(std::memory_order_relaxed)) break;
+        if (local.isCancelled()) break;
         for (std::int32_t x = region.x0; x < region.x1; ++x, ++i) {
             if (runs[i].count == 0) continue;
             float* const pixel = pixels.data() + i * channels;
@@ -230,13 +258,15 @@ void FrameRenderer::renderRegion(std::uint32_t pass, const Rect& region,
                     continue;
                 }
             }
-            m_impl->renderCell(pass, cell, runs[i], pixel, scratch, local);
+            m_impl->renderCell(pass, cell, runs[i], pixel, local);
         }
     }
     const std::lock_guard lock(m_impl->mutex);
-    m_impl->counters.cameraSamples += local.cameraSamples;
-    m_impl->counters.rays += local.rays;
-    m_impl->counters.badSamples += local.badSamples;
+    m_impl->counters.cameraSamples += local.counters.cameraSamples;
+    m_impl->counters.rays += local.counters.rays;
+    m_impl->counters.badSamples += local.counters.badSamples;
+    m_impl->counters.pathsCut += local.counters.pathsCut;
+    m_impl->throughputStepsCut += local.throughputStepsCut;
 }
 
 void FrameRenderer::renderRegion(const Rect& region, std::span<float> pixels,
@@ -258,6 +288,7 @@ void FrameRenderer::forget(const Rect& region, const Rect& all) const {
 RenderCounters FrameRenderer::counters() const {
     const std::lock_guard lock(m_impl->mutex);
     RenderCounters sum = m_impl->counters;
+    sum.throughputCut = static_cast<double>(m_impl->throughputStepsCut) * kThroughputStep;
     if (m_impl->prepared) m_impl->prepared->photons.addTo(sum);
     return sum;
 }
@@ -269,6 +300,13 @@ std::vector<Notice> FrameRenderer::takeNotices() {
         m_impl->notices.push_back({NoticeCode::kBadValues,
                                    "some samples were NaN or infinite and count as black; their "
                                    "number is in the statistics"});
+    }
+    if (m_impl->counters.pathsCut > 0 && !m_impl->cutsReported) {
+        m_impl->cutsReported = true;
+        m_impl->notices.push_back(
+            {NoticeCode::kNotCovered,
+             "some camera paths were cut off, caught between surfaces that absorb nothing; their "
+             "number and throughput are in the statistics and count in the estimated error"});
     }
     std::vector<Notice> notices = std::exchange(m_impl->notices, {});
     if (m_impl->prepared)

@@ -37,8 +37,11 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
         BsdfSample sample;
         const float uLobe = sampler.next1D();
         const Vec2f u = sampler.next2D();
-        if (!bsdf.sample(uLobe, u, sample) || !path.scatter(surface, bsdf, sample, sampler))
+        if (!bsdf.sample(uLobe, u, sample)) return result;
+        if (!path.scatter(surface, bsdf, sample, sampler)) {
+            if (path.isCut()) result.addCut(path.amount());
             return result;
+        }
         state.scatter(sample.lobe);
         last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle};
     }

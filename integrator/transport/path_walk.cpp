@@ -16,13 +16,13 @@ bool PathWalk::scatter(const Surface& surface, const Bsdf& bsdf, const BsdfSampl
                        Sampler& sampler, bool isPart) {
     followLobe(bsdf, sample);
     if (isPart) m_whole = std::min(m_whole, amount());
-    if (++m_events == kMostPathEvents || amount() == 0.0f) return false;
-    if (m_events >= kEventsBeforeRoulette) {
-        const float survival = std::min(1.0f, amount() / m_whole);
-        if (survival < 1.0f) {
-            if (sampler.next1D() >= survival) return false;
-            throughput *= 1.0f / survival;
-        }
+    if (amount() == 0.0f) return false;
+    const float survival = m_events.add(std::min(1.0f, amount() / m_whole));
+    m_isCut = m_events.isOver();
+    if (m_isCut) return false;
+    if (m_events.count() >= kEventsBeforeRoulette && survival < 1.0f) {
+        if (sampler.next1D() >= survival) return false;
+        throughput *= 1.0f / survival;
     }
     ray = rayFrom(surface, sample.direction);
     return true;

@@ -4,16 +4,13 @@
 
 #include "integrator/materials/bsdf.h"
 #include "integrator/rays/ray_tracer.h"
+#include "integrator/sampling/event_count.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/surface.h"
 #include "integrator/values/rgb.h"
 
 namespace pm {
-
-// Where a path from the camera ends at last; only light caught between lossless surfaces comes so
-// far.
-inline constexpr int kMostPathEvents = 1000;
 
 // What a path from the camera carries on from where it has come.
 struct Carried {
@@ -40,9 +37,12 @@ struct PathWalk : Carried {
     // here, and roulette takes what this part carries for all there is.
     bool scatter(const Surface& surface, const Bsdf& bsdf, const BsdfSample& sample,
                  Sampler& sampler, bool isPart = false);
+    // It ended for the number of its events: what it would have found is missing.
+    bool isCut() const { return m_isCut; }
 
   private:
-    int m_events = 0;
+    EventCount m_events;
+    bool m_isCut = false;
     float m_whole = 1.0f;
 };
 

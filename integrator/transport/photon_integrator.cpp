@@ -165,7 +165,10 @@ bool PhotonIntegrator::followLobes(const Surface& surface, const Bsdf& bsdf, Sti
         sample.weight *= 1.0f / survival[i];
         Branch part = branch;
         part.share *= partOf(bsdf, lobe) / survival[i];
-        if (!part.goOn(surface, bsdf, sample, divides, tree.sampler)) continue;
+        if (!part.goOn(surface, bsdf, sample, divides, tree.sampler)) {
+            if (part.path.isCut()) tree.result.addCut(part.path.amount());
+            continue;
+        }
         part.lampSamples = reflectsLamps(bsdf) ? 1
                                                : std::min(branch.lampSamples,
                                                           raysOfShare(m_lampSamples, part.share));

@@ -2,10 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/transport/photon_pass.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <numbers>
 #include <span>
-#include <string>
 #include <utility>
 
 #include "integrator/transport/frame_renderer.h"
@@ -115,6 +116,7 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
     request.aim = isCaustic(kind) ? m_aim.get() : m_focused.get();
     if (isCaustic(kind)) request.descent = m_plan.descent;
     request.withoutCaustics = m_plan.descent > 0.0f;
+    request.oneInChains = m_plan.oneInChains;
     PhotonTraceResult result =
         m_source ? m_source->read(kind, pass, control.cancelled)
                  : tracePhotons(m_scene, m_lights, request, control.cancelled, part);
@@ -208,7 +210,7 @@ void PhotonPass::count(PhotonKind kind, const PhotonBalance& balance) {
     const std::lock_guard lock(m_mutex);
     m_allKinds += balance;
     if (kind == PhotonKind::kGlobal) m_global += balance;
-    if (kind == PhotonKind::kCaustic) m_storedCaustic += balance.stored;
+    if (kind == PhotonKind::kCaustic) m_caustic += balance;
     // Notices come once a render, from its pilots, not once a pass.
     if (kind == PhotonKind::kGlobalPilot) m_noGlobalPhotons = balance.stored == 0;
     const bool noCaustics = kind == PhotonKind::kCausticPilot && balance.stored == 0;
@@ -224,10 +226,11 @@ void PhotonPass::count(PhotonKind kind, const PhotonBalance& balance) {
              "caustic light"});
     if (balance.lost > 0 && (kind == PhotonKind::kGlobalPilot || kind == PhotonKind::kCausticPilot))
         m_notices.push_back({NoticeCode::kLostPhotons,
-                             std::to_string(balance.lost) + " of " +
-                                 std::to_string(balance.emitted) +
-                                 " pilot photons were lost: caught between lossless surfaces or "
-                                 "spoiled by rounding"});
+                             fmt::format("{} of {} pilot photons were lost, with {:.2g} % of the "
+                                         "flux: caught between lossless surfaces or spoiled by "
+                                         "rounding",
+                                         balance.lost, balance.emitted,
+                                         100 * balance.fluxLost / balance.fluxEmitted)});
 }
 
 void PhotonPass::addTo(RenderCounters& counters) const {
@@ -244,8 +247,10 @@ void PhotonPass::addTo(RenderCounters& counters) const {
     counters.fluxAbsorbed += m_global.fluxAbsorbed;
     counters.fluxEscaped += m_global.fluxEscaped;
     counters.fluxLost += m_global.fluxLost;
+    counters.causticFluxEmitted += m_caustic.fluxEmitted;
+    counters.causticFluxLost += m_caustic.fluxLost;
     counters.photonsStoredGlobal += m_global.stored;
-    counters.photonsStoredCaustic += m_storedCaustic;
+    counters.photonsStoredCaustic += m_caustic.stored;
     counters.photonSeconds += m_photonSeconds;
     counters.mapSeconds += m_mapSeconds;
     counters.peakMapBytes = std::max(counters.peakMapBytes, peakMapBytes());

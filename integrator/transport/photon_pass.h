@@ -126,8 +126,7 @@ class PhotonPass {
 
     mutable std::mutex m_mutex;    // of what follows
     std::vector<PassMaps> m_held;  // of the pass begun last and of those added since
-    PhotonBalance m_allKinds, m_global;
-    std::uint64_t m_storedCaustic = 0;
+    PhotonBalance m_allKinds, m_global, m_caustic;
     std::uint64_t m_peakMapBytes = 0;
     std::uint64_t m_gatherRays = 0;  // of the passes whose maps were dropped
     bool m_noGlobalPhotons = false;  // of the pilot

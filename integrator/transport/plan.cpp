@@ -5,19 +5,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
+#include <bit>
 #include <cmath>
 
 #include "integrator/photons/caustic_casters.h"
 #include "integrator/photons/caustic_map.h"
-#include "integrator/photons/irradiance_sites.h"
 #include "integrator/photons/photon_tracer.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
-#include "integrator/transport/gather_points.h"
 #include "integrator/transport/lamp_samples.h"
-#include "integrator/transport/pass_radius.h"
-#include "integrator/transport/virtual_lamps.h"
+#include "integrator/transport/landing_pilot.h"
+#include "integrator/transport/plan_memory.h"
 
 namespace pm {
 
@@ -34,8 +32,11 @@ constexpr float kGatherSpacing = 2.5f;
 constexpr double kMostGatherPoints = 1 << 20;
 // Of the caustic photons: they are then as many as the global ones, unless told otherwise.
 constexpr float kAutoDescent = 0.2f;
-// Landings of a photon: 1/(1 - albedo) for an albedo of 0.75.
+// Landings of a photon: 1/(1 - albedo) for an albedo of 0.75. Frames have photons by these.
 constexpr double kExpectedLandings = 4;
+// Where photons land more often than this, in the mean, chains of landings are traced in place of
+// so many photons (LongChains): of about as many landings as twice this.
+constexpr double kMostLandings = 16;
 // Of caustic photons, those that the caustics send on by way of other lobes; at most as a rule.
 constexpr double kExpectedRefocused = 0.5;
 
@@ -45,8 +46,6 @@ constexpr double kExpectedRefocused = 0.5;
 constexpr double kHugeFramePixels = 0x1p28;
 constexpr std::uint32_t kPassesOfHugeFrame = 8;
 constexpr std::uint64_t kMapBytesOfHugeFrame = std::uint64_t{560} << 20;
-// Photons that show how often photons land there, where lamps are few.
-constexpr std::uint64_t kLandingPilotPhotons = 4096;
 
 struct SceneTraits {
     bool diffuse = false;   // some surface reflects diffusely
@@ -86,16 +85,13 @@ std::uint64_t photonsOf(const RenderSettings& settings, std::uint64_t ofSmallFra
                                       std::clamp(frames, kLeastOfThose, kMostOfThose));
 }
 
-// Memory at most; time from what each part took where docs/benchmarks.md was measured.
+// Time from what each part took where docs/benchmarks.md was measured.
 void estimateCosts(const RenderSettings& settings, Plan& plan) {
     constexpr double kPerSample = 0.6e-6, kPerSampleOfCaustics = 0.9e-6, kPerGatherRay = 0.5e-6;
     constexpr double kPerGlobalPhoton = 3e-6, kPerCausticPhoton = 4e-6;
     const auto global = static_cast<double>(plan.globalPhotons);
     const auto caustic = static_cast<double>(plan.causticPhotons);
-    plan.mapBytes = plan.heldMapBytes(1) + plan.buildingMapBytes();
-    if (plan.globalMap)
-        plan.mapBytes += GatherPoints::memoryBytes(settings.width, settings.height,
-                                                   plan.gatherSpacing, settings.window);
+    estimateMemory(settings, plan);
     const double samplesOfAPixel = std::pow(4.0, static_cast<double>(settings.aaLevel) - 2.0);
     double perPixel =
         samplesOfAPixel * (kPerSample + (plan.causticMap ? kPerSampleOfCaustics : 0.0));
@@ -158,17 +154,24 @@ void limitPhotons(const RenderSettings& settings, Plan& plan) {
         static_cast<double>(kMapBytesOfHugeFrame) / (1 << 30)));
 }
 
-// How often photons land, for estimates of memory alone: no picture depends on it.
-double expectedLandings(const Scene& scene, const RenderSettings& settings) {
-    if (!isHuge(settings) || scene.nearLights().size() > LightSampler::kFewLights)
-        return kExpectedLandings;
-    const PhotonTraceRequest request{PhotonKind::kGlobalPilot, kLandingPilotPhotons, settings.seed};
-    const std::atomic<bool> neverCancelled{false};
-    const PhotonBalance balance =
-        tracePhotons(scene, LightSampler(scene), request, neverCancelled, {}).balance;
-    return balance.emitted == 0
-               ? kExpectedLandings
-               : static_cast<double>(balance.stored) / static_cast<double>(balance.emitted);
+// In bright rooms few photons go on after they landed once: so many that all land about
+// 2 kMostLandings times. A photon's chain has about 2 sqrt(4 n) stored landings where all land n
+// times.
+void planLandings(const Scene& scene, const RenderSettings& settings, Plan& plan) {
+    plan.landingsOfPhoton = kExpectedLandings;
+    plan.causticLandingsOfPhoton = kCausticParts;
+    plan.refocusedOfPhoton = kCausticParts * kExpectedRefocused;
+    plan.descendedOfPhoton = kCausticParts * static_cast<double>(kAutoDescent) * kExpectedLandings +
+                             plan.refocusedOfPhoton;
+    const LandingPilot pilot = LandingPilot::of(scene, settings);
+    if (!(pilot.landings > kMostLandings)) return;
+    const double oneIn = 2 * std::sqrt(4 * pilot.landings) / (2 * kMostLandings);
+    plan.oneInChains = std::bit_floor(static_cast<std::uint32_t>(std::max(1.0, oneIn)));
+    plan.landingsOfPhoton = 1 + pilot.storedInChains / plan.oneInChains;
+    plan.reasons.push_back(fmt::format(
+        "bright room: photons land {:.0f} times in the mean, so one in {} makes a long chain of "
+        "landings, of which some are stored",
+        pilot.landings, plan.oneInChains));
 }
 
 void planGlobalMap(const RenderSettings& settings, Plan& plan) {
@@ -215,6 +218,7 @@ void planMaps(const RenderSettings& settings, const SceneTraits& traits, bool ev
     if (plan.causticMap) plan.causticPhotons = photonsOf(settings, kAutoCausticPhotons);
     if (plan.globalMap && plan.causticMap) plan.descent = kAutoDescent;
     limitPhotons(settings, plan);
+    if (plan.oneInChains > 0) plan.globalPhotons = LongChains::wholeNumber(plan.globalPhotons);
     if (plan.globalMap)
         planGlobalMap(settings, plan);
     else
@@ -257,64 +261,11 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
         return plan;
     }
     planDirectLight(scene, traits, plan);
-    plan.landingsOfPhoton = kExpectedLandings;
+    planLandings(scene, settings, plan);
     planMaps(settings, traits, everything, plan);
-    plan.landingsOfPhoton = expectedLandings(scene, settings);
+    expectLandings(scene, settings, plan);
     estimateCosts(settings, plan);
     return plan;
-}
-
-std::uint64_t Plan::globalLandings() const {
-    return static_cast<std::uint64_t>(static_cast<double>(globalPhotons) * landingsOfPhoton);
-}
-
-std::uint64_t Plan::causticLandings() const {
-    return static_cast<std::uint64_t>(static_cast<double>(causticPhotons) * kCausticParts);
-}
-
-std::uint64_t Plan::descendedLandings() const {
-    return static_cast<std::uint64_t>(static_cast<double>(causticLandings()) *
-                                      static_cast<double>(descent) * landingsOfPhoton) +
-           refocusedLandings();
-}
-
-std::uint64_t Plan::refocusedLandings() const {
-    return descent > 0.0f ? static_cast<std::uint64_t>(static_cast<double>(causticLandings()) *
-                                                       kExpectedRefocused)
-                          : 0;
-}
-
-std::uint64_t Plan::heldMapBytes(std::uint32_t passes) const {
-    const std::uint64_t gathered = globalLandings() + descendedLandings();
-    const std::uint64_t caustics = causticLandings() + refocusedLandings();
-    std::uint64_t bytes = caustics / PilotRadius::kPilotShare * PilotRadius::kHeldBytesPerPhoton;
-    for (std::uint32_t pass = 0; pass < passes; ++pass) {
-        const float factor = radiusFactor(pass);
-        bytes += (gathered + caustics) * PhotonMap::kHeldBytesPerPhoton;
-        if (globalMap) bytes += IrradianceSites::memoryBytes(gathered, factor);
-        if (descent > 0.0f) bytes += VirtualLamps::memoryBytes(causticLandings(), factor);
-    }
-    return bytes;
-}
-
-// In the order in which PhotonPass makes the maps; a map's photons go when it is built, before
-// those maps are there that come after it.
-std::uint64_t Plan::buildingMapBytes() const {
-    constexpr std::uint64_t kHeld = PhotonMap::kHeldBytesPerPhoton;
-    constexpr std::uint64_t kEach = PhotonMap::kBytesPerPhoton - kHeld;
-    const auto beyond = [](std::uint64_t building, std::uint64_t after) {
-        return building > after ? building - after : 0;
-    };
-    const std::uint64_t descended = descendedLandings(), refocused = refocusedLandings();
-    const std::uint64_t gathered = globalLandings() + descended;
-    const std::uint64_t sites = globalMap ? IrradianceSites::memoryBytes(gathered) : 0;
-    const std::uint64_t lamps = descent > 0.0f ? VirtualLamps::memoryBytes(causticLandings()) : 0;
-    const std::uint64_t global = gathered * kHeld + sites;
-    return std::max({beyond(causticLandings() * kEach + descended * sizeof(Photon),
-                            lamps + refocused * kHeld + global),
-                     beyond(refocused * kEach + descended * sizeof(Photon), global),
-                     beyond(2 * gathered * sizeof(Photon), global),
-                     beyond(gathered * kEach, sites)});
 }
 
 std::uint64_t Plan::globalPilotPhotons() const {

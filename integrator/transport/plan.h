@@ -31,8 +31,14 @@ struct Plan {
     bool gatherRaysByPilot = false;
     // Lamp samples of a camera sample, see PhotonIntegrator; 0: a pilot finds how many pay.
     std::uint32_t lampSamples = 0;
-    std::uint64_t mapBytes = 0;          // estimated peak of one pass's maps
-    double landingsOfPhoton = 0;         // expected at diffuse surfaces; at most as a rule
+    std::uint64_t mapBytes = 0;    // estimated peak of the maps of a pass at a time
+    std::uint64_t patchBytes = 0;  // of that the patches of surfaces, kept for all passes
+    // Landings that are stored, expected of a photon: of a global one; of a caustic one in the
+    // caustic map, afterwards, and of these refocused.
+    double landingsOfPhoton = 0, causticLandingsOfPhoton = 0, descendedOfPhoton = 0;
+    double refocusedOfPhoton = 0;
+    // Where photons land very often, see PhotonTraceRequest; else 0.
+    std::uint32_t oneInChains = 0;
     double processorSecondsPerPass = 0;  // estimated, to a factor of about two
     // The same of a camera sample, its share of the frame's photons and gather points included.
     double processorSecondsPerSample = 0;
@@ -49,10 +55,15 @@ struct Plan {
     std::uint64_t descendedLandings() const;  // refocused ones included
     std::uint64_t refocusedLandings() const;
 
-    // Estimated memory where the maps of several passes are held: of the first so many passes,
-    // pilots included, gather points not; and what comes on top while a pass's maps are made.
+    // All memory of maps where those of the first so many passes are held, with pointBytes of
+    // gather points each.
+    std::uint64_t memoryBytes(std::uint32_t passes, std::uint64_t pointBytes) const;
+    // Of that the maps, pilots included; and what comes on top while a pass's maps are made.
     std::uint64_t heldMapBytes(std::uint32_t passes) const;
-    std::uint64_t buildingMapBytes() const;
+    std::uint64_t buildingMapBytes(std::uint32_t pass = 0) const;
+    // Of pilots; and of one pass.
+    std::uint64_t pilotMapBytes() const;
+    std::uint64_t passMapBytes(std::uint32_t pass) const;
 
     // Emitted once a render, to find the radii of the estimates.
     std::uint64_t globalPilotPhotons() const;

@@ -169,8 +169,7 @@ bool SeenLamps::step(Branch& branch, Waiting& waiting, Sampler& sampler, Rgb& fo
     const Vec3f out = -branch.ray.direction;
     if (surface.light != kNoLight)
         found += branch.carried.throughput * m_lights.emittedRadiance(surface, out);
-    if (!mayHaveDelta(m_scene.material(surface.material)) || ++branch.events == kMostPathEvents)
-        return false;
+    if (!mayHaveDelta(m_scene.material(surface.material))) return false;
     const Bsdf bsdf(m_scene, surface, out, Transport::kRadiance, branch.carried.throughput);
     if (bsdf.isBlackBody()) return false;
     const Branch arrived = branch;
@@ -202,8 +201,13 @@ bool SeenLamps::goOn(const Branch& from, const Surface& surface, const Bsdf& bsd
     next.carried.followLobe(bsdf, sample);
     next.events = from.events;
     const float amount = next.carried.amount();
+    const float kept = amount / from.carried.amount();
+    const bool halves = next.events.add(kept) < kept;
+    // Of what ends here camera paths tell, which follow the same lobes.
+    if (next.events.isOver()) return false;
     float least = effort.leastThroughput;
-    if (from.events >= effort.events) least = std::max(least, from.carried.amount());
+    if (next.events.count() >= effort.events) least = std::max(least, from.carried.amount());
+    if (halves) least = std::max(least, 2.0f * amount);
     if (amount < least) {
         const float survival = amount / least;
         if (!(sampler.next1D() < survival)) return false;

@@ -85,7 +85,7 @@ class SeenLamps {
     struct Branch {
         Ray ray;
         Carried carried{};
-        int events = 0;
+        EventCount events{};
     };
     // Branches of one path that wait to be followed.
     struct Waiting {

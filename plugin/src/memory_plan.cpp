@@ -7,7 +7,6 @@
 #include <algorithm>
 
 #include "integrator/photons/photon.h"
-#include "integrator/photons/surface_patches.h"
 #include "integrator/transport/frame_renderer.h"
 #include "integrator/transport/gather_points.h"
 #include "plugin/include/pm_plugin.h"
@@ -46,11 +45,6 @@ std::uint64_t hostBytes(const SettingValues& values) {
     return static_cast<std::uint64_t>(values.window().area()) * channels * sizeof(float);
 }
 
-// Maps of a pass at a time; patches of surfaces are kept for all of them.
-std::uint64_t mapBytes(const Plan& plan) {
-    return plan.tracePhotons ? plan.mapBytes + SurfacePatches::kMostBytes : 0;
-}
-
 // Gather points of a pass, made and forgotten as the buckets come.
 std::uint64_t pointBytes(const Plan& plan, const RenderSettings& settings, const BucketGrid& grid,
                          const std::string& orderName, std::size_t bucketsHeld) {
@@ -62,13 +56,6 @@ std::uint64_t pointBytes(const Plan& plan, const RenderSettings& settings, const
         rects.push_back(grid.cellRect(cell));
     return GatherPoints::memoryBytes(settings.width, settings.height, plan.gatherSpacing, rects,
                                      grid.window(), bucketsHeld);
-}
-
-// Maps of all passes, built one after the other.
-std::uint64_t mapBytesByBuckets(const Plan& plan, std::uint32_t passes, std::uint64_t points) {
-    if (!plan.tracePhotons) return 0;
-    return plan.heldMapBytes(passes) + points * passes + plan.buildingMapBytes() +
-           SurfacePatches::kMostBytes;
 }
 
 // Why the passes of a bucket can't all be made before the next one; empty where they can.
@@ -111,8 +98,9 @@ void planByBuckets(const Plan& plan, const RenderSettings& settings, std::uint64
         std::min<std::uint64_t>(kBucketsHeldPerThread * threads, grid.cellCount()));
     const std::int32_t side = grid.bucketSize();
     memory.need.frame = memory.bucketsHeld * frameBytes(settings, {0, 0, side, side});
-    memory.need.maps = mapBytesByBuckets(
-        plan, settings.passes, pointBytes(plan, settings, grid, order, memory.bucketsHeld));
+    if (plan.tracePhotons)
+        memory.need.maps = plan.memoryBytes(
+            settings.passes, pointBytes(plan, settings, grid, order, memory.bucketsHeld));
     memory.need.process = kProgramBytes;
     memory.need.buckets = threads * kAtomPixels *
                               static_cast<std::uint64_t>(channelLayout(settings).count + 4) *
@@ -136,7 +124,7 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
     const auto bucketSize = static_cast<std::uint64_t>(grid.bucketSize());
     MemoryPlan memory;
     memory.limit = memoryLimitBytes(values.number(Setting::kMemoryLimit));
-    memory.whole = {scene.memoryBytes(), frameBytes(settings, settings.window), mapBytes(plan),
+    memory.whole = {scene.memoryBytes(), frameBytes(settings, settings.window), plan.mapBytes,
                     threads * bucketSize * bucketSize *
                             static_cast<std::uint64_t>(layout.count + 1) * sizeof(float) +
                         grid.cellCount() * (sizeof(PmrBucketInfo) * 2 + kTimeBytes),

@@ -12,6 +12,7 @@
 #include "plugin/src/entry.h"
 #include "plugin/src/render_pieces.h"
 #include "scheduler/bucket_order.h"
+#include "scheduler/worker_arena.h"
 
 namespace pm::plugin {
 
@@ -72,6 +73,12 @@ void Render::checkDelivery(const SettingValues& values) const {
                                         values.word(Setting::kDelivery)));
 }
 
+Plan Render::makePlan() const {
+    const SettingValues values = settings();
+    WorkerArena arena(static_cast<int>(values.integer(Setting::kThreads)));
+    return arena.execute([&] { return pm::makePlan(*m_built, values.toRenderSettings()); });
+}
+
 MemoryPlan Render::memoryPlan(const Plan& plan) const {
     const SettingValues values = settings();
     checkDelivery(values);
@@ -83,7 +90,7 @@ std::string Render::explain() const {
     const SettingValues values = settings();
     checkedRun(values, findBucketOrder(values.word(Setting::kBucketOrder))->isCorrelated,
                bucketsOf(values).cellCount());
-    const Plan plan = makePlan(*m_built, values.toRenderSettings());
+    const Plan plan = makePlan();
     return explain(plan, memoryPlan(plan));
 }
 
@@ -93,8 +100,7 @@ std::string Render::explain(const Plan& plan, const MemoryPlan& memory) const {
 
 std::int32_t Render::delivery() const {
     const auto running = work();
-    const MemoryPlan memory =
-        running ? running->memory() : memoryPlan(makePlan(*m_built, settings().toRenderSettings()));
+    const MemoryPlan memory = running ? running->memory() : memoryPlan(makePlan());
     return memory.byBuckets ? PMR_DELIVERY_BUCKETS : PMR_DELIVERY_FRAME;
 }
 

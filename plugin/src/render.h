@@ -71,6 +71,7 @@ class Render {
     void runJob();
     PmrStatus runWork();
     std::shared_ptr<RenderWork> work() const;
+    Plan makePlan() const;
     MemoryPlan memoryPlan(const Plan& plan) const;
     void checkDelivery(const SettingValues& values) const;
     PmrStatus outcome() const;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <ctime>
 #include <optional>
 #include <utility>
@@ -52,8 +53,8 @@ RenderWork::RenderWork(std::shared_ptr<const Scene> scene, const Identity& scene
       m_scene(std::move(scene)),
       m_settings(values.toRenderSettings()),
       m_stopRule(values),
-      m_plan(makePlan(*m_scene, m_settings)),
       m_arena(static_cast<int>(values.integer(Setting::kThreads))),
+      m_plan(m_arena.execute([this] { return makePlan(*m_scene, m_settings); })),
       m_grid(bucketsOf(values)),
       m_memory(planMemory(*m_scene, m_plan, values, m_grid)),
       m_layout(channelLayout(m_settings)),
@@ -124,7 +125,10 @@ std::shared_ptr<const FrameStore> RenderWork::frame() const {
 
 std::optional<FrameError> RenderWork::estimateError() const {
     if (m_photons.isOnly()) return std::nullopt;
-    return m_buckets ? m_buckets->estimateError() : m_frame->estimateError();
+    std::optional<FrameError> error =
+        m_buckets ? m_buckets->estimateError() : m_frame->estimateError();
+    if (error) error->cut = std::pow(counters().shareCut(), 2);
+    return error;
 }
 
 void RenderWork::beforeDelivery(std::uint32_t bucketIndex) {

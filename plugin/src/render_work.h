@@ -142,8 +142,8 @@ class RenderWork {
     const std::shared_ptr<const Scene> m_scene;
     const RenderSettings m_settings;
     const StopRule m_stopRule;
-    const Plan m_plan;
     WorkerArena m_arena;
+    const Plan m_plan;
     const BucketGrid m_grid;
     const MemoryPlan m_memory;
     std::vector<std::uint32_t> m_order;       // cells in the order of rendering

@@ -43,6 +43,8 @@ Json countersJson(const RenderCounters& c) {
             {"photonsStoredGlobal", c.photonsStoredGlobal},
             {"photonsStoredCaustic", c.photonsStoredCaustic},
             {"photonsLost", c.photonsLost},
+            {"pathsCut", c.pathsCut},
+            {"throughputCut", c.throughputCut},
             {"fluxEmittedW", c.fluxEmitted},
             {"fluxAbsorbedW", c.fluxAbsorbed},
             {"fluxEscapedW", c.fluxEscaped},

@@ -8,7 +8,8 @@ namespace {
 
 constexpr const char* kEstimateCovers =
     "noise, from what even and odd passes differ by, and bias of the density estimates, from what "
-    "they change by at radii narrowed by sqrt(2); not light that no pass has found, nor all of the "
+    "they change by at radii narrowed by sqrt(2), and what was cut off; not light that no pass has "
+    "found, nor all of the "
     "bias at sharp edges of light";
 
 }  // namespace
@@ -34,6 +35,7 @@ void addError(const std::optional<FrameError>& error, Json& json) {
     put("relMseEstimateTrimmed", [](const FrameError& e) { return Json(e.totalTrimmed()); });
     put("relMseEstimateNoise", [](const FrameError& e) { return Json(e.noise); });
     put("relMseEstimateBias", [](const FrameError& e) { return Json(e.bias); });
+    put("relMseEstimateCut", [](const FrameError& e) { return Json(e.cut); });
     put("relMseEstimateBiasStandardError", [](const FrameError& e) {
         return e.biasStandardError ? Json(*e.biasStandardError) : Json(nullptr);
     });
