@@ -75,7 +75,8 @@ Bsdf::Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transpo
       m_ng(surface.geometricNormal),
       m_ns(surface.shadingNormal),
       m_frontSide(dot(out, surface.geometricNormal) >= 0.0f),
-      m_transport(transport) {
+      m_transport(transport),
+      m_phong(isBroad(m_material) ? Lobe::kBroad : Lobe::kGlossy) {
     if (!m_frontSide) {
         m_ng = -m_ng;
         m_ns = -m_ns;
@@ -101,9 +102,9 @@ Bsdf::Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transpo
     m_reflectance[index(Lobe::kStraight)] = Rgb(1.0f - m_opacity);
     // A camera path finds no light there (see evaluate), so a photon from there brings none.
     if (behindShading && transport == Transport::kPhotons)
-        m_reflectance[index(Lobe::kDiffuse)] = m_reflectance[index(Lobe::kGlossy)] = Rgb();
+        m_reflectance[index(Lobe::kDiffuse)] = m_reflectance[index(m_phong)] = Rgb();
     m_diffuseOnly = m_material.kind == MaterialKind::kSurface && m_opacity == 1.0f &&
-                    isBlack(m_reflectance[index(Lobe::kGlossy)]);
+                    isBlack(m_reflectance[index(m_phong)]);
     if (m_diffuseOnly) {
         chooseDiffuse(carried);
         return;
@@ -120,7 +121,7 @@ void Bsdf::setSurface(const Scene& scene, const Surface& surface) {
         clamp01(textured(scene, m_material.diffuse, m_material.diffuseTexture, surface)) *
         m_opacity;
     if (isBlack(m_material.glossy)) return;
-    m_reflectance[index(Lobe::kGlossy)] =
+    m_reflectance[index(m_phong)] =
         clamp01(textured(scene, m_material.glossy, m_material.glossyTexture, surface)) * m_opacity;
     m_exponent = std::max(0.0f, m_material.glossyExponent *
                                     lookUp(scene, m_material.glossyExponentTexture, surface).r);
@@ -130,7 +131,7 @@ void Bsdf::setMirror(const Scene& scene, const Surface& surface) {
     m_tint = clamp01(textured(scene, m_material.glossy, m_material.glossyTexture, surface));
     m_exponent = m_material.glossyExponent;
     if (m_exponent > 0.0f) {
-        m_reflectance[index(Lobe::kGlossy)] = m_tint * m_opacity;
+        m_reflectance[index(m_phong)] = m_tint * m_opacity;
         return;
     }
     m_hasPhotonWays = m_transport == Transport::kPhotons && m_nd != m_ng;
@@ -234,7 +235,7 @@ Rgb Bsdf::evaluate(Lobe lobe, const Vec3f& in) const {
     if (!(cosAlpha > 0.0f)) return {};
     const float lobeValue =
         (m_exponent + 2.0f) * (0.5f * kInvPi) * pinnedPow(std::min(cosAlpha, 1.0f), m_exponent);
-    return m_reflectance[index(Lobe::kGlossy)] * (lobeValue * cosine * adjointCorrection(in));
+    return m_reflectance[index(m_phong)] * (lobeValue * cosine * adjointCorrection(in));
 }
 
 float Bsdf::pdfSolidAngle(Lobe lobe, const Vec3f& in) const {
@@ -333,6 +334,7 @@ bool Bsdf::take(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const
             if (m_transport == Transport::kPhotons) sample.weight *= normalRatio();
             return sample.pdfSolidAngle > 0.0f && dot(sample.direction, m_ng) > 0.0f;
         case Lobe::kGlossy:
+        case Lobe::kBroad:
             sample.direction =
                 normalize(Frame(reflect(m_out, m_ns)).toWorld(samplePhongLobe(u, m_exponent)));
             sample.pdfSolidAngle = pdfSolidAngle(sample.lobe, sample.direction);

@@ -16,12 +16,13 @@ namespace pm {
 // are sampled one at a time, never as a mixture.
 enum class Lobe : std::uint8_t {
     kDiffuse,     // Lambertian reflection
-    kGlossy,      // Phong lobe around the mirror direction
+    kGlossy,      // Phong lobe around the mirror direction, narrow enough to cast caustics
+    kBroad,       // Phong lobe that is not: for the classes of paths much like the diffuse one
     kReflection,  // mirror, and the reflected part of a dielectric (delta)
     kRefraction,  // delta
     kStraight,    // transparency: passes as if nothing were there (delta)
 };
-inline constexpr std::size_t kLobeCount = 5;
+inline constexpr std::size_t kLobeCount = 6;
 
 constexpr bool isDelta(Lobe lobe) {
     return lobe == Lobe::kReflection || lobe == Lobe::kRefraction || lobe == Lobe::kStraight;
@@ -52,6 +53,12 @@ class Bsdf {
          const Rgb& carried);
 
     bool has(Lobe lobe) const { return m_probability[index(lobe)] > 0.0f; }
+    // Whether there is a lobe that is not delta, for which lamps are sampled.
+    bool reflectsLamps() const {
+        return has(Lobe::kDiffuse) || has(Lobe::kGlossy) || has(Lobe::kBroad);
+    }
+    // That of the Phong lobe, where there is one: a surface has one at most.
+    Lobe phongLobe() const { return m_phong; }
     // With which sample() chooses the lobe.
     float probability(Lobe lobe) const { return m_probability[index(lobe)]; }
     // What the lobe reflects or transmits; at a refraction without its factor 1 / etaSquared().
@@ -129,6 +136,7 @@ class Bsdf {
     bool m_black = false, m_diffuseOnly = false, m_followsAll = false;
     bool m_hasPhotonWays = false;  // photons, at a mirror or glass whose normals differ
     Transport m_transport;
+    Lobe m_phong;
     float m_exponent = 0.0f, m_opacity = 1.0f;
     Rgb m_tint;          // of a mirror, or of what glass lets through
     float m_eta = 1.0f;  // index on the far side over the index on this side

@@ -6,14 +6,27 @@
 #include <vector>
 
 #include "integrator/photons/aim_cone.h"
+#include "integrator/scene/invisible.h"
 #include "integrator/scene/scene.h"
 #include "integrator/values/cancel_check.h"
 
 namespace pm {
 
-// Whether light can leave a surface of this material other than diffusely, which makes it caustic.
+// What a lobe may reflect and still count as carrying nothing: far less than one photon a pass
+// would bring.
+inline constexpr float kCarriesNothing = 1e-6f;
+
+// Whether light can leave a surface of this material other than diffusely or by a broad lobe, which
+// makes it caustic.
 inline bool castsCaustics(const MaterialDescription& material) {
-    return !isDiffuseAtMost(material);
+    if (isDiffuseAtMost(material) || isInvisible(material)) return false;
+    const bool isOpaque = material.transparency == 0.0f && material.opacityTexture == kNoTexture;
+    if (isOpaque && material.kind != MaterialKind::kDielectric && !material.fresnelMirror &&
+        material.glossyTexture == kNoTexture && !(maxChannel(material.glossy) > kCarriesNothing))
+        return false;
+    const bool isPhong = material.kind == MaterialKind::kSurface ||
+                         (material.kind == MaterialKind::kMirror && material.glossyExponent > 0.0f);
+    return !(isPhong && isBroad(material)) || !isOpaque;
 }
 
 // Casters that together hold every surface of the scene that casts caustics, at most kMostFound:

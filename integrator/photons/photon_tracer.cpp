@@ -82,10 +82,12 @@ class PhotonWalk {
     // How far a photon has come.
     enum class Stage : std::uint8_t {
         kStraight,   // no diffuse surface yet, and no other lobe either
-        kSpecular,   // no diffuse surface yet, but other lobes
-        kDiffuse,    // scattered diffusely, at first where it came straight from the light
-        kDescended,  // ... where it came by way of other lobes
-        kRefocused,  // the same, and on by other lobes before it met another diffuse surface
+        kSpecular,   // no diffuse surface yet, but other lobes, the first one not broad
+        kDiffuse,    // scattered diffusely, or broadly, at first where it came straight from the
+                     // light
+        kDescended,  // diffusely where it came by way of other lobes
+        kBroadened,  // the same, and on by broad lobes
+        kRefocused,  // descended, and on by other lobes before it met another diffuse surface
         kLater,      // descended, and has met another since
     };
     struct Way {
@@ -153,6 +155,7 @@ class PhotonWalk {
                 LongChains::keeps(chain, static_cast<float>(channelSum(flux)) * survival);
             if (keeps) uLobe *= survival;
             if ((bsdf.isDiffuseOnly() && endsAtDiffuse(way)) || !bsdf.sample(uLobe, u, sample) ||
+                (sample.lobe == Lobe::kBroad && endsAtBroad(way)) ||
                 (sample.lobe == Lobe::kDiffuse &&
                  (endsAtDiffuse(way) || !aimScattered(surface, bsdf, sampler, sample)))) {
                 balance.fluxAbsorbed += channelSum(flux);
@@ -242,9 +245,13 @@ class PhotonWalk {
     // followed.
     bool advance(Part& part, Lobe lobe, Sampler& sampler, Rgb& flux) const {
         Way& way = part.way;
-        if (lobe != Lobe::kDiffuse) {
+        if (lobe == Lobe::kBroad) {
+            if (way.stage == Stage::kStraight) way.stage = Stage::kDiffuse;
+            if (way.stage == Stage::kDescended) way.stage = Stage::kBroadened;
+        } else if (lobe != Lobe::kDiffuse) {
             if (way.stage == Stage::kStraight) way.stage = Stage::kSpecular;
-            if (way.stage == Stage::kDescended) way.stage = Stage::kRefocused;
+            if (way.stage == Stage::kDescended || way.stage == Stage::kBroadened)
+                way.stage = Stage::kRefocused;
         } else if (way.stage == Stage::kStraight) {
             way.stage = Stage::kDiffuse;
         } else if (way.stage == Stage::kSpecular) {
@@ -252,7 +259,8 @@ class PhotonWalk {
             if (isCaustic(m_request.kind))
                 way.isFollowed = m_chains.areOn() ? m_chains.begins(part.chain.index)
                                                   : sampler.next1D() < m_request.descent;
-        } else if (way.stage == Stage::kDescended || way.stage == Stage::kRefocused) {
+        } else if (way.stage == Stage::kDescended || way.stage == Stage::kBroadened ||
+                   way.stage == Stage::kRefocused) {
             way.stage = Stage::kLater;
             if (isCaustic(m_request.kind)) flux *= 1.0f / m_request.descent;
             if (!way.isFollowed) return false;
@@ -268,6 +276,11 @@ class PhotonWalk {
         if (isCaustic(m_request.kind))
             return way.stage == Stage::kStraight || m_request.descent == 0.0f || !way.isFollowed;
         return way.stage == Stage::kSpecular && m_request.withoutCaustics;
+    }
+
+    // The same by a broad lobe: light that comes straight from there is no caustic.
+    bool endsAtBroad(const Way& way) const {
+        return isCaustic(m_request.kind) && way.stage == Stage::kStraight;
     }
 
     // Stores a photon where its way is asked for. Returns its flux if so; of light that descends
@@ -288,13 +301,14 @@ class PhotonWalk {
         return channelSum(flux);
     }
 
-    // What caustics send straight to a surface is even: the share that is followed carries it.
+    // What caustics send straight to a surface, or by broad lobes, is even: the share that is
+    // followed carries it.
     void landDescended(Part& part, const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
                        Batch& batch) const {
         const Way& way = part.way;
         if (way.stage == Stage::kLater)
             return storeOfChain(part, surface, bsdf, sampler, batch, batch.descended);
-        const bool isStraight = way.stage == Stage::kDescended;
+        const bool isStraight = way.stage == Stage::kDescended || way.stage == Stage::kBroadened;
         if (isStraight && !way.isFollowed) return;
         store(surface, bsdf, isStraight ? part.flux * (1.0f / m_request.descent) : part.flux, batch,
               batch.descended);

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "integrator/sampling/warps.h"
+#include "integrator/scene/invisible.h"
 #include "integrator/scene/shape_record.h"
 
 namespace pm {
@@ -126,12 +127,14 @@ std::unique_ptr<const Scene::CoincidentFaces> Scene::CoincidentFaces::find(
         if (!record.mesh) continue;
         const bool mayBe = std::ranges::any_of(record.materials, [&](std::uint32_t m) {
             const MaterialDescription& material = scene.material(m);
-            return material.kind == MaterialKind::kDielectric || isSheet(material) ||
-                   !isBlack(material.emission);
+            return (material.kind == MaterialKind::kDielectric && !isInvisible(material)) ||
+                   isSheet(material) || !isBlack(material.emission);
         });
         if (!mayBe) continue;
         for (std::uint32_t i = 0; i < record.mesh->triangles.size(); ++i)
-            if (rankOf(scene, {shape, i}) != Rank::kOpaque) special.push_back({shape, i});
+            if (rankOf(scene, {shape, i}) != Rank::kOpaque &&
+                !isInvisible(scene.material(record.materialOf(i))))
+                special.push_back({shape, i});
     }
     if (special.empty()) return nullptr;
     const auto points = static_cast<std::uint32_t>(

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "integrator/scene/coincident_faces.h"
+#include "integrator/scene/invisible.h"
 #include "integrator/scene/shape_record.h"
 
 namespace pm {
@@ -84,7 +85,8 @@ bool Scene::findFlat(const CancelCheck& cancel) const {
     // cancels.
     Vec3d normal, origin;
     const auto reflects = [&](const ShapeRecord& record, std::uint32_t primitive) {
-        return !isBlackBody(m_description.materials[record.materialOf(primitive)]);
+        const MaterialDescription& material = m_description.materials[record.materialOf(primitive)];
+        return !isBlackBody(material) && !isInvisible(material);
     };
     const auto forEachTriangle = [&](const auto& visit) {
         for (const ShapeRecord& record : m_shapes) {

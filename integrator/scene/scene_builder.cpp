@@ -298,13 +298,16 @@ class Scene::Builder {
     }
 
     void addToTracer() {
-        for (const ShapeRecord& record : m_scene.m_shapes) {
-            if (record.mesh)
-                m_scene.m_tracer.addTriangles(
-                    {record.positions.data(), record.positions.size() - 1},
-                    {record.mesh->triangles.data(), record.mesh->triangles.size()}, record.exact);
-            else
+        for (ShapeRecord& record : m_scene.m_shapes) {
+            record.leaveOutInvisible(m_scene);
+            if (!record.mesh && record.visible.empty()) {
                 m_scene.m_tracer.addSphere(record.sphere.centre, record.sphere.radius);
+                continue;
+            }
+            const std::vector<TriangleMesh::Corners>& triangles =
+                record.visible.empty() ? record.mesh->triangles : record.visible;
+            m_scene.m_tracer.addTriangles({record.positions.data(), record.positions.size() - 1},
+                                          {triangles.data(), triangles.size()}, record.exact);
         }
         m_cancel.throwIfSet("building the scene");
         m_scene.m_tracer.commit(m_cancel);

@@ -59,6 +59,15 @@ inline bool isDiffuseAtMost(const MaterialDescription& material) {
            material.transparency == 0.0f && material.opacityTexture == kNoTexture;
 }
 
+// Half of a Phong lobe's greatest value lies 10 degrees aside, or farther.
+inline constexpr float kMostBroadExponent = 45.0f;
+
+// Whether the material's Phong lobe, where it has one, is so broad that it casts no caustics: light
+// that it scatters is found as diffuse light is. By the number alone, whatever its texture.
+inline bool isBroad(const MaterialDescription& material) {
+    return material.glossyExponent <= kMostBroadExponent;
+}
+
 // Whether light can leave the material in one direction, or two, like from a mirror or glass.
 inline bool mayHaveDelta(const MaterialDescription& material) {
     return material.kind != MaterialKind::kSurface || material.transparency > 0.0f ||

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "integrator/scene/invisible.h"
 #include "integrator/scene/scene.h"
 
 namespace pm {
@@ -27,7 +28,9 @@ struct Scene::ShapeRecord {
     std::vector<Vec3f> normals;                // transformed, unit
     std::vector<Facet> facets;                 // of each triangle
     std::vector<ExactTriangle> exact;          // huge ones, by their numbers
-    bool mirrored = false;                     // the transform turns the winding round
+    // The triangles, those without area that no ray is to meet; empty where rays meet all there is.
+    std::vector<TriangleMesh::Corners> visible;
+    bool mirrored = false;  // the transform turns the winding round
     SphereShape sphere;
     Vec3d sphereAxes[3];  // of its object space, unit
     bool isTexturedSphere = false;
@@ -68,6 +71,21 @@ struct Scene::ShapeRecord {
                 lo[axis] = std::min(lo[axis], v[axis]);
                 hi[axis] = std::max(hi[axis], v[axis]);
             }
+    }
+    // Fills `visible`.
+    void leaveOutInvisible(const Scene& scene) {
+        const auto isOne = [&](std::uint32_t index) { return isInvisible(scene.material(index)); };
+        if (std::ranges::none_of(materials, isOne)) return;
+        if (mesh)
+            visible = mesh->triangles;
+        else
+            visible.resize(1);
+        if (!mesh) positions.resize(2);
+        // Embree passes over triangles without area.
+        for (std::uint32_t i = 0; i < visible.size(); ++i)
+            if (isOne(materialOf(i))) visible[i].fill(visible[i][0]);
+        std::erase_if(exact,
+                      [&](const ExactTriangle& e) { return isOne(materialOf(e.primitive)); });
     }
     std::int32_t lightOf(std::uint32_t primitive) const {
         return lightOfPrimitive.empty() ? kNoLight : lightOfPrimitive[primitive];

@@ -44,8 +44,8 @@ DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, st
                                                     bsdf.pdfSolidAngle(lobe, light.direction));
         return value * light.radiance * (weight / light.pdfSolidAngle);
     };
-    result.diffuse = contribution(Lobe::kDiffuse);
-    result.glossy = contribution(Lobe::kGlossy);
+    if (asked.diffuse != LampStrategy::kNone) result.diffuse = contribution(Lobe::kDiffuse);
+    result.glossy = contribution(bsdf.phongLobe());
     if (isBlack(result.diffuse) && isBlack(result.glossy)) return result;
     ++rays;
     if (asked.scene.occluded(light.shadowRay)) return {};

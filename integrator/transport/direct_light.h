@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "integrator/materials/bsdf.h"
@@ -12,32 +13,37 @@
 
 namespace pm {
 
-// Which part of the picture a light path belongs to. With D the diffuse lobe and S any other, read
-// from the eye: emission E S* L where every S is delta; direct E S* D L, and E S* L where a glossy
-// lobe takes part; caustic E S* D S+ L; indirect all with two D or more. Each path is in exactly
-// one.
+// Which part of the picture a light path belongs to. With D the diffuse lobe, B a broad one and S
+// any other, read from the eye: emission E S* L where every S is delta; direct E S* (D|B) L, and
+// E S+ L where a glossy lobe takes part; caustic E S* D (B|S)* S L; indirect all others, which have
+// two D or B or more. Each path is in exactly one.
 enum class PathClass : std::uint8_t { kEmission, kDirect, kCaustic, kIndirect };
 
 // How far a path from the camera has come.
 struct PathState {
-    std::uint32_t diffuseCount = 0;
-    bool specularSinceDiffuse = false;
+    // The first D or B, if any: what came after it, and whether it was a D.
+    enum class Since : std::uint8_t { kNone, kNothing, kOthers, kDiffuse };
+    Since since = Since::kNone;
+    bool firstIsDiffuse = false;
+    bool lastIsSpecular = false;
     bool anyGlossy = false;
 
     void scatter(Lobe lobe) {
-        if (lobe == Lobe::kDiffuse) {
-            ++diffuseCount;
-            specularSinceDiffuse = false;
-        } else {
-            specularSinceDiffuse = true;
-            anyGlossy = anyGlossy || lobe == Lobe::kGlossy;
+        const bool diffuse = lobe == Lobe::kDiffuse;
+        lastIsSpecular = !diffuse && lobe != Lobe::kBroad;
+        anyGlossy = anyGlossy || lobe == Lobe::kGlossy;
+        if (since != Since::kNone)
+            since = diffuse ? Since::kDiffuse : std::max(since, Since::kOthers);
+        else if (!lastIsSpecular) {
+            since = Since::kNothing;
+            firstIsDiffuse = diffuse;
         }
     }
     PathClass classify() const {
-        if (diffuseCount == 0) return anyGlossy ? PathClass::kDirect : PathClass::kEmission;
-        if (diffuseCount == 1)
-            return specularSinceDiffuse ? PathClass::kCaustic : PathClass::kDirect;
-        return PathClass::kIndirect;
+        if (since == Since::kNone) return anyGlossy ? PathClass::kDirect : PathClass::kEmission;
+        if (since == Since::kNothing) return PathClass::kDirect;
+        return since == Since::kOthers && firstIsDiffuse && lastIsSpecular ? PathClass::kCaustic
+                                                                           : PathClass::kIndirect;
     }
 };
 
@@ -73,7 +79,7 @@ struct SampleRadiance {
     }
 };
 
-// Radiance reflected by each lobe that is not delta, from one light sample.
+// Radiance reflected by the diffuse and the Phong lobe, from one light sample.
 struct DirectRadiance {
     Rgb diffuse, glossy;
 };
@@ -82,6 +88,7 @@ struct DirectRadiance {
 enum class LampStrategy : std::uint8_t {
     kBoth,           // by next-event estimation and by sampling the lobe, weighted
     kNextEventOnly,  // where lamps fill so little of the view that sampling the lobe adds nothing
+    kNone,           // it is not asked for
 };
 
 // Next-event estimation for both lobes: the mean of `samples` lamp samples, a power of two, with a

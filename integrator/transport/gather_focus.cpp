@@ -69,7 +69,7 @@ std::vector<End> endsOfPaths(const Scene& scene, const Camera& camera,
         std::vector<std::vector<End>> endsOf(lattice.size());
         followPilotPaths(scene, camera, lattice, combineBits(settings.seed, kSeed), cancel,
                          [&](std::size_t path, const PathStop& stop) {
-                             if (stop.next != Lobe::kDiffuse) return true;
+                             if (!stop.isGathered()) return stop.goesOn();
                              addEnds(stop, endsOf[path]);
                              return false;
                          });

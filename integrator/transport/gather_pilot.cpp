@@ -134,7 +134,7 @@ void visitPlaces(const Scene& scene, const Camera& camera, const FrameLattice& l
                  const RenderSettings& settings, const CancelCheck& cancel, const Use& use) {
     followPilotPaths(scene, camera, lattice, combineBits(settings.seed, kSeed), cancel,
                      [&](std::size_t path, const PathStop& stop) {
-                         if (stop.next != Lobe::kDiffuse) return true;
+                         if (!stop.isGathered()) return stop.goesOn();
                          use(path, stop);
                          return false;
                      });

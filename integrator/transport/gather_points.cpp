@@ -131,7 +131,7 @@ void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
         m_camera.ray(static_cast<double>(point.screen.x), static_cast<double>(point.screen.y));
     followCameraPath(m_scene, first, sampler, [&](const PathStop& stop) {
         const bool chosen = stop.bsdf.has(Lobe::kDiffuse) && stop.sampler.next1D() < 0.5f;
-        if (stop.next != Lobe::kDiffuse && !chosen) return true;
+        if (!stop.isGathered() && !chosen) return stop.goesOn();
         const Vec3f& normal = stop.bsdf.facingGeometricNormal();
         point.position = pointUnderRay(stop.surface.position, stop.ray, normal,
                                        m_scene.liftOfRays(stop.surface.position));
@@ -153,7 +153,7 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
     float clearance = std::numeric_limits<float>::max();
     float lamps = 0;
     Gathered last;
-    const GatherEnds ends{m_sites, m_request.caustics, m_request.rays};
+    const GatherEnds ends{m_sites, m_request.caustics, m_request.rays, m_request.lights};
     const auto addLast = [&] {
         endGather(ends, last);
         addTo(sum, last.radiance);

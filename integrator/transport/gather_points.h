@@ -22,6 +22,7 @@
 
 namespace pm {
 
+class LightSampler;
 class Surroundings;
 
 // Indirect irradiance, as final gathering finds it, kept at points that the camera sees: one in
@@ -56,6 +57,8 @@ class GatherPoints {
         const PilotRadius* refocusedRadius = nullptr;
         // Where the rays go by; null: by the cosine alone.
         const GatherGuide* guide = nullptr;
+        // As of GatherEnds.
+        const LightSampler* lights = nullptr;
     };
     // A place that a camera path came to.
     struct Place {

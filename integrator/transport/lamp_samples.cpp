@@ -52,7 +52,7 @@ std::vector<Lit> lookAround(const Scene& scene, const LightSampler& lights, cons
     std::vector<Lit> found(lattice.size());
     followPilotPaths(
         scene, camera, lattice, seed, cancel, [&](std::size_t path, const PathStop& stop) {
-            if (!stop.bsdf.has(Lobe::kDiffuse) && !stop.bsdf.has(Lobe::kGlossy)) return true;
+            if (!stop.bsdf.reflectsLamps()) return true;
             const auto byStream = [&](std::uint64_t stream) {
                 return stop.throughput * estimate(scene, lights, stop.surface, stop.bsdf,
                                                   Sampler(seed, stream, path, 0));

@@ -30,7 +30,7 @@ std::vector<LitPlace> findLitPlaces(const Scene& scene, const Camera& camera,
     followPilotPaths(
         scene, camera, lattice, combineBits(settings.seed, kPlaceSeed), cancel,
         [&](std::size_t path, const PathStop& stop) {
-            if (stop.bsdf.has(Lobe::kDiffuse) || stop.bsdf.has(Lobe::kGlossy))
+            if (stop.bsdf.reflectsLamps())
                 found[path].push_back({stop.surface, stop.bsdf.facingGeometricNormal()});
             return found[path].size() < kMostPlacesOfAPath &&
                    (wholePath || stop.next != Lobe::kDiffuse);

@@ -25,12 +25,12 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
                         path.throughput);
         if (result.rays == 1) recordFirstHit(surface, bsdf, result);
         if (bsdf.isBlackBody()) return result;
-        if (bsdf.has(Lobe::kDiffuse) || bsdf.has(Lobe::kGlossy)) {
+        if (bsdf.reflectsLamps()) {
             const DirectRadiance direct = estimateDirect(
                 m_scene, m_lights, surface, bsdf, LampStrategy::kBoth, 1, sampler, result.rays);
             PathState byDiffuse = state, byGlossy = state;
             byDiffuse.scatter(Lobe::kDiffuse);
-            byGlossy.scatter(Lobe::kGlossy);
+            byGlossy.scatter(bsdf.phongLobe());
             result.of(byDiffuse.classify()) += path.throughput * direct.diffuse;
             result.of(byGlossy.classify()) += path.throughput * direct.glossy;
         }

@@ -54,6 +54,12 @@ struct PathStop {
     const Rgb& throughput;  // of the path up to here
     Lobe next;              // by which the path would leave
     Sampler& sampler;       // of the path
+
+    // Whether indirect light is gathered here: at the first diffuse surface, and where a broad lobe
+    // leads on, along which gather rays look for it.
+    bool isGathered() const { return bsdf.has(Lobe::kDiffuse) && !goesOn(); }
+    // Whether it may be farther on.
+    bool goesOn() const { return next != Lobe::kDiffuse && next != Lobe::kBroad; }
 };
 
 // Follows a path from the camera until visit(PathStop) returns false, or it ends as one of any kind

@@ -67,10 +67,6 @@ bool hasSeveralLobes(const Bsdf& bsdf) {
     return lobes > 1;
 }
 
-bool reflectsLamps(const Bsdf& bsdf) {
-    return bsdf.has(Lobe::kDiffuse) || bsdf.has(Lobe::kGlossy);
-}
-
 }  // namespace
 
 SampleRadiance PhotonIntegrator::sample(Vec2f screen, const Ray& ray, Sampler& sampler,
@@ -148,10 +144,13 @@ bool PhotonIntegrator::followLobes(const Surface& surface, const Bsdf& bsdf, Sti
         return false;
     }
     const Survival survival = divide(bsdf, branch.path, still.any(), tree.sampler);
-    // A path that goes on by one lobe, beside the diffuse one, has lost the rest.
-    static_assert(static_cast<std::size_t>(Lobe::kDiffuse) == 0);
-    const auto isFollowed = [](float probability) { return probability > 0.0f; };
-    const bool divides = std::count_if(survival.begin() + 1, survival.end(), isFollowed) > 1;
+    // A path that goes on by one lobe, beside those that end it, has lost the rest.
+    const auto goesOn = [&](Lobe lobe) {
+        return lobe != Lobe::kDiffuse && !(lobe == Lobe::kBroad && m_maps.global);
+    };
+    int waysOn = 0;
+    for (std::size_t i = 0; i < kLobeCount; ++i)
+        waysOn += survival[i] > 0.0f && goesOn(static_cast<Lobe>(i));
     std::optional<Branch> next;
     for (std::size_t i = 0; i < kLobeCount; ++i) {
         if (survival[i] == 0.0f) continue;
@@ -160,18 +159,22 @@ bool PhotonIntegrator::followLobes(const Surface& surface, const Bsdf& bsdf, Sti
             followDiffuse(surface, bsdf, branch, still, survival[i], tree);
             continue;
         }
+        if (!goesOn(lobe)) {
+            followBroad(surface, bsdf, branch, survival[i], tree);
+            continue;
+        }
         BsdfSample sample;
         if (!bsdf.follow(lobe, sample, isDelta(lobe) ? Vec2f{} : tree.sampler.next2D())) continue;
         sample.weight *= 1.0f / survival[i];
         Branch part = branch;
         part.share *= partOf(bsdf, lobe) / survival[i];
-        if (!part.goOn(surface, bsdf, sample, divides, tree.sampler)) {
+        if (!part.goOn(surface, bsdf, sample, waysOn > 1, tree.sampler)) {
             if (part.path.isCut()) tree.result.addCut(part.path.amount());
             continue;
         }
-        part.lampSamples = reflectsLamps(bsdf) ? 1
-                                               : std::min(branch.lampSamples,
-                                                          raysOfShare(m_lampSamples, part.share));
+        part.lampSamples = bsdf.reflectsLamps() ? 1
+                                                : std::min(branch.lampSamples,
+                                                           raysOfShare(m_lampSamples, part.share));
         if (next) follow(*next, false, tree);
         next = part;
     }
@@ -189,11 +192,13 @@ PhotonIntegrator::StillToFind PhotonIntegrator::addReflected(const Surface& surf
     if (bsdf.has(Lobe::kDiffuse)) still = readMaps(surface, bsdf, branch, tree);
     if (still.indirect && m_maps.lamps)
         sampleCaustics(surface, bsdf, throughput, still.ownRays, tree.sampler, tree.result);
-    if (reflectsLamps(bsdf)) {
+    if (bsdf.reflectsLamps()) {
         const DirectRadiance direct =
             estimateDirect(m_scene, m_lights, surface, bsdf, still.lamps, branch.lampSamples,
                            tree.sampler, tree.result.rays);
-        tree.result.direct += throughput * (direct.diffuse + direct.glossy);
+        PathState lit = branch.state;
+        lit.scatter(Lobe::kDiffuse);
+        tree.result.of(lit.classify()) += throughput * (direct.diffuse + direct.glossy);
     }
     return still;
 }
@@ -265,6 +270,28 @@ void PhotonIntegrator::followDiffuse(const Surface& surface, const Bsdf& bsdf, c
     }
 }
 
+// What is so blurred needs no look at what is met but the irradiance kept there.
+void PhotonIntegrator::followBroad(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
+                                   float survival, const Tree& tree) const {
+    BsdfSample sample;
+    if (!bsdf.follow(Lobe::kBroad, sample, tree.sampler.next2D())) return;
+    SampleRadiance& result = tree.result;
+    const GatherEnds ends{*m_maps.global, m_maps.lamps, 1, &m_lights, true};
+    const Gathered found =
+        finalGather(m_scene, ends, rayFrom(surface, sample.direction), 1.0f, tree.sampler);
+    result.rays += found.rays;
+    const Rgb weight = branch.path.throughput * sample.weight / survival;
+    result.indirect += weight * found.radiance.wide;
+    result.biasProbe += weight * (found.radiance.narrow - found.radiance.wide);
+    const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle,
+                           branch.lampSamples};
+    PathState state = branch.state;
+    state.scatter(sample.lobe);
+    result.of(state.classify()) +=
+        weight * (found.hitAny ? weightedEmission(m_lights, found.first, last)
+                               : weightedFarLight(m_scene, m_lights, last));
+}
+
 // What a sample's own gather rays leave out of the light that caustics send straight to a surface.
 void PhotonIntegrator::sampleCaustics(const Surface& surface, const Bsdf& bsdf,
                                       const Rgb& throughput, std::uint32_t rays, Sampler sampler,
@@ -284,7 +311,8 @@ void PhotonIntegrator::gatherAlong(const Ray& ray, const LastScatter& last, Stil
                                    Sampler& sampler, SampleRadiance& result) const {
     Gathered found;
     if (still.indirect) {
-        found = finalGather(m_scene, {*m_maps.global, m_maps.lamps, rays}, ray, cosine, sampler);
+        found = finalGather(m_scene, {*m_maps.global, m_maps.lamps, rays, &m_lights}, ray, cosine,
+                            sampler);
         result.rays += found.rays;
         result.indirect += weight * found.radiance.wide;
         result.biasProbe += weight * (found.radiance.narrow - found.radiance.wide);

@@ -29,9 +29,9 @@ struct PhotonMaps {
 // (see PathClass): direct light to next-event estimation, weighted against a ray along the diffuse
 // lobe where lamps fill much of the view; caustics to the density estimate of their map at the
 // first diffuse surface; indirect light to the gather points near it, or to a gather ray of its own
-// where there are none. Other lobes are followed until a diffuse one.
-// Source: Jensen 2001, chapter 9 (the partition).
-// Threads: any, at once, each with a scratch of its own.
+// where there are none. Other lobes are followed until a diffuse one; by broad ones light is
+// gathered as along the diffuse one. Source: Jensen 2001, chapter 9 (the partition). Threads: any,
+// at once, each with a scratch of its own.
 class PhotonIntegrator {
   public:
     // lampSamples: of next-event estimation where a camera sample first meets a lobe that is not
@@ -92,6 +92,8 @@ class PhotonIntegrator {
                       const Rgb& reflected, const Tree& tree) const;
     void followDiffuse(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
                        StillToFind still, float survival, const Tree& tree) const;
+    void followBroad(const Surface& surface, const Bsdf& bsdf, const Branch& branch, float survival,
+                     const Tree& tree) const;
     void gatherAlong(const Ray& ray, const LastScatter& last, StillToFind still, const Rgb& weight,
                      std::uint32_t rays, float cosine, Sampler& sampler,
                      SampleRadiance& result) const;

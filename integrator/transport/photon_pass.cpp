@@ -185,7 +185,8 @@ void PhotonPass::buildIndirect(PassMaps& maps, BigVector<Photon> descended, Cont
                                         .caustics = maps.lamps.get(),
                                         .refocused = maps.refocused.get(),
                                         .refocusedRadius = m_refocusedRadius.get(),
-                                        .guide = m_guide.get()};
+                                        .guide = m_guide.get(),
+                                        .lights = &m_lights};
     maps.points = std::make_unique<GatherPoints>(m_scene, m_camera, *maps.sites, request);
     const std::lock_guard lock(m_mutex);
     m_mapSeconds += watch.seconds();

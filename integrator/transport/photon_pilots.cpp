@@ -80,7 +80,7 @@ void PhotonPass::chooseGatherRays(const PhotonMap& pilot, const CancelCheck& che
     if (m_plan.descent > 0.0f)
         lamps.emplace(m_scene, m_causticRadius->photons(), radiusOfGathered(), nullptr, 1.0f,
                       m_settings.seed, check);
-    const GatherEnds ends{sites, lamps ? &*lamps : nullptr, m_plan.gatherRays};
+    const GatherEnds ends{sites, lamps ? &*lamps : nullptr, m_plan.gatherRays, &m_lights};
     m_raysOfPoint = gatherRaysFor(
         gatherSpread(m_scene, m_camera, m_lights, ends, m_settings, check), m_plan.gatherRays);
     const bool always = m_settings.plan == PlanKind::kEverything;

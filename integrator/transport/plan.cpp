@@ -11,11 +11,14 @@
 #include "integrator/photons/caustic_casters.h"
 #include "integrator/photons/caustic_map.h"
 #include "integrator/photons/photon_tracer.h"
+#include "integrator/scene/convex_body.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/caustic_reach.h"
 #include "integrator/transport/lamp_samples.h"
 #include "integrator/transport/landing_pilot.h"
 #include "integrator/transport/plan_memory.h"
+#include "integrator/transport/plan_time.h"
 
 namespace pm {
 
@@ -49,12 +52,13 @@ constexpr std::uint64_t kMapBytesOfHugeFrame = std::uint64_t{560} << 20;
 
 struct SceneTraits {
     bool diffuse = false;   // some surface reflects diffusely
-    bool specular = false;  // some surface has another lobe
-    bool glossy = false;
+    bool specular = false;  // some surface has another lobe that may cast caustics
+    bool glossy = false;    // or a Phong lobe, broad or not
     bool lights = false;
     bool pointLights = false;  // of those that no ray meets: point lights, spots, parallel light
     bool farLights = false;    // of those that rays meet
-    bool flat = false;         // all in one plane: no light from surface to surface
+    // No light goes from surface to surface: all in one plane; the outside of one convex body.
+    bool flat = false, convex = false;
 };
 
 SceneTraits findTraits(const Scene& scene) {
@@ -74,6 +78,7 @@ SceneTraits findTraits(const Scene& scene) {
         (scene.isMet(light) ? traits.farLights : traits.pointLights) |=
             light.isAtPoint() || light.isFar();
     traits.flat = scene.isFlat();
+    traits.convex = !traits.flat && isConvexBody(scene);
     return traits;
 }
 
@@ -85,8 +90,9 @@ std::uint64_t photonsOf(const RenderSettings& settings, std::uint64_t ofSmallFra
                                       std::clamp(frames, kLeastOfThose, kMostOfThose));
 }
 
-// Time from what each part took where docs/benchmarks.md was measured.
-void estimateCosts(const RenderSettings& settings, Plan& plan) {
+// Memory at most; time of a sample from what each part took in rooms: the lamp samples' pilot
+// weighs by it, and with it pictures would change.
+void estimateCosts(const Scene& scene, const RenderSettings& settings, Plan& plan) {
     constexpr double kPerSample = 0.6e-6, kPerSampleOfCaustics = 0.9e-6, kPerGatherRay = 0.5e-6;
     constexpr double kPerGlobalPhoton = 3e-6, kPerCausticPhoton = 4e-6;
     const auto global = static_cast<double>(plan.globalPhotons);
@@ -100,7 +106,7 @@ void estimateCosts(const RenderSettings& settings, Plan& plan) {
         perPixel += plan.gatherRays * kPerGatherRay / (spacing * spacing);
     }
     const double photons = global * kPerGlobalPhoton + caustic * kPerCausticPhoton;
-    plan.processorSecondsPerPass = static_cast<double>(settings.window.area()) * perPixel + photons;
+    plan.processorSecondsPerPass = secondsOfPass(scene, settings, plan);
     const double framePixels = static_cast<double>(settings.width) * settings.height;
     plan.processorSecondsPerSample = (perPixel + photons / framePixels) / samplesOfAPixel;
 }
@@ -209,10 +215,36 @@ void planCausticMap(const SceneTraits& traits, Plan& plan) {
         plan.descent * 100.0f));
 }
 
-void planMaps(const RenderSettings& settings, const SceneTraits& traits, bool everything,
-              Plan& plan) {
-    plan.globalMap = !traits.flat || everything;
-    plan.causticMap = (traits.specular && !traits.flat) || everything;
+// Why light goes from no surface to another; empty where it may.
+std::string whyNothingGoesOn(const SceneTraits& traits) {
+    if (traits.flat) return "all surfaces that reflect lie in one plane";
+    if (traits.convex) return "all that reflects is the outside of one convex body";
+    return {};
+}
+
+// Why light casts no caustics; empty where it may.
+std::string whyNoCaustics(const Scene& scene, const RenderSettings& settings,
+                          const SceneTraits& traits, Plan& plan) {
+    if (!traits.specular)
+        return traits.glossy ? "no lobe but diffuse ones and such as are too broad to cast "
+                               "caustics carries more than a millionth"
+                             : "every surface is diffuse";
+    const std::string why = whyNothingGoesOn(traits);
+    if (!why.empty() || findsCaustics(scene, settings.seed)) return why;
+    plan.notices.push_back({NoticeCode::kNoCausticPhotons,
+                            "0 photons reached a diffuse surface by way of another, so there is no "
+                            "caustic light"});
+    return fmt::format(
+        "of {} photons aimed at surfaces that are not diffuse none was sent on by one",
+        kCausticReachPhotons);
+}
+
+void planMaps(const Scene& scene, const RenderSettings& settings, const SceneTraits& traits,
+              bool everything, Plan& plan) {
+    const std::string noGlobalMap = everything ? "" : whyNothingGoesOn(traits);
+    const std::string noCausticMap = everything ? "" : whyNoCaustics(scene, settings, traits, plan);
+    plan.globalMap = noGlobalMap.empty();
+    plan.causticMap = noCausticMap.empty();
     plan.tracePhotons = plan.globalMap || plan.causticMap;
     if (plan.globalMap) plan.globalPhotons = photonsOf(settings, kAutoGlobalPhotons);
     if (plan.causticMap) plan.causticPhotons = photonsOf(settings, kAutoCausticPhotons);
@@ -222,13 +254,11 @@ void planMaps(const RenderSettings& settings, const SceneTraits& traits, bool ev
     if (plan.globalMap)
         planGlobalMap(settings, plan);
     else
-        plan.reasons.push_back("no global map: all surfaces that reflect lie in one plane");
+        plan.reasons.push_back("no global map: " + noGlobalMap);
     if (plan.causticMap)
         planCausticMap(traits, plan);
     else
-        plan.reasons.push_back(traits.specular
-                                   ? "no caustic map: all surfaces that reflect lie in one plane"
-                                   : "no caustic map: every surface is diffuse");
+        plan.reasons.push_back("no caustic map: " + noCausticMap);
 }
 
 }  // namespace
@@ -236,7 +266,7 @@ void planMaps(const RenderSettings& settings, const SceneTraits& traits, bool ev
 Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     Plan plan;
     const SceneTraits traits = findTraits(scene);
-    if (traits.glossy && traits.pointLights)
+    if (traits.glossy && traits.specular && traits.pointLights)
         plan.notices.push_back({NoticeCode::kNotCovered,
                                 "light of point lights, spots and suns without a disc that reaches "
                                 "a glossy lobe by way of a mirror, glass or another glossy surface "
@@ -262,9 +292,9 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     }
     planDirectLight(scene, traits, plan);
     planLandings(scene, settings, plan);
-    planMaps(settings, traits, everything, plan);
+    planMaps(scene, settings, traits, everything, plan);
     expectLandings(scene, settings, plan);
-    estimateCosts(settings, plan);
+    estimateCosts(scene, settings, plan);
     return plan;
 }
 

@@ -51,6 +51,10 @@ class VirtualLamps {
     // units^-2.
     TwoRadii gathered(const Vec3f& position, const Vec3f& normal, float density,
                       std::uint32_t gatherRays) const;
+    // All of it, for what is found in no other way.
+    TwoRadii kept(const Vec3f& position, const Vec3f& normal) const {
+        return m_lamps.empty() ? TwoRadii{} : m_sites.at(position, normal);
+    }
     // The rest of the irradiance at a place, W m^-2, by raysBeside(gatherRays) rays. u: in [0, 1):
     // which lamps; spread it evenly over places near each other.
     Rgb sampled(const Place& place, std::uint32_t gatherRays, float u) const;

@@ -87,7 +87,7 @@ TEST(Bsdf, IsReciprocal) {
     const Bench bench(diffuseAndGlossy(0.5f, 0.4f, 20));
     for (int i = 0; i < 5000; ++i) {
         const Vec3f a = above(random), b = above(random);
-        for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kGlossy}) {
+        for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kBroad}) {
             const float ab = bench.bsdf(a).evaluate(lobe, b).r / b.z;
             const float ba = bench.bsdf(b).evaluate(lobe, a).r / a.z;
             EXPECT_NEAR(ab, ba, 2e-4f * std::abs(ab) + 1e-6f);
@@ -104,8 +104,8 @@ TEST(Bsdf, PhotonsAreTheAdjointOfTheCamera) {
     int lit = 0, fringe = 0;
     for (int i = 0; i < 20'000; ++i) {
         const Vec3f light = above(random), eye = above(random);
-        for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kGlossy}) {
-            if (lobe == Lobe::kGlossy) {
+        for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kBroad}) {
+            if (lobe == Lobe::kBroad) {
                 // Seen from below its shading normal a surface is glossy by the geometric one;
                 // photons can't know who will look, and lose that fringe.
                 if (dot(eye, ns) <= 0.0f) continue;

@@ -131,7 +131,7 @@ std::vector<TestScene> testScenes() {
          [=](SceneMaker& m) {
              MaterialDescription& walls = m.description.materials[0];
              walls.glossy = Rgb(0.2f);
-             walls.glossyExponent = 20;
+             walls.glossyExponent = 60;
              ceilingLamp(m, 0.9, 0.2);
              m.pointLight({0.5, 0.5, 0.5}, Rgb(0.2f));
          }},

@@ -16,9 +16,12 @@ namespace {
 std::vector<NoticeCode> noticesOf(const SceneMaker& maker) {
     RenderSettings settings = smallFrame(16, 16, IntegratorKind::kPhoton, 1, 2);
     settings.photons = 4000;
-    FrameRenderer renderer(maker.build(), settings);
+    const auto scene = maker.build();
+    const Plan plan = makePlan(*scene, settings);
+    FrameRenderer renderer(scene, settings, plan);
     renderer.beginPass(0, std::atomic<bool>{false}, {});
     std::vector<NoticeCode> codes;
+    for (const Notice& notice : plan.notices) codes.push_back(notice.code);
     for (const Notice& notice : renderer.takeNotices()) codes.push_back(notice.code);
     return codes;
 }

@@ -176,10 +176,12 @@ TEST(Plan, BlackSurfacesPassNothingOn) {
     MaterialDescription reflecting, glossy, thin;
     reflecting.diffuse = Rgb(0.1f);
     glossy.glossy = Rgb(0.1f);
+    glossy.glossyExponent = 100;
     thin.transparency = 0.5f;
     for (const bool asSphere : {false, true}) {
         EXPECT_FALSE(planOver({}, asSphere).tracePhotons) << asSphere;
         EXPECT_TRUE(planOver(reflecting, asSphere).globalMap) << asSphere;
+        EXPECT_TRUE(planOver(glossy, asSphere).globalMap) << asSphere;
         EXPECT_TRUE(planOver(glossy, asSphere).causticMap) << asSphere;
         EXPECT_TRUE(planOver(thin, asSphere).tracePhotons) << asSphere;
     }
@@ -194,6 +196,110 @@ TEST(Plan, PathsThatNoEstimatorCoversAreNamed) {
     glossy.glossyExponent = 50;
     maker.quad({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, maker.material(glossy));
     EXPECT_TRUE(hasNotice(planOf(maker), NoticeCode::kNotCovered));
+}
+
+bool says(const Plan& plan, const std::string& text) {
+    return plan.explain().find(text) != std::string::npos;
+}
+
+// A lobe that carries next to nothing, or spreads it widely; what light does not come to.
+TEST(Plan, CausticsAreOfWhatLobesCarry) {
+    const auto planWith = [](const MaterialDescription& material, double height = 0.3) {
+        SceneMaker maker;
+        maker.box({-1, -1, -1}, {1, 1, 1}, maker.diffuse(Rgb(0.5f)), true);
+        maker.quad({-0.3, 0.99, -0.3}, {0.6, 0, 0}, {0, 0, 0.6}, maker.diffuse({}, Rgb(10.0f)));
+        maker.sphere({0, height, 0}, 0.2, maker.material(material));
+        return planOf(maker);
+    };
+    MaterialDescription mirror, glass, glossy;
+    mirror.kind = MaterialKind::kMirror;
+    mirror.glossy = Rgb(0.9f);
+    EXPECT_TRUE(planWith(mirror).causticMap);
+    const Plan outside = planWith(mirror, 3);
+    EXPECT_FALSE(outside.causticMap);
+    EXPECT_TRUE(outside.globalMap);
+    EXPECT_TRUE(says(outside, "no caustic map: of 65536 photons aimed"));
+    EXPECT_TRUE(hasNotice(outside, NoticeCode::kNoCausticPhotons));
+    mirror.glossy = Rgb(1e-9f);
+    EXPECT_FALSE(planWith(mirror).causticMap);
+    glass.kind = MaterialKind::kDielectric;
+    EXPECT_TRUE(planWith(glass).causticMap);
+    glass.ior = 1;
+    EXPECT_FALSE(planWith(glass).causticMap);
+    glossy.diffuse = Rgb(0.4f);
+    glossy.glossy = Rgb(0.2f);
+    glossy.glossyExponent = 200;
+    EXPECT_TRUE(planWith(glossy).causticMap);
+    glossy.glossyExponent = 40;
+    EXPECT_FALSE(planWith(glossy).causticMap);
+    EXPECT_TRUE(says(planWith(glossy), "too broad"));
+}
+
+// One convex thing whose light from outside goes nowhere else; and what is not that.
+TEST(Plan, OneConvexBodyWantsNoFinalGather) {
+    enum class Body { kBall, kMesh, kBox, kLyingOpen, kLampInside, kInwardLamp, kTwo, kGlass };
+    const auto planUnderSky = [](Body body) {
+        SceneMaker maker;
+        const auto grey = maker.diffuse(Rgb(0.5f));
+        MaterialDescription glass;
+        glass.kind = MaterialKind::kDielectric;
+        if (body == Body::kBall || body == Body::kTwo)
+            maker.sphere({1, 2, 3}, 0.7, grey);
+        else if (body == Body::kMesh)
+            maker.meshSphere({1, 2, 3}, 0.7, grey, false, 12);
+        else if (body == Body::kGlass)
+            maker.sphere({1, 2, 3}, 0.7, maker.material(glass));
+        else if (body == Body::kLyingOpen)
+            maker.meshSphere({1, 2, 3}, 0.7, grey, false, 12);
+        else
+            maker.box({-1, 0.3, 2}, {1.1, 0.7, 4.2}, grey, body == Body::kInwardLamp);
+        if (body == Body::kLyingOpen) {
+            auto& shape = maker.description.instances[0].shape;
+            TriangleMesh mesh = *std::get<std::shared_ptr<const TriangleMesh>>(shape);
+            mesh.triangles.pop_back();
+            if (!mesh.materials.empty()) mesh.materials.pop_back();
+            if (!mesh.normalIndices.empty()) mesh.normalIndices.pop_back();
+            if (!mesh.texcoordIndices.empty()) mesh.texcoordIndices.pop_back();
+            shape = std::make_shared<const TriangleMesh>(mesh);
+        }
+        if (body == Body::kTwo) maker.sphere({-1, 2, 3}, 0.7, grey);
+        if (body == Body::kInwardLamp) maker.description.materials[grey].emission = Rgb(1.0f);
+        if (body == Body::kLampInside) maker.pointLight({0, 0.5, 3}, Rgb(1.0f));
+        maker.pointLight({0, 9, 0}, Rgb(1.0f));
+        maker.quad({-1, 8, -1}, {2, 0, 0}, {0, 0, 2}, maker.diffuse({}, Rgb(1.0f)));
+        maker.sky(Rgb(1.0f));
+        return planOf(maker);
+    };
+    for (const Body body : {Body::kBall, Body::kMesh, Body::kBox}) {
+        EXPECT_FALSE(planUnderSky(body).tracePhotons) << static_cast<int>(body);
+        EXPECT_TRUE(says(planUnderSky(body), "one convex body")) << static_cast<int>(body);
+    }
+    for (const Body body : {Body::kLyingOpen, Body::kLampInside, Body::kInwardLamp, Body::kTwo})
+        EXPECT_TRUE(planUnderSky(body).globalMap) << static_cast<int>(body);
+}
+
+// Clear glass of index 1 is met by no ray, whatever its shape.
+TEST(Plan, InvisibleThingsAreMetByNoRay) {
+    const auto sceneWith = [](float ior) {
+        SceneMaker maker = litFloor();
+        MaterialDescription glass;
+        glass.kind = MaterialKind::kDielectric;
+        glass.ior = ior;
+        const auto index = maker.material(glass);
+        maker.sphere({0, 0.5, 0}, 0.1, index);
+        maker.box({-0.5, 0.2, -0.5}, {0.5, 0.3, 0.5}, index, false);
+        return maker.build();
+    };
+    const auto hitsAt = [](const Scene& scene) {
+        const Ray ray{Vec3f(Vec3d{0, 0.9, 0} - scene.centre()), {0, -1, 0}};
+        Surface surface;
+        EXPECT_TRUE(scene.intersect(ray, surface));
+        EXPECT_EQ(scene.occluded({ray.origin, ray.direction, 0.85f}),
+                  surface.position.y + scene.centre().y > 0.1);
+        return static_cast<double>(surface.position.y) + scene.centre().y;
+    };
+    EXPECT_NEAR(hitsAt(*sceneWith(1.5f)), 0.6, 1e-6);
+    EXPECT_NEAR(hitsAt(*sceneWith(1.0f)), 0, 1e-6);
 }
 
 // Patches of surfaces are made as the pixels ask for them, and are memory of the maps as well.

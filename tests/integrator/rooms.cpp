@@ -53,7 +53,7 @@ SceneMaker diffuseRoom() {
     return maker;
 }
 
-// Diffuse and glossy on one surface, and glossy alone.
+// Diffuse and broad on one surface, a broad lobe alone, and a narrow one.
 SceneMaker glossyRoom() {
     SceneMaker maker = litRoom();
     MaterialDescription both;
@@ -63,7 +63,9 @@ SceneMaker glossyRoom() {
     maker.box({-0.7, -1, -0.7}, {-0.1, 0.2, -0.1}, maker.material(both), false);
     MaterialDescription rough = mirror();
     rough.glossyExponent = 40;
-    maker.sphere({0.4, -0.6, 0.1}, 0.4, maker.material(rough));
+    maker.sphere({0.5, -0.7, -0.4}, 0.3, maker.material(rough));
+    rough.glossyExponent = 100;
+    maker.sphere({0.3, -0.7, 0.4}, 0.3, maker.material(rough));
     return maker;
 }
 

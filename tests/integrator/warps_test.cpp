@@ -138,7 +138,7 @@ TEST(Warps, BsdfSamplesItsDensity) {
             const Bench bench(material, {0, 0, 1});
             const Vec3f out = normalize(Vec3f{0.6f, 0.3f, 0.5f});
             const Bsdf bsdf(*bench.scene, bench.surface, out, transport, Rgb(0.7f, 1.0f, 0.4f));
-            for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kGlossy}) {
+            for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kBroad}) {
                 if (!bsdf.has(lobe)) continue;
                 EXPECT_GT(lobePValue(bench, bsdf, lobe, 0.0, ++seed), kSignificance) << seed;
                 EXPECT_LT(lobePValue(bench, bsdf, lobe, 0.6, ++seed), kSignificance) << seed;

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Which class a path belongs to, by its lobes as read from the eye.
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "integrator/transport/direct_light.h"
+
+namespace pm::test {
+namespace {
+
+PathClass classOf(const std::string& lobes) {
+    PathState state;
+    for (const char lobe : lobes)
+        state.scatter(lobe == 'D'   ? Lobe::kDiffuse
+                      : lobe == 'B' ? Lobe::kBroad
+                      : lobe == 'G' ? Lobe::kGlossy
+                                    : Lobe::kReflection);
+    return state.classify();
+}
+
+TEST(PathClasses, ByTheLobesOnTheWay) {
+    for (const char* path : {"", "S", "SS"}) EXPECT_EQ(classOf(path), PathClass::kEmission) << path;
+    for (const char* path : {"D", "B", "G", "SG", "GS", "SD", "GD", "SB"})
+        EXPECT_EQ(classOf(path), PathClass::kDirect) << path;
+    for (const char* path : {"DS", "DG", "SDS", "DBS", "DSBS", "DBBG"})
+        EXPECT_EQ(classOf(path), PathClass::kCaustic) << path;
+    for (const char* path :
+         {"DD", "DSD", "DB", "DSB", "BD", "BB", "BS", "BSD", "DDS", "DBDS", "BDS", "DSDS"})
+        EXPECT_EQ(classOf(path), PathClass::kIndirect) << path;
+}
+
+}  // namespace
+}  // namespace pm::test
