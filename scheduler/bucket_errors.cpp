@@ -36,24 +36,21 @@ BucketErrors::BucketErrors(const BucketGrid& grid)
 std::uint64_t BucketErrors::memoryBytes(const BucketGrid& grid) {
     const auto across = static_cast<std::uint64_t>(squaresAcross(grid));
     // The noisiest pixels twice: they are sorted in a copy.
-    return grid.cellCount() * across * across * sizeof(Square) +
+    return grid.cellCount() * across * across * sizeof(ErrorSquare) +
            2 * trimmedPixels(static_cast<double>(grid.window().area())) * sizeof(double);
 }
 
 void BucketErrors::add(std::uint32_t cell, const FrameStore& frame) {
     const FpEnvironment guard;
     const Rect& window = frame.window();
-    std::vector<Square> squares(m_squaresPerBucket);
+    std::vector<ErrorSquare> squares(m_squaresPerBucket);
     std::vector<double> noises;
-    frame.visitErrors([&](std::int32_t x, std::int32_t y, double noise, double bias) {
+    frame.visitErrors([&](std::int32_t x, std::int32_t y, const PixelError& pixel) {
         const std::int32_t column = (x - window.x0) / kErrorSquarePixels;
         const std::int32_t row = (y - window.y0) / kErrorSquarePixels;
-        Square& square = squares[static_cast<std::size_t>(row * m_squareColumns + column)];
-        square.noise += noise;
-        square.bias += bias;
-        ++square.pixels;
+        squares[static_cast<std::size_t>(row * m_squareColumns + column)].add(pixel);
         // NaN has no order.
-        if (!std::isnan(noise)) noises.push_back(noise);
+        if (!std::isnan(pixel.noise)) noises.push_back(pixel.noise);
     });
     const std::lock_guard lock(m_mutex);
     std::copy(squares.begin(), squares.end(),
@@ -82,26 +79,20 @@ std::optional<FrameError> BucketErrors::result() const {
     const FpEnvironment guard;
     const std::lock_guard lock(m_mutex);
     CompensatedSum noise, bias;
-    double pixels = 0, squares = 0;
-    for (const Square& square : m_squares) {
-        if (square.pixels == 0) continue;
+    double pixels = 0;
+    for (const ErrorSquare& square : m_squares) {
         noise.add(square.noise);
         bias.add(square.bias);
         pixels += square.pixels;
-        ++squares;
     }
-    if (squares == 0) return std::nullopt;
+    if (pixels == 0) return std::nullopt;
     const double values = kChannels * pixels;
-    FrameError error{noise.value() / values, 0, bias.value() / values, std::nullopt};
+    FrameError error;
+    error.noise = noise.value() / values;
+    error.bias = bias.value() / values;
     error.noiseTrimmed =
         std::isnan(error.noise) ? error.noise : trimmedNoise(noise.value(), pixels) / values;
-    if (squares < 2) return error;
-    double variance = 0;
-    for (const Square& square : m_squares) {
-        const double off = square.bias - kChannels * square.pixels * error.bias;
-        variance += off * off;
-    }
-    error.biasStandardError = std::sqrt(variance * squares / (squares - 1)) / values;
+    addSpread(m_squares, error);
     return error;
 }
 

@@ -31,17 +31,13 @@ class BucketErrors {
     static std::uint64_t memoryBytes(const BucketGrid& grid);
 
   private:
-    struct Square {
-        double noise = 0, bias = 0;
-        std::uint32_t pixels = 0;
-    };
     double trimmedNoise(double noise, double pixels) const;
 
-    std::int32_t m_squareColumns;    // of a bucket
-    std::size_t m_squaresPerBucket;  // m_squareColumns squared
-    std::size_t m_mostNoisy;         // so many are left out of the trimmed figure at most
-    mutable std::mutex m_mutex;      // of what follows
-    std::vector<Square> m_squares;   // of each cell
+    std::int32_t m_squareColumns;        // of a bucket
+    std::size_t m_squaresPerBucket;      // m_squareColumns squared
+    std::size_t m_mostNoisy;             // so many are left out of the trimmed figure at most
+    mutable std::mutex m_mutex;          // of what follows
+    std::vector<ErrorSquare> m_squares;  // of each cell
     // The noisiest pixels so far, the least noisy of them first: a heap.
     std::vector<double> m_noisiest;
 };

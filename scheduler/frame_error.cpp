@@ -16,7 +16,53 @@ std::int32_t squareOf(std::int32_t from, std::int32_t at) {
     return (at - from) / kErrorSquarePixels;
 }
 
+// Of the sum of the squares' values, each held against its share of the mean.
+template <typename Value>
+double standardErrorOfSum(std::span<const ErrorSquare> squares, double mean, Value value) {
+    double variance = 0, count = 0;
+    for (const ErrorSquare& square : squares) {
+        if (square.pixels == 0) continue;
+        const double off = value(square) - kChannels * square.pixels * mean;
+        variance += off * off;
+        ++count;
+    }
+    return std::sqrt(variance * count / (count - 1));
+}
+
 }  // namespace
+
+bool FrameError::isLowerBound() const {
+    return unresolvedShare > kErrorTrimmedShare;
+}
+
+void ErrorSquare::add(const PixelError& pixel) {
+    noise += pixel.noise;
+    bias += pixel.bias;
+    unresolved += pixel.isUnresolved ? 1.0 : 0.0;
+    ++pixels;
+}
+
+void addSpread(std::span<const ErrorSquare> squares, FrameError& error) {
+    double pixels = 0, unresolved = 0, count = 0;
+    for (const ErrorSquare& square : squares) {
+        pixels += square.pixels;
+        unresolved += square.unresolved;
+        count += square.pixels > 0 ? 1.0 : 0.0;
+    }
+    error.unresolvedShare = unresolved / pixels;
+    if (count < 2) return;
+    const double values = kChannels * pixels;
+    error.biasStandardError =
+        standardErrorOfSum(squares, error.bias, [](const ErrorSquare& s) { return s.bias; }) /
+        values;
+    const double ofNoise =
+        standardErrorOfSum(squares, error.noise, [](const ErrorSquare& s) { return s.noise; }) /
+        values;
+    // No more than there are values, however alike the squares.
+    if (error.noise > 0.0)
+        error.noiseDegreesOfFreedom =
+            std::min(values, 2 * error.noise * error.noise / (ofNoise * ofNoise));
+}
 
 FrameErrorSum::FrameErrorSum(const Rect& window)
     : m_window(window), m_columns(squareOf(window.x0, window.x1 - 1) + 1) {
@@ -25,13 +71,11 @@ FrameErrorSum::FrameErrorSum(const Rect& window)
     m_noise.reserve(static_cast<std::size_t>(window.area()));
 }
 
-void FrameErrorSum::add(std::int32_t x, std::int32_t y, double noise, double bias) {
-    m_noise.push_back(noise);
+void FrameErrorSum::add(std::int32_t x, std::int32_t y, const PixelError& pixel) {
+    m_noise.push_back(pixel.noise);
     const auto row = static_cast<std::size_t>(squareOf(m_window.y0, y));
     const auto column = static_cast<std::size_t>(squareOf(m_window.x0, x));
-    Square& square = m_squares[row * static_cast<std::size_t>(m_columns) + column];
-    square.bias.add(bias);
-    ++square.pixels;
+    m_squares[row * static_cast<std::size_t>(m_columns) + column].add(pixel);
 }
 
 double FrameErrorSum::trimmedNoise() const {
@@ -55,21 +99,13 @@ std::optional<FrameError> FrameErrorSum::result() const {
     const double values = kChannels * static_cast<double>(m_noise.size());
     CompensatedSum noise, bias;
     for (const double value : m_noise) noise.add(value);
-    double squares = 0;
-    for (const Square& square : m_squares) {
-        bias.add(square.bias.value());
-        if (square.pixels > 0) ++squares;
-    }
-    FrameError error{noise.value() / values, 0, bias.value() / values, std::nullopt};
+    for (const ErrorSquare& square : m_squares) bias.add(square.bias);
+    FrameError error;
+    error.noise = noise.value() / values;
+    error.bias = bias.value() / values;
     // NaN has no order: one pixel of it makes the frame's error NaN.
     error.noiseTrimmed = std::isnan(error.noise) ? error.noise : trimmedNoise();
-    if (squares < 2) return error;
-    double variance = 0;
-    for (const Square& square : m_squares) {
-        const double off = square.bias.value() - kChannels * square.pixels * error.bias;
-        variance += off * off;
-    }
-    error.biasStandardError = std::sqrt(variance * squares / (squares - 1)) / values;
+    addSpread(m_squares, error);
     return error;
 }
 

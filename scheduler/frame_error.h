@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "integrator/values/rect.h"
@@ -26,16 +27,16 @@ inline constexpr double kRelMseOffset = 0.01;
 //   noise: with halves of weights v, w and means a, b, E[(a - b)^2] v w / (v + w)^2 is the variance
 //          of the pixel's mean.
 //   bias:  each half's mean d of the probe, the same picture with radii narrowed by sqrt(2) minus
-//          the picture. Where light is smooth over a radius bias grows with its square, so d holds
-//          minus half of it; 4 E[d_even d_odd] is its square, free of noise.
+//          the picture. E[d_even d_odd] is its square, free of noise; bias squared is so many times
+//          as much (kBiasPerProbe, frame_store_error.cpp).
 // Both are divided by m^2 + 0.01, m a stand-in for the reference out of the pixel's mean and its
 // neighbours' (see standIn). Where a pixel sees a lamp neither will do (see SeldomLight).
 //
 // What it does not see: light that no pass has found yet; bias that narrowing by sqrt(2) doesn't
-// change; and of a blurred sharp edge, where bias falls more slowly than its radius squared, it
-// sees a part only: a third at the edge of a disc of light. Where a handful of pixels makes most of
-// the error, as rims of small lamps in mirrors and glass do, it knows their error to a factor only:
-// that of the rest is in noiseTrimmed.
+// change. Light finer than the narrower radius is blurred at both: there the error is at least what
+// is told (see unresolvedShare). Where a handful of pixels makes most of the error, as rims of
+// small lamps in mirrors and glass do, it knows their error to a factor only: that of the rest is
+// in noiseTrimmed.
 struct FrameError {
     double noise = 0;         // relMSE of noise
     double noiseTrimmed = 0;  // the same without the pixels that have most of it, 1 in 1000
@@ -47,10 +48,33 @@ struct FrameError {
     // relMSE at most of what is missing since light was cut off that nothing can end; whoever
     // renders knows it.
     double cut = 0;
+    // How well `noise` is known, from the same squares: its standard error is noise * sqrt(2 / n)
+    // of n degrees of freedom. Nothing where there is no noise or one square only.
+    std::optional<double> noiseDegreesOfFreedom;
+    // Of the pixels, those whose light is finer than the narrower radius shows.
+    double unresolvedShare = 0;
 
     double total() const { return noise + std::max(0.0, bias) + cut; }
     double totalTrimmed() const { return noiseTrimmed + std::max(0.0, bias) + cut; }
+    // Whether the truth may be far above: more pixels are unresolved than the trimmed figure drops.
+    bool isLowerBound() const;
 };
+
+// What one pixel adds: the sums over its three channels.
+struct PixelError {
+    double noise = 0, bias = 0;
+    bool isUnresolved = false;
+};
+
+// Of a square of pixels.
+struct ErrorSquare {
+    double noise = 0, bias = 0, pixels = 0, unresolved = 0;
+    void add(const PixelError& pixel);
+};
+
+// What the squares tell beside the means over the frame: fills the last members of `error`, whose
+// means are there.
+void addSpread(std::span<const ErrorSquare> squares, FrameError& error);
 
 // Of the pixels, those left out of the trimmed figure.
 inline constexpr double kErrorTrimmedShare = 0.001;
@@ -63,21 +87,16 @@ class FrameErrorSum {
     // window: of the frame; expected: at most so many pixels will come.
     explicit FrameErrorSum(const Rect& window);
 
-    // Of pixel x, y: the sums over its three channels of the shares of noise and bias.
-    void add(std::int32_t x, std::int32_t y, double noise, double bias);
+    void add(std::int32_t x, std::int32_t y, const PixelError& pixel);
     // Nothing where no pixel was added.
     std::optional<FrameError> result() const;
 
   private:
-    struct Square {
-        CompensatedSum bias;
-        double pixels = 0;
-    };
     double trimmedNoise() const;
 
     Rect m_window;
     std::int32_t m_columns;
-    std::vector<Square> m_squares;
+    std::vector<ErrorSquare> m_squares;
     std::vector<double> m_noise;  // of each pixel
 };
 

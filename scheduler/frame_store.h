@@ -131,10 +131,9 @@ class FrameStore {
     // passes both had samples; nothing where there is no such pixel.
     std::optional<FrameError> estimateError() const;
 
-    // The same pixel by pixel, row by row from the top: the sums over a pixel's channels of its
-    // shares of noise and bias, as FrameErrorSum::add takes them.
+    // The same pixel by pixel, row by row from the top, as FrameErrorSum::add takes them.
     using ErrorVisitor =
-        std::function<void(std::int32_t x, std::int32_t y, double noise, double bias)>;
+        std::function<void(std::int32_t x, std::int32_t y, const PixelError& pixel)>;
     void visitErrors(const ErrorVisitor& visit) const;
 
   private:

@@ -95,7 +95,10 @@ std::string statusHtml(const Json& json) {
         row("passes", fmt::format("{:.0f}, at most {:.0f}", number(json, "passesDone"),
                                   number(json, "passesPlanned")));
     if (number(json, "relMseEstimate") > 0)
-        row("estimated relMSE", fmt::format("{:.3e}", number(json, "relMseEstimate")));
+        row("estimated relMSE",
+            fmt::format("{}{:.3e}",
+                        json.value("relMseEstimateIsLowerBound", Json()) == true ? "at least " : "",
+                        number(json, "relMseEstimate")));
     if (json.contains("relMseReference"))
         row("relMSE against the reference", fmt::format("{:.3e}", number(json, "relMseReference")));
     row("machine", text(json, "machine"));

@@ -104,8 +104,8 @@ void Session::warnOfClamped(const fs::path& file, const ExrReport& report) {
 std::string Session::errorText() const {
     const auto estimate = m_statistics.estimatedRelMse();
     if (!estimate) return "";
-    return fmt::format(", estimated relMSE {:.2e} (noise and bias, from what passes differ by)",
-                       *estimate);
+    return fmt::format(", estimated relMSE {:.2e} (noise and bias, from what passes differ by{})",
+                       *estimate, m_statistics.estimateDoubts());
 }
 
 void Session::writeOutputs(const Picture& picture, bool complete,

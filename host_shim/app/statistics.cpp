@@ -60,6 +60,24 @@ std::optional<double> Statistics::estimatedRelMse() const {
     return found->get<double>();
 }
 
+std::string Statistics::estimateDoubts() const {
+    constexpr int kFewPasses = 4;
+    const Json json = parsed(library);
+    std::string doubts;
+    const Json freedom = json.value("relMseEstimateDegreesOfFreedom", Json());
+    const int passes = json.value("passesDone", kFewPasses);
+    if (passes < kFewPasses && freedom.is_number())
+        doubts =
+            fmt::format("; of {} passes: {:.0f} degrees of freedom", passes, freedom.get<double>());
+    const Json isLowerBound = json.value("relMseEstimateIsLowerBound", Json());
+    if (isLowerBound.is_boolean() && isLowerBound.get<bool>())
+        doubts += fmt::format(
+            "; a lower bound: {:.2g} % of the pixels show light finer than the "
+            "estimates' radii",
+            100 * json.value("relMseEstimateUnresolvedShare", 0.0));
+    return doubts;
+}
+
 std::string Statistics::libraryStopReason() const {
     return parsed(library).value("stopReason", "finished");
 }

@@ -35,6 +35,8 @@ struct Statistics {
 
     // Estimated relMSE of the picture, from the plugin's statistics.
     std::optional<double> estimatedRelMse() const;
+    // How far that is to be trusted, for people; empty where there is nothing to say.
+    std::string estimateDoubts() const;
     // Why the library's render ended, in its words; "finished" when it doesn't say.
     std::string libraryStopReason() const;
     // Of a photon map that was written, for people.

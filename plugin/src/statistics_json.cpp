@@ -9,8 +9,7 @@ namespace {
 constexpr const char* kEstimateCovers =
     "noise, from what even and odd passes differ by, and bias of the density estimates, from what "
     "they change by at radii narrowed by sqrt(2), and what was cut off; not light that no pass has "
-    "found, nor all of the "
-    "bias at sharp edges of light";
+    "found, nor what is finer than the narrower radius, of which it is a lower bound";
 
 }  // namespace
 
@@ -39,6 +38,12 @@ void addError(const std::optional<FrameError>& error, Json& json) {
     put("relMseEstimateBiasStandardError", [](const FrameError& e) {
         return e.biasStandardError ? Json(*e.biasStandardError) : Json(nullptr);
     });
+    put("relMseEstimateDegreesOfFreedom", [](const FrameError& e) {
+        return e.noiseDegreesOfFreedom ? Json(*e.noiseDegreesOfFreedom) : Json(nullptr);
+    });
+    put("relMseEstimateUnresolvedShare",
+        [](const FrameError& e) { return Json(e.unresolvedShare); });
+    put("relMseEstimateIsLowerBound", [](const FrameError& e) { return Json(e.isLowerBound()); });
     json["relMseEstimateCovers"] = kEstimateCovers;
 }
 

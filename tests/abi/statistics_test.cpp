@@ -29,6 +29,10 @@ TEST(Statistics, OfAFinishedRender) {
     EXPECT_EQ(2, json["threads"]);
     EXPECT_EQ(2, json["settings"]["threads"]);
     EXPECT_GT(json["relMseEstimate"].get<double>(), 0.0);
+    EXPECT_TRUE(json["relMseEstimateIsLowerBound"].is_boolean());
+    EXPECT_GE(json["relMseEstimateUnresolvedShare"].get<double>(), 0.0);
+    EXPECT_LE(json["relMseEstimateUnresolvedShare"].get<double>(), 1.0);
+    EXPECT_TRUE(json.contains("relMseEstimateDegreesOfFreedom"));
     EXPECT_GT(json["counters"]["cameraSamples"].get<std::uint64_t>(), 0u);
     EXPECT_EQ(4000, json["plan"]["globalPhotonsPerPass"]);
     // Those of the caustic map and of other aids come on top.

@@ -20,6 +20,7 @@ struct Judged {
     std::vector<double> rgb;       // linear, row by row
     std::vector<double> emission;  // of it, of lamps that are seen: noise, but no bias
     FrameError estimate;
+    double processorSeconds = 0;  // to there, all threads; 0 where the passes were kept
 };
 
 // What a long render comes to: its even and its odd passes share no noise.

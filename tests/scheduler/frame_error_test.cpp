@@ -12,16 +12,11 @@
 #include <vector>
 
 #include "scheduler/frame_store.h"
+#include "tests/scheduler/error_frame.h"
 
-namespace pm {
+namespace pm::test {
 namespace {
 
-constexpr std::int32_t kSize = 64;
-constexpr Rect kFrame{0, 0, kSize, kSize};
-constexpr std::size_t kPixels = kSize * kSize;
-constexpr std::int32_t kChannels = 6;  // beauty, probe
-
-using Random = std::mt19937;
 // What a pass gives a pixel whose truth is `truth`.
 using Noise = std::function<float(float truth, Random& random)>;
 
@@ -49,23 +44,6 @@ std::vector<float> variedTruth(bool line = true) {
         truth[i] = value;
     }
     return truth;
-}
-
-struct Rendered {
-    FrameError estimate;
-    double relMse = 0;  // against the truth
-};
-
-double relMseOf(const FrameStore& frame, const std::vector<float>& truth) {
-    std::vector<float> picture(3 * kPixels);
-    frame.read(kFrame, 0, 3, picture.data(), 12, 12 * kSize);
-    double sum = 0;
-    for (std::size_t i = 0; i < picture.size(); ++i) {
-        const double r = static_cast<double>(truth[i / 3]);
-        const double off = static_cast<double>(picture[i]) - r;
-        sum += off * off / (r * r + 0.01);
-    }
-    return sum / static_cast<double>(picture.size());
 }
 
 Rendered render(const std::vector<float>& truth, int passes, const Noise& noise, unsigned seed) {
@@ -206,7 +184,7 @@ TEST(FrameError, trimmedLeavesOutOneInAThousand) {
     EXPECT_GT(error.noiseTrimmed, 0.98 * error.noise);
     // All pixels alike: as many of the equal ones stay as must.
     FrameErrorSum sum({0, 0, 50, 50});
-    for (int i = 0; i < 2500; ++i) sum.add(i % 50, i / 50, 3.0, 0.0);
+    for (int i = 0; i < 2500; ++i) sum.add(i % 50, i / 50, {3.0, 0.0, false});
     EXPECT_DOUBLE_EQ(sum.result()->noise, 1.0);
     EXPECT_DOUBLE_EQ(sum.result()->noiseTrimmed, (2500.0 - 3.0) / 2500.0);
 }
@@ -271,53 +249,18 @@ TEST(FrameError, halvesAreRightWherePassesOfAHalfAreNotIndependent) {
     EXPECT_NEAR(frame.estimateError()->total() / relMseOf(frame, truth), 1.0, 0.1);
 }
 
-// A picture whose blur is `bias` too bright, and a probe that shows minus half of it; both noisy.
-struct Biased {
-    FrameError estimate;
-    double relMse = 0;
-};
-
-Biased renderBiased(float bias, float noise, int passes, unsigned seed) {
-    Random random(seed);
-    std::normal_distribution<float> normal;
-    FrameStore frame(kFrame, kChannels, 0, 3);
-    const std::vector<float> truth(kPixels, 1.0f), weights(kPixels, 4.0f);
-    for (std::uint32_t pass = 0; pass < static_cast<std::uint32_t>(passes); ++pass) {
-        std::vector<float> pixels(kPixels * kChannels);
-        for (std::size_t i = 0; i < pixels.size(); ++i) {
-            const float mean = i % kChannels < 3 ? 1.0f + bias : -0.5f * bias;
-            pixels[i] = mean + noise * normal(random);
-        }
-        frame.addPass(pass, kFrame, pixels, weights);
-    }
-    return {frame.estimateError().value(), relMseOf(frame, truth)};
-}
-
-TEST(FrameError, biasIsToldFromTheProbe) {
-    for (const int passes : {2, 3, 4, 16}) {
-        const Biased b = renderBiased(0.05f, 0.1f, passes, 3);
-        EXPECT_NEAR(b.estimate.total() / b.relMse, 1.0, 0.15) << passes;
-        EXPECT_NEAR(b.estimate.bias, 0.05 * 0.05 / 1.1125, 4 * *b.estimate.biasStandardError);
-        EXPECT_LT(*b.estimate.biasStandardError, 0.5 * b.estimate.bias) << passes;
-    }
-    // Noise alone would be far from the truth.
-    const Biased late = renderBiased(0.05f, 0.1f, 16, 3);
-    EXPECT_LT(late.estimate.noise, late.relMse / 3);
-}
-
-TEST(FrameError, noiseOfTheProbeIsNoBias) {
-    double sum = 0, squares = 0;
-    constexpr int kRenders = 40;
-    for (unsigned seed = 0; seed < kRenders; ++seed) {
-        const FrameError error = renderBiased(0.0f, 0.2f, 4, seed).estimate;
-        const double z = error.bias / *error.biasStandardError;
-        sum += z / kRenders;
-        squares += z * z / kRenders;
-        EXPECT_GE(error.total(), error.noise);
-        EXPECT_LT(error.total(), 1.2 * error.noise);
-    }
-    EXPECT_LT(std::abs(sum), 4 / std::sqrt(kRenders));
-    EXPECT_NEAR(squares, 1.0, 0.9);  // of 4 squares' spread
+TEST(FrameError, degreesOfFreedomAreThoseOfTheSquares) {
+    // 12288 values of one each; four squares tell that to a factor.
+    const std::vector<float> even(kPixels, 1.0f);
+    const auto all = render(even, 2, gaussian, 7).estimate.noiseDegreesOfFreedom;
+    ASSERT_TRUE(all);
+    EXPECT_GT(*all, 1000.0);
+    EXPECT_LE(*all, 12288.0);
+    // All noise in one square of four: no more than one number that was drawn.
+    FrameErrorSum sum({0, 0, 64, 64});
+    for (int i = 0; i < 64 * 64; ++i)
+        sum.add(i % 64, i / 64, {i % 64 < 32 && i < 32 * 64 ? 1.0 : 0.0, 0.0, false});
+    EXPECT_NEAR(sum.result()->noiseDegreesOfFreedom.value(), 2.0, 1e-9);
 }
 
 TEST(FrameError, withoutAProbeThereIsNoBias) {
@@ -345,4 +288,4 @@ TEST(FrameError, aFrameOfOnePixelHasOne) {
 }
 
 }  // namespace
-}  // namespace pm
+}  // namespace pm::test
