@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrator/photons/disc_trials.h"
 #include "integrator/photons/surface_estimate.h"
 #include "integrator/sampling/warps.h"
 
@@ -21,6 +22,13 @@ constexpr std::uint32_t kFewestPilotPhotons = 4;
 // thinner than that is too dim to matter, and too wide a disc reaches round corners.
 constexpr float kLargestRadius = 4.0f;
 constexpr float kSmallestRadius = 1e-3f;
+// Of a pilot's variance 1/kPilotShare is left in a pass; of eight passes' mean so much, over what
+// is left of the squared bias: radii shrink meanwhile, see radiusFactor.
+constexpr double kNoiseShare = 0.12;
+// The radius, in pixels' widths, of a disc for light that lies in one point: four samples of each
+// pixel find it to 5 %. Discs are at least half as wide; narrower ones would lie between the
+// samples.
+constexpr float kWidestDot = 1.5f;
 // Photons whose radii are found at a time.
 constexpr std::uint32_t kGrain = 512;
 
@@ -48,6 +56,11 @@ PilotRadius::PilotRadius(std::span<const Photon> pilot, std::uint32_t estimatePh
                 scratch);
         }
     });
+    const float largest = kLargestRadius * m_typical;
+    const DiscTrials trials(m_pilot, {m_count, m_ofPhotons, largest, kNoiseShare}, cancel);
+    for (std::uint32_t i = 0; i < size; ++i)
+        if (const float share = trials.shares()[i]; share < 1.0f)
+            m_ofPhotons[i] = share * std::min(m_ofPhotons[i], largest);
 }
 
 float PilotRadius::typicalOf(const PhotonMap& pilot, std::uint32_t estimatePhotons,
@@ -69,9 +82,10 @@ float PilotRadius::at(const Vec3f& position, const Vec3f& normal, NearestPhotons
     return std::clamp(radius, kSmallestRadius * m_typical, largest);
 }
 
-TwoRadii CausticMap::irradiance(const Vec3f& position, const Vec3f& normal,
-                                NearestPhotons& scratch) const {
-    const float radius = m_radius.at(position, normal, scratch) * m_radiusFactor;
+TwoRadii CausticMap::irradiance(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch,
+                                float pixelWidth) const {
+    const float wanted = m_radius.at(position, normal, scratch);
+    const float radius = std::max(wanted, kWidestDot * pixelWidth - wanted) * m_radiusFactor;
     TwoRadii flux = m_map.fluxWithin(position, normal, radius, scratch);
     SurfacePatch::Shares share;
     // In the dark there is nothing to correct.

@@ -67,6 +67,11 @@ Ray Camera::ray(double x, double y) const {
     return {Vec3f(origin), Vec3f(direction)};
 }
 
+PixelBeam Camera::pixelBeam(const Ray& ray) const {
+    const double way = m_isFar ? length(Vec3d(ray.origin) - m_eye) : 0.0;
+    return {static_cast<float>(way * m_scale), static_cast<float>(m_scale)};
+}
+
 float Camera::depth(const Vec3f& position) const {
     return static_cast<float>(dot(Vec3d(position) - m_eye, m_forward));
 }

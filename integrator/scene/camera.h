@@ -11,6 +11,14 @@ namespace pm {
 
 class Scene;
 
+// How wide a pixel is where a ray through it begins, scene units, and by how much it widens for
+// each unit of the way on.
+struct PixelBeam {
+    float width = 0.0f, spread = 0.0f;
+
+    float widthAfter(float way) const { return width + spread * way; }
+};
+
 // The pinhole camera of a scene and frame. Where it is more than a few of the scene's radii away
 // its rays start where they enter the sphere around the scene, computed in double: a camera a
 // thousand radii away loses no digits of the scene to its distance.
@@ -22,6 +30,9 @@ class Camera {
 
     // A ray through frame coordinates (x, y), pixels, origin top left, y down. Unit direction.
     Ray ray(double x, double y) const;
+
+    // Of a ray of this camera's.
+    PixelBeam pixelBeam(const Ray& ray) const;
 
     // Distance along the view axis of a point in the scene's own coordinates, scene units.
     float depth(const Vec3f& position) const;

@@ -153,8 +153,11 @@ SampleRadiance FrameRenderer::Impl::sample(std::uint32_t pass, const PixelCell& 
     const SeenLamps::Shown lamps = prepared->seenLamps.shown(cell.x, cell.y);
     SampleRadiance result =
         PhotonIntegrator(*scene, prepared->lights, prepared->photons.maps(pass), plan.lampSamples)
-            .sample({static_cast<float>(place.x), static_cast<float>(place.y)}, ray, sampler,
-                    scratch, lamps.paths == 0);
+            .sample({{static_cast<float>(place.x), static_cast<float>(place.y)},
+                     ray,
+                     camera.pixelBeam(ray),
+                     lamps.paths == 0},
+                    sampler, scratch);
     if (lamps.paths > 0)
         result.emission += prepared->seenLamps.sample(lamps, pass, cell, index, result.rays);
     return result;

@@ -69,12 +69,12 @@ bool hasSeveralLobes(const Bsdf& bsdf) {
 
 }  // namespace
 
-SampleRadiance PhotonIntegrator::sample(Vec2f screen, const Ray& ray, Sampler& sampler,
-                                        NearestPhotons& scratch, bool withSeenLamps) const {
+SampleRadiance PhotonIntegrator::sample(const View& view, Sampler& sampler,
+                                        NearestPhotons& scratch) const {
     SampleRadiance result;
-    Branch branch{PathWalk(ray), {}, {}, m_lampSamples};
-    branch.last.direction = ray.direction;
-    follow(branch, true, {screen, sampler, scratch, withSeenLamps, result});
+    Branch branch{PathWalk(view.ray), {}, {}, m_lampSamples};
+    branch.last.direction = view.ray.direction;
+    follow(branch, true, {view, sampler, scratch, result});
     return result;
 }
 
@@ -121,7 +121,8 @@ void PhotonIntegrator::follow(Branch& branch, bool first, const Tree& tree) cons
             result.of(found) += path.throughput * weightedFarLight(m_scene, m_lights, branch.last);
             return;
         }
-        if (tree.withSeenLamps || found != PathClass::kEmission)
+        branch.way += length(surface.position - path.ray.origin);
+        if (tree.view.withSeenLamps || found != PathClass::kEmission)
             result.of(found) += path.throughput * weightedEmission(m_lights, surface, branch.last);
         Bsdf bsdf(m_scene, surface, -path.ray.direction, Transport::kRadiance, path.throughput);
         bsdf.followAll();
@@ -211,7 +212,7 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(const Surface& surface,
     StillToFind still;
     GatherPoints::Estimate indirect;
     const Vec3f& normal = bsdf.facingGeometricNormal();
-    const GatherPoints::Place place{tree.screen, surface.position, bsdf.facingShadingNormal(),
+    const GatherPoints::Place place{tree.view.screen, surface.position, bsdf.facingShadingNormal(),
                                     normal, surface.offset};
     const bool kept = m_maps.points && m_maps.points->estimate(place, indirect);
     result.rays += indirect.rays;
@@ -219,9 +220,11 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(const Surface& surface,
         add(indirect.irradiance, reflected, result.indirect, result);
         if (indirect.lampShare < kLargeLampShare) still.lamps = LampStrategy::kNextEventOnly;
     }
-    if (m_maps.caustic)
-        add(m_maps.caustic->irradiance(surface.position, normal, tree.scratch), reflected,
-            result.caustic, result);
+    if (m_maps.caustic) {
+        const float pixelWidth = tree.view.beam.widthAfter(branch.way);
+        add(m_maps.caustic->irradiance(surface.position, normal, tree.scratch, pixelWidth),
+            reflected, result.caustic, result);
+    }
     still.indirect = !kept && m_maps.global;
     if (!still.indirect) return still;
     const float share = branch.share * partOf(bsdf, Lobe::kDiffuse);

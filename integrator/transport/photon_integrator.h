@@ -8,6 +8,7 @@
 #include "integrator/photons/caustic_map.h"
 #include "integrator/photons/irradiance_sites.h"
 #include "integrator/sampling/sampler.h"
+#include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/direct_light.h"
@@ -40,10 +41,14 @@ class PhotonIntegrator {
                      std::uint32_t lampSamples = 1)
         : m_scene(scene), m_lights(lights), m_maps(maps), m_lampSamples(lampSamples) {}
 
-    // screen: where the ray leaves the camera, pixels. withSeenLamps: false where emission is left
-    // to paths of SeenLamps.
-    SampleRadiance sample(Vec2f screen, const Ray& ray, Sampler& sampler, NearestPhotons& scratch,
-                          bool withSeenLamps = true) const;
+    // How a sample leaves the camera.
+    struct View {
+        Vec2f screen;  // where, pixels
+        Ray ray;
+        PixelBeam beam{};           // of no width where caustics may be narrower than any pixel
+        bool withSeenLamps = true;  // false where emission is left to paths of SeenLamps
+    };
+    SampleRadiance sample(const View& view, Sampler& sampler, NearestPhotons& scratch) const;
 
   private:
     // Which part of a diffuse reflection a ray along the lobe still has to find.
@@ -60,6 +65,7 @@ class PhotonIntegrator {
         PathState state;
         LastScatter last;
         std::uint32_t lampSamples = 1;
+        float way = 0.0f;  // that it has come, scene units
         // Of what the camera sample brings, this branch's part, were all that it meets as bright:
         // what is worth how much work.
         float share = 1.0f;
@@ -69,10 +75,9 @@ class PhotonIntegrator {
     };
     // What all branches of one sample share.
     struct Tree {
-        Vec2f screen;
+        const View& view;
         Sampler& sampler;
         NearestPhotons& scratch;
-        bool withSeenLamps;
         SampleRadiance& result;
     };
     // Of each lobe, with which probability the path was to be followed along it; 0: it is not.

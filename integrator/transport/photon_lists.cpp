@@ -26,4 +26,20 @@ BigVector<Photon> join(std::span<const Photon> first, std::span<const Photon> se
     return all;
 }
 
+PhotonTraceResult joinHalves(PhotonTraceResult first, PhotonTraceResult second) {
+    for (Photon& photon : second.photons) photon.normal.mark();
+    PhotonTraceResult both;
+    both.photons = join(first.photons, second.photons);
+    both.descended = join(first.descended, second.descended);
+    for (BigVector<Photon>* const photons : {&both.photons, &both.descended})
+        for (Photon& photon : *photons) photon.flux *= 0.5f;
+    both.balance = first.balance;
+    both.balance += second.balance;
+    for (double* const flux : {&both.balance.fluxEmitted, &both.balance.fluxAbsorbed,
+                               &both.balance.fluxEscaped, &both.balance.fluxLost})
+        *flux *= 0.5;
+    both.focus = first.focus;
+    return both;
+}
+
 }  // namespace pm

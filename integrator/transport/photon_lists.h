@@ -7,6 +7,7 @@
 
 #include "integrator/photons/big_array.h"
 #include "integrator/photons/photon.h"
+#include "integrator/photons/photon_tracer.h"
 
 namespace pm {
 
@@ -15,5 +16,9 @@ std::vector<Photon> refocusedOf(std::span<const Photon> descended);
 
 // The second after the first. Works in parallel in the calling TBB arena.
 BigVector<Photon> join(std::span<const Photon> first, std::span<const Photon> second);
+
+// As one the two halves of a pilot, traced independently of each other; the photons of the second
+// are marked. Each half is of all the light, so that both together have half of their flux.
+PhotonTraceResult joinHalves(PhotonTraceResult first, PhotonTraceResult second);
 
 }  // namespace pm

@@ -119,7 +119,9 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
     request.oneInChains = m_plan.oneInChains;
     PhotonTraceResult result =
         m_source ? m_source->read(kind, pass, control.cancelled)
-                 : tracePhotons(m_scene, m_lights, request, control.cancelled, part);
+        : kind == PhotonKind::kCausticPilot
+            ? tracePilotOfCaustics(request, control, part)
+            : tracePhotons(m_scene, m_lights, request, control.cancelled, part);
     if (m_source) part(1.0);
     control.photonsBefore += count;
     this->count(kind, result.balance);

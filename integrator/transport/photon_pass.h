@@ -87,6 +87,8 @@ class PhotonPass {
     // Photons of one kind, traced, or read where there is a source of them.
     PhotonTraceResult trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
                             Control& control);
+    PhotonTraceResult tracePilotOfCaustics(PhotonTraceRequest request, const Control& control,
+                                           const std::function<void(double)>& progress) const;
     BigVector<Photon> buildCaustics(PassMaps& maps, Control& control);
     // At which gather rays read caustics.
     float radiusOfGathered() const;

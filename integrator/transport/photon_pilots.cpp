@@ -26,6 +26,9 @@ constexpr float kRadiusOfGathered = 2.0f;
 // Caustics' radii, which rise slowly beside bright light, are to hold so many times K photons.
 constexpr double kSoughtInCaustics = 1.6;
 
+// Of pilots of caustics, random numbers of their own; that of the radii has those of pass 0, too.
+constexpr std::uint32_t kPassOfAiming = 1, kPassOfSecondHalf = 2;
+
 BigVector<Photon> inFocus(std::span<const Photon> photons, const Focus& focus) {
     BigVector<Photon> found;
     for (const Photon& photon : photons)
@@ -64,9 +67,12 @@ void PhotonPass::aim(Control& control) {
     m_aim = std::make_unique<AimedEmission>(
         m_scene, m_lights, findSeenFocus(m_scene, m_camera, m_settings, check), check);
     if (m_aim->empty()) return;
-    // A pass's number that the pilot of the radii doesn't have.
-    const PhotonTraceRequest request{
-        PhotonKind::kCausticPilot, m_plan.aimPilotPhotons(), m_settings.seed, 1, m_aim.get(), true};
+    const PhotonTraceRequest request{PhotonKind::kCausticPilot,
+                                     m_plan.aimPilotPhotons(),
+                                     m_settings.seed,
+                                     kPassOfAiming,
+                                     m_aim.get(),
+                                     true};
     const PhotonTraceResult landed =
         tracePhotons(m_scene, m_lights, request, control.cancelled, {});
     m_aim->refine(landed.records);
@@ -89,6 +95,20 @@ void PhotonPass::chooseGatherRays(const PhotonMap& pilot, const CancelCheck& che
     const auto [byCosine, byGuide] =
         gatherRivals(m_scene, m_camera, m_lights, ends, *guide, m_settings, check);
     if (byGuide < kGuidePays * byCosine || always) m_guide = std::move(guide);
+}
+
+// In two halves: what one shows of where light is uneven, the other can be asked about.
+PhotonTraceResult PhotonPass::tracePilotOfCaustics(
+    PhotonTraceRequest request, const Control& control,
+    const std::function<void(double)>& progress) const {
+    request.count = (request.count + 1) / 2;
+    PhotonTraceResult first = tracePhotons(m_scene, m_lights, request, control.cancelled,
+                                           [&](double fraction) { progress(0.5 * fraction); });
+    request.pass = kPassOfSecondHalf;
+    PhotonTraceResult second =
+        tracePhotons(m_scene, m_lights, request, control.cancelled,
+                     [&](double fraction) { progress(0.5 + 0.5 * fraction); });
+    return joinHalves(std::move(first), std::move(second));
 }
 
 // Of caustics and of refocused light. Returns the pilot's descended photons.

@@ -134,19 +134,19 @@ bool wrapPoint(const GatherPoints* points, const GatherPoints::Place& place,
     return found;
 }
 
-static_assert(
-    std::is_same_v<decltype(&CausticMap::irradiance),
-                   TwoRadii (CausticMap::*)(const Vec3f&, const Vec3f&, NearestPhotons&) const>);
-TwoRadii realCaustic(const CausticMap*, const Vec3f&, const Vec3f&, NearestPhotons&) __asm__(
-    "__real__ZNK2pm10CausticMap10irradianceERKNS_4Vec3IfEES4_RNS_14NearestPhotonsE");
-TwoRadii wrapCaustic(const CausticMap*, const Vec3f&, const Vec3f&, NearestPhotons&) __asm__(
-    "__wrap__ZNK2pm10CausticMap10irradianceERKNS_4Vec3IfEES4_RNS_14NearestPhotonsE");
+static_assert(std::is_same_v<decltype(&CausticMap::irradiance),
+                             TwoRadii (CausticMap::*)(const Vec3f&, const Vec3f&, NearestPhotons&,
+                                                      float) const>);
+TwoRadii realCaustic(const CausticMap*, const Vec3f&, const Vec3f&, NearestPhotons&, float) __asm__(
+    "__real__ZNK2pm10CausticMap10irradianceERKNS_4Vec3IfEES4_RNS_14NearestPhotonsEf");
+TwoRadii wrapCaustic(const CausticMap*, const Vec3f&, const Vec3f&, NearestPhotons&, float) __asm__(
+    "__wrap__ZNK2pm10CausticMap10irradianceERKNS_4Vec3IfEES4_RNS_14NearestPhotonsEf");
 TwoRadii wrapCaustic(const CausticMap* map, const Vec3f& position, const Vec3f& normal,
-                     NearestPhotons& scratch) {
-    if (!recorded) return realCaustic(map, position, normal, scratch);
-    recorded->caustics.push_back({map, position, normal});
+                     NearestPhotons& scratch, float pixelWidth) {
+    if (!recorded) return realCaustic(map, position, normal, scratch, pixelWidth);
+    recorded->caustics.push_back({map, position, normal, pixelWidth});
     const Within within(Asking::kCaustic);
-    return realCaustic(map, position, normal, scratch);
+    return realCaustic(map, position, normal, scratch, pixelWidth);
 }
 
 static_assert(std::is_same_v<decltype(&IrradianceSites::at),

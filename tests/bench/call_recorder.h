@@ -25,6 +25,7 @@ struct RecordedCalls {
     struct Caustic {
         const CausticMap* map;
         Vec3f position, normal;
+        float pixelWidth;
     };
     struct Site {
         const IrradianceSites* sites;

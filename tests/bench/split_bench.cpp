@@ -150,7 +150,7 @@ std::vector<Part> Replay::parts() const {
                 }),
         lookUps("caustic map", m_calls.caustics,
                 [scratch](const RecordedCalls::Caustic& c) {
-                    return c.map->irradiance(c.position, c.normal, *scratch);
+                    return c.map->irradiance(c.position, c.normal, *scratch, c.pixelWidth);
                 }),
         lookUps("irradiance sites, kept", m_calls.sites,
                 [](const RecordedCalls::Site& c) { return c.sites->at(c.position, c.normal); }),

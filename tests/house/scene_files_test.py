@@ -10,6 +10,7 @@ import sys
 import tempfile
 import unittest
 
+BOXES = ("cornell_box", "caustic_glass", "water_basin")
 SCENES = pathlib.Path(__file__).resolve().parents[2] / "scenes"
 
 
@@ -115,7 +116,7 @@ class AllScenes(unittest.TestCase):
                 self.assertLessEqual(set(Obj(path).materials.values()), known, path)
 
     def test_faces_of_the_box_look_into_it(self):
-        for name in ("cornell_box", "caustic_glass"):
+        for name in BOXES:
             obj = load(name)
             low = [min(p[k] for p in obj.positions) for k in range(3)]
             high = [max(p[k] for p in obj.positions) for k in range(3)]
@@ -126,7 +127,7 @@ class AllScenes(unittest.TestCase):
                     self.assertGreater(dot(area_vector(face), inward), 0, f"{name} {group}")
 
     def test_box_is_closed_but_for_its_front(self):
-        for name in ("cornell_box", "caustic_glass"):
+        for name in BOXES:
             obj = load(name)
             edges = {}
             for group in ("lamp", "ceiling", "floor", "back_wall", "red_wall", "green_wall"):
@@ -140,7 +141,7 @@ class AllScenes(unittest.TestCase):
                 self.assertEqual(open_edge, at_front, f"{name}: edge {a + 1} {b + 1}")
 
     def test_red_is_left_of_green_for_a_camera_in_front(self):
-        for name in ("cornell_box", "caustic_glass"):
+        for name in BOXES:
             obj = load(name)
             mean_x = {g: centre(sum(obj.corners(g), []))[0] for g in ("red_wall", "green_wall")}
             self.assertLess(mean_x["red_wall"], mean_x["green_wall"])
@@ -219,6 +220,28 @@ class CausticGlass(unittest.TestCase):
                     self.assertAlmostEqual(math.sqrt(dot(p, p)), radius, delta=2e-6)
                     self.assertGreater(dot(p, obj.normals[n]) / radius, 1 - 1e-5, "normals")
             self.assertAlmostEqual(volume / (4 / 3 * math.pi * radius**3), 1, delta=2e-3)
+
+
+class WaterBasin(unittest.TestCase):
+    def test_expected_values_of_the_readme(self):
+        (lamp,) = load("water_basin").corners("lamp")
+        self.assertLess(area_vector(lamp)[1], 0)
+        values = [f"{math.pi * 3000 * -area_vector(lamp)[1]:.6g} W"]
+        for point in ((0, 1.5, -1), (0, 1.2, -1)):
+            values.append(f"{direct_light(lamp, point, (0, 0, 1)) * 3000 * 0.7 / math.pi:.6f}")
+        readme = (SCENES / "water_basin" / "README.md").read_text()
+        for value in values:
+            self.assertIn(f"| {value} |", readme)
+
+    def test_the_water_is_a_closed_block(self):
+        obj = load("water_basin")
+        edges = obj.all_edges("water")
+        self.assertTrue(all(edges[e] == 1 and (e[1], e[0]) in edges for e in edges), "closed")
+        volume = sum(dot(area_vector(c), centre(c)) / 3 for c in obj.corners("water"))
+        self.assertAlmostEqual(volume, 2.04 * 2 * 0.82, delta=5e-3)
+        for face, corners in zip(obj.groups["water"], obj.corners("water")):
+            for _, _, n in (c for c in face if len(c) == 3):
+                self.assertGreater(dot(area_vector(corners), obj.normals[n]), 0, "normals")
 
 
 if __name__ == "__main__":

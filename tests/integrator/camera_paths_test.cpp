@@ -34,7 +34,7 @@ Moments lampsSeen(const Scene& scene) {
     NearestPhotons scratch;
     return momentsOf(kCount, [&](std::uint32_t i) {
         Sampler sampler(5, 0, i, 0);
-        return static_cast<double>(integrator.sample({}, ray, sampler, scratch).emission.g);
+        return static_cast<double>(integrator.sample({{}, ray}, sampler, scratch).emission.g);
     });
 }
 
@@ -99,7 +99,7 @@ UnderSky underSky(SceneMaker maker, const MaterialDescription& floor) {
     double squares = 0;
     for (std::uint32_t i = 0; i < kCount; ++i) {
         Sampler sampler(5, 0, i, 0);
-        const SampleRadiance seen = integrator.sample({}, ray, sampler, scratch);
+        const SampleRadiance seen = integrator.sample({{}, ray}, sampler, scratch);
         const auto emission = static_cast<double>(seen.emission.g);
         const auto direct = static_cast<double>(seen.direct.g);
         found.emission += emission / kCount;
@@ -160,7 +160,7 @@ std::vector<double> directSeen(const SceneMaker& maker) {
         const Vec2f screen{static_cast<float>(i % 16) + 0.5f, static_cast<float>(i / 16) + 0.5f};
         const Ray ray = camera.ray(static_cast<double>(screen.x), static_cast<double>(screen.y));
         seen.push_back(
-            static_cast<double>(integrator.sample(screen, ray, sampler, scratch).direct.g));
+            static_cast<double>(integrator.sample({screen, ray}, sampler, scratch).direct.g));
     }
     return seen;
 }
@@ -251,7 +251,7 @@ Indirect indirectSeen(bool byPane, bool isRefocused) {
     Indirect seen;
     seen.light = momentsOf(kCount, [&](std::uint32_t i) {
         Sampler sampler(5, 0, i, 0);
-        const SampleRadiance found = integrator.sample({}, ray, sampler, scratch);
+        const SampleRadiance found = integrator.sample({{}, ray}, sampler, scratch);
         seen.rays += static_cast<double>(found.rays) / kCount;
         return static_cast<double>(found.indirect.g);
     });

@@ -36,7 +36,7 @@ Moments lightAlong(const Scene& scene, Vec3d eye, Vec3d at, std::uint32_t lampSa
     return momentsOf(kCount, [&](std::uint32_t i) {
         // Each by a sequence of its own: independent, for the standard error.
         Sampler sampler(5, 0, i, 0);
-        return static_cast<double>(integrator.sample({}, ray, sampler, scratch).direct.g);
+        return static_cast<double>(integrator.sample({{}, ray}, sampler, scratch).direct.g);
     });
 }
 

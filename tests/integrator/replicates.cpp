@@ -184,8 +184,8 @@ SampleRadiance PlannedRender::sample(std::int32_t x, std::int32_t y, std::uint32
     const Vec2f jitter = sampler.next2D();
     const double onX = x + static_cast<double>(jitter.x), onY = y + static_cast<double>(jitter.y);
     return PhotonIntegrator(*m_scene, m_lights, maps)
-        .sample({static_cast<float>(onX), static_cast<float>(onY)}, m_camera.ray(onX, onY), sampler,
-                scratch);
+        .sample({{static_cast<float>(onX), static_cast<float>(onY)}, m_camera.ray(onX, onY)},
+                sampler, scratch);
 }
 
 RegionMeans PlannedRender::means(const std::vector<Rect>& regions, std::uint32_t samples,
