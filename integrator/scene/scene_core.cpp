@@ -15,6 +15,8 @@ namespace {
 constexpr std::size_t kBins = 4096;
 // Where less of the width than this is empty at a stretch, what lies there lies together.
 constexpr double kLeastGap = 0.25;
+// A ground is at least so wide, over the whole.
+constexpr double kLeastGround = 0.25;
 
 // How much begins in, and whether something covers, each bin of an axis.
 class Bins {
@@ -90,6 +92,13 @@ std::optional<Box3d> findCore(const Box3d& whole, const EachBox& forEachBox,
     };
     forEachSmall([&](const Box3d& box) { part.grow(box); });
     if (part.empty()) return {};
+    // What is neither small nor a ground is a part of the scene that no core would hold.
+    bool hasOthers = false;
+    forEachBox([&](const Box3d& box) {
+        const double size = maxAbsComponent(box.size());
+        hasOthers = hasOthers || (size > most && size < kLeastGround * kCoreTimes * most);
+    });
+    if (hasOthers) return {};
     while (maxAbsComponent(part.size()) > most) {
         const int axis = widestAxis(part.size());
         const auto isIn = [&](const Box3d& box) {

@@ -25,7 +25,8 @@ using EachBox = std::function<void(const std::function<void(const Box3d&)>&)>;
 // A scene of which a few things lie so far from the rest that coordinates from the middle of all
 // would leave the rest without digits has a core: the box of what lies together, far less wide than
 // the whole, where the camera is nearest, or without one where most is. Nothing otherwise. What is
-// too large to be part of a core (a ground to the horizon) doesn't count.
+// too large to be part of a core (a ground to the horizon) doesn't count; where something is larger
+// than a core and less wide than a ground, there is none.
 // eye: the camera's place.
 std::optional<Box3d> findCore(const Box3d& whole, const EachBox& forEachBox,
                               const std::optional<Vec3d>& eye);

@@ -137,7 +137,9 @@ TEST_P(GatherPointRooms, BringWhatOwnRaysBring) {
                         pass == 0 ? 0.01 : 0.001, 4, what);
         // A test that sees nothing proves nothing.
         const Replicated whole = spread(wholeFrames(pairs.byPoints), 0, kIndirect, 1);
-        EXPECT_LT(whole.standardError, 0.005 * whole.mean);
+        // Bulbs of weak gloss are noisier: what lamps send by way of broad lobes is found by
+        // chance.
+        EXPECT_LT(whole.standardError, 0.01 * whole.mean);
     }
 }
 

@@ -217,18 +217,25 @@ TEST(SurfacePatch, PhotonsCountOnAHugeGround) {
     maker.quad(foot - b, b * 2.0, Vec3d(frame.normal), grey);
     const auto scene = maker.build();
     const Vec3d origin = foot - scene->centre();
+    // Corners are floats: the ground lies where they say.
+    const auto onGround = [&](const Vec3d& p) {
+        Surface surface;
+        EXPECT_TRUE(
+            scene->intersect({Vec3f(p + Vec3d(frame.normal) * 0.5), -frame.normal}, surface));
+        return surface.position;
+    };
     Random random(11);
     int counted = 0;
     constexpr int kPhotons = 2000;
     for (int i = 0; i < kPhotons; ++i) {
         const Vec3d along = b * (static_cast<double>(random.next()) - 0.5);
         const double away = static_cast<double>(kRadius);
-        const Vec3f site(origin + along + a * (0.3 * away));
+        const Vec3f site = onGround(origin + along + a * (0.3 * away));
         const SurfacePatch patch(*scene, site, frame.normal, kRadius, 1);
         ASSERT_TRUE(patch.speaksFor(*scene, site, frame.normal, kRadius));
         ASSERT_TRUE(patch.hidesSurface());
         const double x = 0.05 + 0.9 * static_cast<double>(random.next());
-        const Vec3f place(origin + along + a * (x * away));
+        const Vec3f place = onGround(origin + along + a * (x * away));
         counted += patch.counts(*scene, {place, Rgb(1.0f), PackedNormal(frame.normal)});
     }
     EXPECT_EQ(counted, kPhotons);

@@ -109,7 +109,7 @@ TEST(TexturedSphere, IsSampledAsItIsSeen) {
         const auto scene = maker.build();
         const LightSampler lights(*scene);
         Random random(1);
-        int unlike = 0, lit = 0;
+        int unlike = 0, lit = 0, turnedAway = 0;
         constexpr int kSamples = 10'000;
         for (int i = 0; i < kSamples; ++i) {
             const Vec3d above{6 * static_cast<double>(random.next()) - 3, 0.1,
@@ -117,7 +117,11 @@ TEST(TexturedSphere, IsSampledAsItIsSeen) {
             Surface floor, lamp;
             LightSample sample;
             ASSERT_TRUE(scene->intersect({Vec3f(above - scene->centre()), {0, -1, 0}}, floor));
-            ASSERT_TRUE(lights.sample(floor, random.next2D(), sample));
+            // What the texture asks for may face away.
+            if (!lights.sample(floor, random.next2D(), sample)) {
+                ++turnedAway;
+                continue;
+            }
             if (!scene->intersect(rayFrom(floor, sample.direction), lamp)) continue;  // the limb
             const float seen = lights.emittedRadiance(lamp, -sample.direction).g;
             unlike += std::abs(seen - sample.radiance.g) > 1e-3f;
@@ -125,6 +129,7 @@ TEST(TexturedSphere, IsSampledAsItIsSeen) {
         }
         EXPECT_LE(unlike, 3) << c.name;  // near the poles texels are thin
         EXPECT_GT(lit, kSamples / 100) << c.name;
+        EXPECT_LT(turnedAway, kSamples / 2) << c.name;
     }
 }
 
