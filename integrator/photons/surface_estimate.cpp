@@ -51,9 +51,7 @@ SeenArea lookFor(const Scene& scene, const PhotonGate& gate, const Vec3f& apex,
                  const Vec3f& inPlane) {
     const Vec3f ray = gate.position + inPlane - apex;
     Surface surface;
-    // Of unit length: in tiny scenes products of what is shorter come to nothing.
-    const float way = length(ray);
-    if (!scene.intersect({apex, ray * (1.0f / way), kRayReach * way}, surface)) return {};
+    if (!scene.intersect({apex, ray, kRayReach}, surface)) return {};
     const MaterialDescription& material = scene.material(surface.material);
     if (material.kind != MaterialKind::kSurface || isBlack(material.diffuse)) return {};
     const Vec3f facing = dot(surface.geometricNormal, ray) < 0.0f ? surface.geometricNormal

@@ -100,7 +100,7 @@ class Scene {
     // How far off its surface what was stored as a point of it has to be for no ray to meet that
     // surface there. Scene units.
     float liftOfPoints(const Vec3f& position) const {
-        constexpr float kRoundings = 32.0f * 0x1p-24f;
+        constexpr float kRoundings = 36.0f * 0x1p-24f;
         return kRoundings * roundingRadius(position);
     }
     // The height for pointUnderRay and rayOnwards, scene units: half of it is still off the
