@@ -137,8 +137,7 @@ class PhotonWalk {
             const Bsdf bsdf(m_scene, surface, out, Transport::kPhotons, flux);
             if (bsdf.has(Lobe::kDiffuse)) {
                 surface.position =
-                    pointUnderRay(surface.position, ray, bsdf.facingGeometricNormal(),
-                                  m_scene.liftOfRays(surface.position));
+                    m_scene.pointUnderRay(surface.position, ray, bsdf.facingGeometricNormal());
                 landed += land(part, surface, bsdf, sampler, batch);
             }
             BsdfSample sample;
@@ -170,8 +169,8 @@ class PhotonWalk {
             balance.fluxAbsorbed += channelSum(flux) - channelSum(scattered);
             flux = scattered;
             ray = sample.lobe == Lobe::kDiffuse
-                      ? rayOnwards(surface.position, bsdf.facingGeometricNormal(), sample.direction,
-                                   m_scene.liftOfRays(surface.position))
+                      ? m_scene.rayOnwards(surface.position, bsdf.facingGeometricNormal(),
+                                           sample.direction)
                       : rayFrom(surface, sample.direction);
             const float goesOn = events.add(survival);
             if (goesOn < survival) {

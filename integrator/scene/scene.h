@@ -103,9 +103,14 @@ class Scene {
         constexpr float kRoundings = 36.0f * 0x1p-24f;
         return kRoundings * roundingRadius(position);
     }
-    // The height for pointUnderRay and rayOnwards, scene units: half of it is still off the
-    // surface.
-    float liftOfRays(const Vec3f& position) const { return 2.0f * liftOfPoints(position); }
+    // A hit's place as it is kept, and a ray onwards from there: by a height of which half is still
+    // off the surface. ray: that led to the hit; normal: on its side.
+    Vec3f pointUnderRay(const Vec3f& position, const Ray& ray, const Vec3f& normal) const {
+        return pm::pointUnderRay(position, ray, normal, 2.0f * liftOfPoints(position));
+    }
+    Ray rayOnwards(const Vec3f& position, const Vec3f& normal, const Vec3f& direction) const {
+        return pm::rayOnwards(position, normal, direction, 2.0f * liftOfPoints(position));
+    }
 
     // True when all that reflects or lets light through are triangles in one plane (to rounding),
     // so that no light goes from one surface by way of another.

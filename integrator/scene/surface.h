@@ -52,19 +52,16 @@ inline Ray rayFrom(const Surface& surface, const Vec3f& direction) {
 
 // The point beside a hit, on its surface's plane, over which the ray that led there passed at this
 // height: what is lifted by so much from there is on the ray's side of all that stands close by, as
-// a leaning wall. direction: the ray's, unit; way: its length; normal: unit, on its side; height,
-// in scene units as all. At grazing angles the point is moved by no more than eight heights, and
-// never by more than half of the way.
-inline Vec3f pointUnderRay(const Vec3f& position, const Vec3f& direction, float way,
-                           const Vec3f& normal, float height) {
-    constexpr float kLeastCosine = 0.125f;
-    const float cosine = -dot(direction, normal);
-    const float back = std::fmin(height / std::fmax(cosine, kLeastCosine), 0.5f * way);
-    return position - (direction + normal * cosine) * back;
-}
+// a leaning wall. ray: of unit direction; normal: unit, on its side; height: scene units. At
+// grazing angles the point is moved by no more than eight heights, and never by more than half of
+// the way.
 inline Vec3f pointUnderRay(const Vec3f& position, const Ray& ray, const Vec3f& normal,
                            float height) {
-    return pointUnderRay(position, ray.direction, length(position - ray.origin), normal, height);
+    constexpr float kLeastCosine = 0.125f;
+    const float cosine = -dot(ray.direction, normal);
+    const float back =
+        std::fmin(height / std::fmax(cosine, kLeastCosine), 0.5f * length(position - ray.origin));
+    return position - (ray.direction + normal * cosine) * back;
 }
 
 // A ray onwards from such a point, on the normal's side. It starts at that height, and then by half

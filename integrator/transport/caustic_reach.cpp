@@ -8,6 +8,7 @@
 #include "integrator/photons/photon_tracer.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/pilot_passes.h"
 
 namespace pm {
 
@@ -15,15 +16,13 @@ namespace {
 
 // Unaimed ones come first: to find what is to be aimed at takes longer.
 constexpr std::uint64_t kUnaimed = 1 << 12, kFirstAimed = 1 << 9;
-// A pass's number that no other pilot has.
-constexpr std::uint32_t kPass = 2;
 
 }  // namespace
 
 bool findsCaustics(const Scene& scene, std::uint64_t seed) {
     const std::atomic<bool> neverCancelled{false};
-    const LightSampler lights(scene);
-    PhotonTraceRequest request{PhotonKind::kCausticPilot, kUnaimed, seed, kPass};
+    const LightSampler lights = LightSampler::forPhotons(scene);
+    PhotonTraceRequest request{PhotonKind::kCausticPilot, kUnaimed, seed, kPilotOfReach};
     // Where they land it may be rare, far from where the camera looks: that they go on is enough.
     const auto goOn = [&] {
         const PhotonTraceResult traced = tracePhotons(scene, lights, request, neverCancelled, {});

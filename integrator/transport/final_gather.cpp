@@ -46,8 +46,7 @@ void setEnd(const Scene& scene, const GatherEnds& ends, const GatherWay& way,
     const Ray& ray = way.path.ray;
     result.isWaiting = true;
     result.normal = bsdf.facingGeometricNormal();
-    result.position =
-        pointUnderRay(surface.position, ray, result.normal, scene.liftOfRays(surface.position));
+    result.position = scene.pointUnderRay(surface.position, ray, result.normal);
     result.reflected = way.path.throughput * bsdf.diffuse() * kInvPi;
     result.density = 0.0f;
     result.readsCaustics = ends.caustics && (ends.findsAll || (!atOnce && way.byBroadOnly));

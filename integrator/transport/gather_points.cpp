@@ -133,8 +133,7 @@ void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
         const bool chosen = stop.bsdf.has(Lobe::kDiffuse) && stop.sampler.next1D() < 0.5f;
         if (!stop.isGathered() && !chosen) return stop.goesOn();
         const Vec3f& normal = stop.bsdf.facingGeometricNormal();
-        point.position = pointUnderRay(stop.surface.position, stop.ray, normal,
-                                       m_scene.liftOfRays(stop.surface.position));
+        point.position = m_scene.pointUnderRay(stop.surface.position, stop.ray, normal);
         point.normal = stop.bsdf.facingShadingNormal();
         tile.origins[cell.inTile()] = {normal, stop.surface.offset};
         return false;
@@ -164,10 +163,9 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
         const float weight = 1 / density;
         const Vec3f direction = normalize(frame.toWorld(sampleCosineHemisphere(u)));
         if (dot(direction, geometricNormal) <= 0.0f) continue;
-        Gathered found = followGather(m_scene, ends,
-                                      rayOnwards(point.position, geometricNormal, direction,
-                                                 m_scene.liftOfRays(point.position)),
-                                      dot(direction, point.normal), sampler);
+        Gathered found = followGather(
+            m_scene, ends, m_scene.rayOnwards(point.position, geometricNormal, direction),
+            dot(direction, point.normal), sampler);
         found.scale(weight);
         rays += found.rays;
         if (!found.hitAny) {

@@ -8,6 +8,7 @@
 #include "integrator/photons/photon_tracer.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/pilot_passes.h"
 #include "integrator/transport/plan.h"
 
 namespace pm {
@@ -20,8 +21,8 @@ constexpr std::uint64_t kFewestAtCasters = 16;
 // Of those that are aimed at casters, the share that meets one, about: some leave unaimed, and past
 // what is no ball.
 constexpr double kAimedMeet = 0.6;
-// Numbers of passes that no other pilot has.
-constexpr std::uint32_t kGlobalPass = 2, kCausticPass = 3;
+// A pass's number that the other pilot of global photons doesn't have.
+constexpr std::uint32_t kGlobalPass = 2;
 
 PhotonTraceResult trace(const Scene& scene, const PhotonTraceRequest& request) {
     const std::atomic<bool> neverCancelled{false};
@@ -59,7 +60,7 @@ void expectLandings(const Scene& scene, const RenderSettings& settings, Plan& pl
     }
     if (!plan.causticMap) return;
     PhotonTraceRequest request{PhotonKind::kCausticPilot, kCausticPhotons, settings.seed,
-                               kCausticPass};
+                               kPilotOfLandings};
     request.descent = plan.descent;
     request.oneInChains = plan.oneInChains;
     const PhotonTraceResult traced = trace(scene, request);

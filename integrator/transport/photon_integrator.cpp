@@ -131,8 +131,7 @@ void PhotonIntegrator::follow(Branch& branch, bool first, const Tree& tree) cons
         // Where photons are looked up, and rays leave for lamps and light that was reflected.
         if (bsdf.has(Lobe::kDiffuse))
             surface.position =
-                pointUnderRay(surface.position, path.ray, bsdf.facingGeometricNormal(),
-                              m_scene.liftOfRays(surface.position));
+                m_scene.pointUnderRay(surface.position, path.ray, bsdf.facingGeometricNormal());
         const StillToFind still = addReflected(surface, bsdf, branch, tree);
         if (!followLobes(surface, bsdf, still, branch, tree)) return;
     }
@@ -266,8 +265,8 @@ void PhotonIntegrator::followDiffuse(const Surface& surface, const Bsdf& bsdf, c
         if (!bsdf.follow(Lobe::kDiffuse, sample, u)) continue;
         const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle,
                                branch.lampSamples};
-        const Ray ray = rayOnwards(surface.position, bsdf.facingGeometricNormal(), sample.direction,
-                                   m_scene.liftOfRays(surface.position));
+        const Ray ray =
+            m_scene.rayOnwards(surface.position, bsdf.facingGeometricNormal(), sample.direction);
         gatherAlong(ray, last, still, share * sample.weight / density, rays,
                     dot(sample.direction, bsdf.facingShadingNormal()), part, tree.result);
     }

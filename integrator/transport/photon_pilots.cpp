@@ -12,6 +12,7 @@
 #include "integrator/transport/gather_pilot.h"
 #include "integrator/transport/photon_lists.h"
 #include "integrator/transport/photon_pass.h"
+#include "integrator/transport/pilot_passes.h"
 #include "integrator/transport/sky_openings.h"
 
 namespace pm {
@@ -25,9 +26,6 @@ constexpr double kGuidePays = 0.5;
 constexpr float kRadiusOfGathered = 2.0f;
 // Caustics' radii, which rise slowly beside bright light, are to hold so many times K photons.
 constexpr double kSoughtInCaustics = 1.6;
-
-// Of pilots of caustics, random numbers of their own; that of the radii has those of pass 0, too.
-constexpr std::uint32_t kPassOfAiming = 1, kPassOfSecondHalf = 2;
 
 BigVector<Photon> inFocus(std::span<const Photon> photons, const Focus& focus) {
     BigVector<Photon> found;
@@ -70,7 +68,7 @@ void PhotonPass::aim(Control& control) {
     const PhotonTraceRequest request{PhotonKind::kCausticPilot,
                                      m_plan.aimPilotPhotons(),
                                      m_settings.seed,
-                                     kPassOfAiming,
+                                     kPilotOfAiming,
                                      m_aim.get(),
                                      true};
     const PhotonTraceResult landed =
@@ -104,7 +102,7 @@ PhotonTraceResult PhotonPass::tracePilotOfCaustics(
     request.count = (request.count + 1) / 2;
     PhotonTraceResult first = tracePhotons(m_scene, m_lights, request, control.cancelled,
                                            [&](double fraction) { progress(0.5 * fraction); });
-    request.pass = kPassOfSecondHalf;
+    request.pass = kPilotOfSecondHalf;
     PhotonTraceResult second =
         tracePhotons(m_scene, m_lights, request, control.cancelled,
                      [&](double fraction) { progress(0.5 + 0.5 * fraction); });
@@ -116,7 +114,7 @@ BigVector<Photon> PhotonPass::findCausticRadii(float fallback, Control& control)
     if (!m_source) aim(control);
     const CancelCheck check(control.cancelled);
     PhotonTraceResult pilot =
-        trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), 0, control);
+        trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), kPilotOfRadii, control);
     const auto sought = static_cast<std::uint32_t>(kSoughtInCaustics * m_settings.estimatePhotons);
     m_causticRadius = std::make_unique<PilotRadius>(pilot.photons, sought, fallback, check);
     if (m_plan.descent > 0.0f)

@@ -57,8 +57,6 @@ struct SceneTraits {
     bool lights = false;
     bool pointLights = false;  // of those that no ray meets: point lights, spots, parallel light
     bool farLights = false;    // of those that rays meet
-    // No light goes from surface to surface: all in one plane; the outside of one convex body.
-    bool flat = false, convex = false;
 };
 
 SceneTraits findTraits(const Scene& scene) {
@@ -77,8 +75,6 @@ SceneTraits findTraits(const Scene& scene) {
     for (const Light& light : scene.lights())
         (scene.isMet(light) ? traits.farLights : traits.pointLights) |=
             light.isAtPoint() || light.isFar();
-    traits.flat = scene.isFlat();
-    traits.convex = !traits.flat && isConvexBody(scene);
     return traits;
 }
 
@@ -216,21 +212,20 @@ void planCausticMap(const SceneTraits& traits, Plan& plan) {
 }
 
 // Why light goes from no surface to another; empty where it may.
-std::string whyNothingGoesOn(const SceneTraits& traits) {
-    if (traits.flat) return "all surfaces that reflect lie in one plane";
-    if (traits.convex) return "all that reflects is the outside of one convex body";
+std::string whyNothingGoesOn(const Scene& scene) {
+    if (scene.isFlat()) return "all surfaces that reflect lie in one plane";
+    if (isConvexBody(scene)) return "all that reflects is the outside of one convex body";
     return {};
 }
 
-// Why light casts no caustics; empty where it may.
+// Why light casts no caustics; empty where it may. nothingGoesOn: whyNothingGoesOn().
 std::string whyNoCaustics(const Scene& scene, const RenderSettings& settings,
-                          const SceneTraits& traits, Plan& plan) {
+                          const SceneTraits& traits, const std::string& nothingGoesOn, Plan& plan) {
     if (!traits.specular)
         return traits.glossy ? "no lobe but diffuse ones and such as are too broad to cast "
                                "caustics carries more than a millionth"
                              : "every surface is diffuse";
-    const std::string why = whyNothingGoesOn(traits);
-    if (!why.empty() || findsCaustics(scene, settings.seed)) return why;
+    if (!nothingGoesOn.empty() || findsCaustics(scene, settings.seed)) return nothingGoesOn;
     plan.notices.push_back({NoticeCode::kNoCausticPhotons,
                             "0 photons reached a diffuse surface by way of another, so there is no "
                             "caustic light"});
@@ -241,8 +236,9 @@ std::string whyNoCaustics(const Scene& scene, const RenderSettings& settings,
 
 void planMaps(const Scene& scene, const RenderSettings& settings, const SceneTraits& traits,
               bool everything, Plan& plan) {
-    const std::string noGlobalMap = everything ? "" : whyNothingGoesOn(traits);
-    const std::string noCausticMap = everything ? "" : whyNoCaustics(scene, settings, traits, plan);
+    const std::string noGlobalMap = everything ? "" : whyNothingGoesOn(scene);
+    const std::string noCausticMap =
+        everything ? "" : whyNoCaustics(scene, settings, traits, noGlobalMap, plan);
     plan.globalMap = noGlobalMap.empty();
     plan.causticMap = noCausticMap.empty();
     plan.tracePhotons = plan.globalMap || plan.causticMap;

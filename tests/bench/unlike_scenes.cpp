@@ -21,15 +21,6 @@ double fraction(int i, double irrational) {
 }
 constexpr double kFirst = 0.7548776662, kSecond = 0.5698402910, kThird = 0.6180339887;
 
-void addTriangles(test::SceneMaker& maker, TriangleMesh mesh, std::uint32_t material) {
-    mesh.materials.assign(mesh.triangles.size(), 0);
-    mesh.faces.resize(mesh.triangles.size());
-    InstanceDescription instance;
-    instance.shape = std::make_shared<const TriangleMesh>(std::move(mesh));
-    instance.materials = {material};
-    maker.description.instances.push_back(std::move(instance));
-}
-
 // Floor, three walls and ceiling of a room; the wall at x0 is left out.
 void addRoom(test::SceneMaker& maker, const Vec3d& lo, const Vec3d& hi, std::uint32_t floor,
              std::uint32_t walls) {
@@ -64,7 +55,7 @@ test::SceneMaker foliage() {
                 mesh.positions.push_back(Vec3f(corner));
             mesh.triangles.push_back({first, first + 1, first + 2});
         }
-        addTriangles(maker, std::move(mesh), leaf);
+        maker.mesh(std::move(mesh), leaf);
     }
     maker.sky({0.7f, 0.9f, 1.3f});
     maker.sun({-0.5, -1, -0.35}, {3.6f, 3.3f, 2.8f}, 0.005);
@@ -140,7 +131,7 @@ test::SceneMaker water() {
     maker.quad({-3, 0, -1}, {6, 0, 0}, {0, 0, -2}, stone);
     maker.quad({-3, 0, 1}, {2, 0, 0}, {0, 0, -2}, stone);
     maker.quad({1, 0, 1}, {2, 0, 0}, {0, 0, -2}, stone);
-    addTriangles(maker, waves(1.02, 120), maker.material(test::glass(1.33f)));
+    maker.mesh(waves(1.02, 120), maker.material(test::glass(1.33f)));
     maker.sky({0.25f, 0.32f, 0.45f});
     maker.sun({0.35, -1, -0.3}, {3.4f, 3.2f, 2.9f}, 0.01);
     maker.camera({0, 2.1, 2.6}, {0, -0.5, -0.1}, {0, 1, 0}, 40);
@@ -154,7 +145,7 @@ void addTextured(test::SceneMaker& maker, const Vec3d& p, const Vec3d& e0, const
         mesh.positions.push_back(Vec3f(corner));
     mesh.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     mesh.triangles = mesh.texcoordIndices = {{0, 1, 2}, {0, 2, 3}};
-    addTriangles(maker, std::move(mesh), material);
+    maker.mesh(std::move(mesh), material);
 }
 
 // A room papered with a fine pattern, by the sky through one open side.

@@ -288,12 +288,7 @@ TEST_P(LightForm, OvercastSky) {
             add({corner(ring, i), corner(ring + 1, i + 1), corner(ring + 1, i)});
             if (ring > 0) add({corner(ring, i), corner(ring, i + 1), corner(ring + 1, i + 1)});
         }
-        mesh.materials.assign(mesh.triangles.size(), 0);
-        mesh.faces.resize(mesh.triangles.size());
-        InstanceDescription instance;
-        instance.shape = std::make_shared<const TriangleMesh>(std::move(mesh));
-        instance.materials = {material};
-        maker.description.instances.push_back(std::move(instance));
+        maker.mesh(std::move(mesh), material);
     }
     EXPECT_NEAR(expected, 7 * kPiD / 9, 0.002);
     addPatch(maker, {}, {0, 0, 1});

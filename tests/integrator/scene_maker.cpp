@@ -12,19 +12,6 @@
 
 namespace pm::test {
 
-namespace {
-
-void addMesh(SceneDescription& description, TriangleMesh mesh, std::uint32_t material) {
-    mesh.materials.assign(mesh.triangles.size(), 0);
-    mesh.faces.resize(mesh.triangles.size());
-    InstanceDescription instance;
-    instance.shape = std::make_shared<const TriangleMesh>(std::move(mesh));
-    instance.materials = {material};
-    description.instances.push_back(std::move(instance));
-}
-
-}  // namespace
-
 std::uint32_t SceneMaker::material(const MaterialDescription& material) {
     description.materials.push_back(material);
     return static_cast<std::uint32_t>(description.materials.size() - 1);
@@ -35,6 +22,15 @@ std::uint32_t SceneMaker::diffuse(Rgb reflectance, Rgb emission) {
     m.diffuse = reflectance;
     m.emission = emission;
     return material(m);
+}
+
+void SceneMaker::mesh(TriangleMesh mesh, std::uint32_t material) {
+    mesh.materials.assign(mesh.triangles.size(), 0);
+    mesh.faces.resize(mesh.triangles.size());
+    InstanceDescription instance;
+    instance.shape = std::make_shared<const TriangleMesh>(std::move(mesh));
+    instance.materials = {material};
+    description.instances.push_back(std::move(instance));
 }
 
 void SceneMaker::quad(Vec3d p, Vec3d e0, Vec3d e1, std::uint32_t material,
@@ -51,14 +47,14 @@ void SceneMaker::quad(Vec3d p, Vec3d e0, Vec3d e1, std::uint32_t material,
             mesh.triangles.push_back({a, b, c});
             mesh.triangles.push_back({a, c, d});
         }
-    addMesh(description, std::move(mesh), material);
+    this->mesh(std::move(mesh), material);
 }
 
 void SceneMaker::polygon(const std::vector<Vec3d>& corners, std::uint32_t material) {
     TriangleMesh mesh;
     for (const Vec3d& corner : corners) mesh.positions.push_back(Vec3f(corner));
     for (std::uint32_t i = 2; i < corners.size(); ++i) mesh.triangles.push_back({0, i - 1, i});
-    addMesh(description, std::move(mesh), material);
+    this->mesh(std::move(mesh), material);
 }
 
 void SceneMaker::box(Vec3d lo, Vec3d hi, std::uint32_t material, bool inwards) {
@@ -110,7 +106,7 @@ void SceneMaker::meshSphere(Vec3d centre, double radius, std::uint32_t material,
             if (j < rings - 1) mesh.triangles.push_back(second);
         }
     mesh.normalIndices = mesh.triangles;
-    addMesh(description, std::move(mesh), material);
+    this->mesh(std::move(mesh), material);
 }
 
 void SceneMaker::bendNormals(Vec3d normal) {

@@ -22,6 +22,8 @@ class SceneMaker {
     std::uint32_t material(const MaterialDescription& material);
     // Corners p, p+e0, p+e0+e1, p+e1; front towards cross(e0, e1).
     void quad(Vec3d p, Vec3d e0, Vec3d e1, std::uint32_t material, std::uint32_t divisions = 1);
+    // All of one material, whatever the mesh has.
+    void mesh(TriangleMesh mesh, std::uint32_t material);
     // A convex one, of three corners or more.
     void polygon(const std::vector<Vec3d>& corners, std::uint32_t material);
     // The six walls of an axis-aligned box, fronts inwards or outwards.
