@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <optional>
 
 #include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
@@ -55,15 +54,6 @@ IrradianceSites::IrradianceSites(const Scene& scene, const PhotonMap& map, float
       m_slotCount(slotsFor(map.size(), radiusFactor)),
       m_slots(makeBigZeroedArray<Slot>(m_slotCount)) {}
 
-IrradianceSites::Value IrradianceSites::compute(const Cell& cell, std::uint64_t hash) const {
-    Value value;
-    if (!m_cells.findSurface(cell, value.position, value.normal)) return {};
-    const SurfaceEstimate estimate = estimateOf(cell.level);
-    value.irradiance = estimate.at(value.position, value.normal, static_cast<std::uint32_t>(hash));
-    value.height = apexHeight(m_estimate.scene(), value.position, value.normal, estimate.radius());
-    return value;
-}
-
 // Null where too many others are in the way.
 IrradianceSites::Slot* IrradianceSites::slotOf(std::uint64_t hash) const {
     const std::size_t first = firstSlot(hash);
@@ -79,43 +69,74 @@ IrradianceSites::Slot* IrradianceSites::slotOf(std::uint64_t hash) const {
     return nullptr;
 }
 
-IrradianceSites::Value IrradianceSites::valueOf(const Cell& cell) const {
-    const std::uint64_t hash = cell.hash();
-    Slot* const slot = slotOf(hash);
-    if (!slot) return compute(cell, hash);
-    std::array<float, 13> v;
-    if (slot->ready.load(std::memory_order_acquire)) {
+IrradianceSites::Place IrradianceSites::placeOf(const Cell& cell, Slot* slot) const {
+    if (slot && slot->known.load(std::memory_order_acquire) != kNothing) {
+        std::array<float, 6> p;
+        for (std::size_t i = 0; i < p.size(); ++i)
+            p[i] = slot->place[i].load(std::memory_order_relaxed);
+        return {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}};
+    }
+    Place site;
+    if (!m_cells.findSurface(cell, site.position, site.normal)) site = {};
+    if (!slot) return site;
+    const std::array<float, 6> p{site.position.x, site.position.y, site.position.z,
+                                 site.normal.x,   site.normal.y,   site.normal.z};
+    for (std::size_t i = 0; i < p.size(); ++i)
+        slot->place[i].store(p[i], std::memory_order_relaxed);
+    // Another thread may know all by now.
+    std::uint32_t known = kNothing;
+    slot->known.compare_exchange_strong(known, kPlace, std::memory_order_release,
+                                        std::memory_order_relaxed);
+    return site;
+}
+
+IrradianceSites::Value IrradianceSites::valueOf(const Cell& cell, std::uint64_t hash,
+                                                const Place& site, Slot* slot) const {
+    if (slot && slot->known.load(std::memory_order_acquire) == kAll) {
+        std::array<float, 7> v;
         for (std::size_t i = 0; i < v.size(); ++i)
             v[i] = slot->value[i].load(std::memory_order_relaxed);
-        return {{v[0], v[1], v[2]},
-                {v[3], v[4], v[5]},
-                {{v[6], v[7], v[8]}, {v[9], v[10], v[11]}},
-                v[12]};
+        return {{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}}, v[6]};
     }
-    const Value value = compute(cell, hash);
+    const SurfaceEstimate estimate = estimateOf(cell.level);
+    const Value value{
+        estimate.at(site.position, site.normal, static_cast<std::uint32_t>(hash)),
+        apexHeight(m_estimate.scene(), site.position, site.normal, estimate.radius())};
+    if (!slot) return value;
     const auto& [wide, narrow] = value.irradiance;
-    v = {value.position.x, value.position.y, value.position.z, value.normal.x, value.normal.y,
-         value.normal.z,   wide.r,           wide.g,           wide.b,         narrow.r,
-         narrow.g,         narrow.b,         value.height};
+    const std::array<float, 7> v{wide.r,   wide.g,   wide.b,      narrow.r,
+                                 narrow.g, narrow.b, value.height};
     for (std::size_t i = 0; i < v.size(); ++i)
         slot->value[i].store(v[i], std::memory_order_relaxed);
-    slot->ready.store(1, std::memory_order_release);
+    slot->known.store(kAll, std::memory_order_release);
     return value;
 }
 
-// Whether the place is on the site's surface, and nothing stands between.
-bool IrradianceSites::speaksFor(const Value& site, const Cell& cell, const Vec3f& position,
-                                const Vec3f& normal) const {
-    const Scene& scene = m_estimate.scene();
+// Whether the place is on the site's surface, though something may stand between.
+bool IrradianceSites::isBeside(const Place& site, const Cell& cell, const Vec3f& position,
+                               const Vec3f& normal) const {
     const Vec3f way = position - site.position;
-    if (scene.hasSheets() && m_estimate.gate(position, normal).isBesidePlane(way, site.normal))
+    if (m_estimate.scene().hasSheets() &&
+        m_estimate.gate(position, normal).isBesidePlane(way, site.normal))
         return false;
     const float height = dot(way, site.normal + normal);
     const float tolerance = 1e-4f * m_cells.sizeOf(cell);
     return dot(site.normal, normal) >= kSiteCosine &&
            height * height <=
-               kSiteFlatness * kSiteFlatness * lengthSquared(way) + tolerance * tolerance &&
-           isSeenFrom(scene, site.position + site.normal * site.height, position, normal);
+               kSiteFlatness * kSiteFlatness * lengthSquared(way) + tolerance * tolerance;
+}
+
+// Nothing where the cell's site doesn't speak for the place.
+std::optional<TwoRadii> IrradianceSites::ask(const Cell& cell, const Vec3f& position,
+                                             const Vec3f& normal) const {
+    const std::uint64_t hash = cell.hash();
+    Slot* const slot = slotOf(hash);
+    const Place site = placeOf(cell, slot);
+    if (!isBeside(site, cell, position, normal)) return std::nullopt;
+    const Value value = valueOf(cell, hash, site, slot);
+    const Vec3f apex = site.position + site.normal * value.height;
+    if (!isSeenFrom(m_estimate.scene(), apex, position, normal)) return std::nullopt;
+    return value.irradiance;
 }
 
 // The cell beside, where the place is nearest to it.
@@ -140,17 +161,14 @@ IrradianceSites::Cell IrradianceSites::nearestAside(const Cell& cell, const Vec3
 }
 
 TwoRadii IrradianceSites::at(const Vec3f& position, const Vec3f& normal) const {
-    const auto ask = [&](const Cell& cell) -> std::optional<TwoRadii> {
-        const Value site = valueOf(cell);
-        if (!speaksFor(site, cell, position, normal)) return std::nullopt;
-        return site.irradiance;
-    };
     const Cell cell = m_cells.at(position, normal);
-    if (const auto found = ask(cell)) return *found;
+    if (const auto found = ask(cell, position, normal)) return *found;
     // A sliver of surface at an edge, or one of two surfaces in the cell.
-    if (const auto found = ask(nearestAside(cell, position, normal))) return *found;
+    const Cell aside = nearestAside(cell, position, normal);
+    if (const auto found = ask(aside, position, normal)) return *found;
     for (int halvings = 1; halvings <= kMostHalvings; ++halvings)
-        if (const auto found = ask(m_cells.at(position, normal, halvings))) return *found;
+        if (const auto found = ask(m_cells.at(position, normal, halvings), position, normal))
+            return *found;
     return estimate(position, normal, patternAt(position));
 }
 

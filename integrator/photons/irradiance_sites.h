@@ -5,6 +5,7 @@
 #include <array>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 
 #include "integrator/photons/big_array.h"
 #include "integrator/photons/photon_map.h"
@@ -52,17 +53,23 @@ class IrradianceSites {
 
   private:
     using Cell = SurfaceCells::Cell;
-    // A point of a surface and its irradiance; the normal is 0 where a cell has no surface.
-    struct Value {
+    // A point of a surface; the normal is 0 where a cell has none.
+    struct Place {
         Vec3f position, normal;
-        TwoRadii irradiance;
-        float height = 0.0f;  // above it, from where places look like its own; scene units
     };
+    struct Value {
+        TwoRadii irradiance;
+        float height = 0.0f;  // above the site, from where places look like its own; scene units
+    };
+    // What is known of a site: many are asked for by places that they don't speak for, and then
+    // their irradiance is never needed.
+    enum Known : std::uint32_t { kNothing, kPlace, kAll };
     // Atomic, as two threads may come here at once: they compute and store the same bits.
     struct alignas(64) Slot {
         std::atomic<std::uint64_t> cell;
-        std::array<std::atomic<float>, 13> value;
-        std::atomic<std::uint32_t> ready;
+        std::array<std::atomic<float>, 6> place;
+        std::array<std::atomic<float>, 7> value;
+        std::atomic<std::uint32_t> known;
     };
 
     std::size_t firstSlot(std::uint64_t hash) const {
@@ -72,10 +79,11 @@ class IrradianceSites {
         return m_estimate.withRadius(m_estimate.radius() * powerOfTwo(level));
     }
     Slot* slotOf(std::uint64_t hash) const;
-    Value compute(const Cell& cell, std::uint64_t hash) const;
-    Value valueOf(const Cell& cell) const;
-    bool speaksFor(const Value& site, const Cell& cell, const Vec3f& position,
-                   const Vec3f& normal) const;
+    Place placeOf(const Cell& cell, Slot* slot) const;
+    Value valueOf(const Cell& cell, std::uint64_t hash, const Place& site, Slot* slot) const;
+    bool isBeside(const Place& site, const Cell& cell, const Vec3f& position,
+                  const Vec3f& normal) const;
+    std::optional<TwoRadii> ask(const Cell& cell, const Vec3f& position, const Vec3f& normal) const;
     Cell nearestAside(const Cell& cell, const Vec3f& position, const Vec3f& normal) const;
 
     SurfaceEstimate m_estimate;
