@@ -70,6 +70,9 @@ void expectEven(const char* where, const Estimates& e) {
     EXPECT_LT(e.worst, 0.1) << where;
 }
 
+// What is lit many times has fewer photons: a disc has as many, and is larger.
+constexpr int kCells = 350;
+
 // Two corners have too few photons for one lighting to show an error of 5 %, and few rays stand for
 // the surface where no patch does: estimate(seed, away) is asked for many, and at other places.
 template <typename Estimate>
@@ -96,7 +99,7 @@ TEST(CausticEdges, OfAPlate) {
     const auto scene = maker.build();
     const auto lit = [&](std::uint64_t seed) {
         std::vector<Photon> photons;
-        light(photons, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, seed);
+        light(photons, {-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, seed, kCells);
         return CausticEdges(scene, photons);
     };
     const CausticEdges caustic = lit(1);
@@ -137,9 +140,9 @@ TEST(CausticEdges, OfARoom) {
     const auto scene = maker.build();
     const auto lit = [&](std::uint64_t seed) {
         std::vector<Photon> photons;
-        light(photons, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, seed);
-        light(photons, {-1, -1, -1}, {0, 2, 0}, {0, 0, 2}, seed);
-        light(photons, {-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, seed);
+        light(photons, {-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, seed, kCells);
+        light(photons, {-1, -1, -1}, {0, 2, 0}, {0, 0, 2}, seed, kCells);
+        light(photons, {-1, -1, -1}, {0, 0, 2}, {2, 0, 0}, seed, kCells);
         return CausticEdges(scene, photons);
     };
     const CausticEdges caustic = lit(1);

@@ -11,18 +11,18 @@
 
 namespace pm::test {
 
-// Photons that make an irradiance of 1 on a parallelogram, one in each cell of a grid.
-inline void light(std::vector<Photon>& photons, Vec3d p, Vec3d e0, Vec3d e1,
-                  std::uint64_t seed = 1) {
-    constexpr int kCells = 500;
+// Photons that make an irradiance of 1 on a parallelogram, one in each cell of a grid of so many
+// rows and columns.
+inline void light(std::vector<Photon>& photons, Vec3d p, Vec3d e0, Vec3d e1, std::uint64_t seed = 1,
+                  int cells = 500) {
     Random random(seed);
     const Vec3d n = cross(e0, e1);
-    const auto flux = static_cast<float>(length(n) / (kCells * kCells));
-    for (int j = 0; j < kCells; ++j)
-        for (int i = 0; i < kCells; ++i) {
+    const auto flux = static_cast<float>(length(n) / (cells * cells));
+    for (int j = 0; j < cells; ++j)
+        for (int i = 0; i < cells; ++i) {
             const Vec2f u = random.next2D();
-            photons.push_back({Vec3f(p + e0 * ((i + static_cast<double>(u.x)) / kCells) +
-                                     e1 * ((j + static_cast<double>(u.y)) / kCells)),
+            photons.push_back({Vec3f(p + e0 * ((i + static_cast<double>(u.x)) / cells) +
+                                     e1 * ((j + static_cast<double>(u.y)) / cells)),
                                Rgb(flux), PackedNormal(Vec3f(normalize(n)))});
         }
 }

@@ -78,7 +78,7 @@ TEST_F(OwnScenes, CornellBoxMeansAgreeWithinOnePercent) {
 // tracer is too noisy for it.
 TEST_F(OwnScenes, CausticGlassMeansAgree) {
     const Arguments byPhotons{"--integrator", "photon"};
-    const Arguments byPath{"--integrator", "path", "--passes", "12"};
+    const Arguments byPath{"--integrator", "path", "--passes", "6"};
     expectEqual("caustic_glass", measure("caustic_glass", byPhotons, ""),
                 measure("caustic_glass", byPath, ""), 0.01, 2.0);
     expectEqual("direct", measure("caustic_glass", byPhotons, "direct."),
