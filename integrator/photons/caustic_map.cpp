@@ -26,9 +26,11 @@ constexpr float kSmallestRadius = 1e-3f;
 // is left of the squared bias: radii shrink meanwhile, see radiusFactor.
 constexpr double kNoiseShare = 0.12;
 // The radius, in pixels' widths, of a disc for light that lies in one point: four samples of each
-// pixel find it to 5 %. Discs are at least half as wide; narrower ones would lie between the
-// samples.
+// pixel find it to 5 %. ...
 constexpr float kWidestDot = 1.5f;
+// ... It falls so steeply with the radius that the light asks for: no disc is narrower than 3/8 of
+// a pixel, and none that is wider than that is widened, which would only blur.
+constexpr float kDotSlope = 3.0f;
 // Photons whose radii are found at a time.
 constexpr std::uint32_t kGrain = 512;
 
@@ -85,7 +87,8 @@ float PilotRadius::at(const Vec3f& position, const Vec3f& normal, NearestPhotons
 TwoRadii CausticMap::irradiance(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch,
                                 float pixelWidth) const {
     const float wanted = m_radius.at(position, normal, scratch);
-    const float radius = std::max(wanted, kWidestDot * pixelWidth - wanted) * m_radiusFactor;
+    const float radius =
+        std::max(wanted, kWidestDot * pixelWidth - kDotSlope * wanted) * m_radiusFactor;
     TwoRadii flux = m_map.fluxWithin(position, normal, radius, scratch);
     SurfacePatch::Shares share;
     // In the dark there is nothing to correct.
