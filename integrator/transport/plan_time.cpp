@@ -13,10 +13,10 @@ namespace pm {
 namespace {
 
 // Seconds, by the passes of pm_bench_plan_time's scenes.
-constexpr double kRay = 0.16e-6, kRayPerDoubling = 0.014e-6;  // of the number of triangles
-constexpr double kLookUps = 0.3e-6, kLookUpsOfCaustics = 0.7e-6;
-constexpr double kSiteByPatch = 1.3e-6;
-constexpr double kStored = 0.5e-6, kCaustic = 1.6e-6;
+constexpr double kRay = 0.24e-6, kRayPerDoubling = 0.021e-6;  // of the number of triangles
+constexpr double kLookUps = 0.45e-6, kLookUpsOfCaustics = 1.05e-6;
+constexpr double kSiteByPatch = 2e-6;
+constexpr double kStored = 0.75e-6, kCaustic = 2.4e-6;
 
 // What pilots find later, as a rule: lamp samples; rays in proportion to the plan's.
 constexpr double kLampSamples = 5, kShadowRay = 0.5;

@@ -16,6 +16,7 @@
 #include <fstream>
 #include <functional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -67,6 +68,8 @@ class HostProcess : public ::testing::Test {
                 const std::function<void(pid_t)>& during = nullptr,
                 const std::vector<std::pair<std::string, std::string>>& variables = {}) const {
         const pid_t child = fork();
+        // A test that then killed process -1 would kill all of the user's.
+        if (child < 0) throw std::runtime_error("no process can be made");
         if (child == 0) {
             if (chdir(m_folder.c_str()) != 0 || !freopen(".out", "wb", stdout) ||
                 !freopen(".err", "wb", stderr)) {
