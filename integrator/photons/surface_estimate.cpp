@@ -44,14 +44,6 @@ struct Zone {
 };
 constexpr std::array<Zone, 4> kZones{
     {{0.0f, 0.5f, 18}, {0.5f, 1.0f, 12}, {1.0f, 1.3f, 5}, {1.3f, 2.0f, 5}}};
-constexpr std::uint32_t kInnerRays = 30, kOuterRays = 10;
-// A third of the disc's own rays, spread over all of it, go first. ...
-constexpr std::uint32_t kRounds = 3;
-// ... Where they find less surface than this, the others don't go: the disc is to be halved.
-constexpr float kHopelessShare = 0.1f;
-// Surface rises towards the apex where it is seen so high above the plane, in radii: where none
-// does, none is looked for beyond the rim.
-constexpr float kRise = 1e-3f;
 
 }  // namespace
 
@@ -102,6 +94,14 @@ SeenArea SurfaceEstimate::lookAt(const View& view, float turns, float radii) con
     return lookFor(m_scene, m_map.gate(view.position, view.normal), view.apex, inPlane);
 }
 
+SurfaceEstimate::Seen SurfaceEstimate::look(const View& view, float turns,
+                                            float radiusSquared) const {
+    const SeenArea seen = lookAt(view, turns, std::sqrt(radiusSquared));
+    const float distanceSquared = lengthSquared(seen.fromPoint);
+    if (distanceSquared > m_radius * m_radius) return {};
+    return {seen.area, distanceSquared};
+}
+
 bool SurfaceEstimate::isWhole(const View& view, bool& isPlane) const {
     isPlane = true;
     for (std::uint32_t i = 0; i < kRimRays; ++i) {
@@ -114,37 +114,21 @@ bool SurfaceEstimate::isWhole(const View& view, bool& isPlane) const {
     return true;
 }
 
-// Rays number first, first + step, ... before `end`: of equal areas on a golden spiral (Vogel 1979)
-// in each zone. Moved along with the turn: at fixed radii the rim of a bent disc would always fall
-// between the same two.
-void SurfaceEstimate::survey(const View& view, std::uint32_t first, std::uint32_t end,
-                             std::uint32_t step, Seen& seen) const {
+SurfaceEstimate::Shares SurfaceEstimate::shares(const View& view) const {
+    // Equal areas on a golden spiral (Vogel 1979) in each zone. Moved along with the turn: at fixed
+    // radii the rim of a bent disc would always fall between the same two.
     constexpr float kGoldenTurn = 0.381966011f;
-    for (std::uint32_t ray = first; ray < end; ray += step) {
-        std::uint32_t inZone = ray;
-        const Zone* zone = kZones.data();
-        for (; inZone >= zone->rays; ++zone) inZone -= zone->rays;
-        const float areaOfRay = (zone->to - zone->from) / static_cast<float>(zone->rays);
-        const float squared = zone->from + (static_cast<float>(inZone) + view.shift) * areaOfRay;
-        const SeenArea found =
-            lookAt(view, view.turn + kGoldenTurn * static_cast<float>(ray), std::sqrt(squared));
-        const float reach = m_radius * m_radius, distance = lengthSquared(found.fromPoint);
-        if (distance <= reach) seen.wide += found.area * areaOfRay;
-        if (distance <= 0.5f * reach) seen.narrow += found.area * areaOfRay;
-        seen.rises |= found.area > 0.0f && dot(found.fromPoint, view.normal) > kRise * m_radius;
+    float wide = 0.0f, narrow = 0.0f, ray = 0.0f;
+    for (const Zone& zone : kZones) {
+        const float areaOfRay = (zone.to - zone.from) / static_cast<float>(zone.rays);
+        for (std::uint32_t i = 0; i < zone.rays; ++i, ++ray) {
+            const Seen seen = look(view, view.turn + kGoldenTurn * ray,
+                                   zone.from + (static_cast<float>(i) + view.shift) * areaOfRay);
+            wide += seen.area * areaOfRay;
+            if (seen.distanceSquared <= 0.5f * m_radius * m_radius) narrow += seen.area * areaOfRay;
+        }
     }
-}
-
-// Of a disc that is to be halved, its share being below `least`, perhaps by a few rays only.
-SurfaceEstimate::Shares SurfaceEstimate::shares(const View& view, float least) const {
-    Seen seen;
-    survey(view, 0, kInnerRays, kRounds, seen);
-    if (static_cast<float>(kRounds) * seen.wide < std::min(least, kHopelessShare))
-        return {seen.wide, 2.0f * seen.narrow};
-    for (std::uint32_t round = 1; round < kRounds; ++round)
-        survey(view, round, kInnerRays, kRounds, seen);
-    if (seen.rises) survey(view, kInnerRays, kInnerRays + kOuterRays, 1, seen);
-    return {seen.wide, 2.0f * seen.narrow};
+    return {wide, 2.0f * narrow};
 }
 
 // Flux over the area that is surface.
@@ -234,7 +218,7 @@ SurfaceEstimate::Shares SurfaceEstimate::askRays(const Vec3f& position, const Ve
         if (m_scene.hasSheets()) flux = m_map.fluxInPlane(position, normal, m_radius);
         return {};
     }
-    const Shares share = shares(view, least);
+    const Shares share = shares(view);
     if (share.wide < least || !(share.wide > 0.0f)) return share;
     flux = m_map.fluxWithin(position, normal, m_radius, [&](std::uint32_t index) {
         const Photon photon = m_map.photon(index);

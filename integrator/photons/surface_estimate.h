@@ -67,10 +67,9 @@ class SurfaceEstimate {
     struct Shares {
         float wide = 1.0f, narrow = 1.0f;
     };
-    // What rays have found: area of the disc and of the one of half its area, over the disc's.
+    // What a ray found: area as SeenArea has it, 0 beyond the radius.
     struct Seen {
-        float wide = 0.0f, narrow = 0.0f;
-        bool rises = false;
+        float area = 0.0f, distanceSquared = 0.0f;
     };
     // The point, what is above it, and how the rays are turned.
     struct View {
@@ -88,11 +87,10 @@ class SurfaceEstimate {
                    TwoRadii& flux) const;
     TwoRadii irradiance(const TwoRadii& flux, const Shares& share) const;
     SeenArea lookAt(const View& view, float turns, float radii) const;
+    Seen look(const View& view, float turns, float radiusSquared) const;
     // isPlane: where it is, whether what tells so lies in the point's plane.
     bool isWhole(const View& view, bool& isPlane) const;
-    void survey(const View& view, std::uint32_t first, std::uint32_t end, std::uint32_t step,
-                Seen& seen) const;
-    Shares shares(const View& view, float least) const;
+    Shares shares(const View& view) const;
 
     const Scene& m_scene;
     const PhotonMap& m_map;
