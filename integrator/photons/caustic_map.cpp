@@ -28,8 +28,8 @@ constexpr double kNoiseShare = 0.12;
 // The radius, in pixels' widths, of a disc for light that lies in one point: four samples of each
 // pixel find it to 5 %. ...
 constexpr float kWidestDot = 1.5f;
-// ... It falls so steeply with the radius that the light asks for: no disc is narrower than 3/8 of
-// a pixel, and none that is wider than that is widened, which would only blur.
+// ... It falls so steeply with the radius that the light asks for: none is below 3/8 of a pixel's
+// width, and none that is above that is widened, which would only blur.
 constexpr float kDotSlope = 3.0f;
 // Photons whose radii are found at a time.
 constexpr std::uint32_t kGrain = 512;

@@ -71,7 +71,7 @@ class CausticMap {
     // Irradiance, W m^-2, on the side of the normal, at the radius that belongs there. Where the
     // disc is not all surface the flux is divided by the area that is, and only photons seen from
     // above it count. pixelWidth: on the surface, scene units. Of light that falls within less than
-    // a pixel few of the pixel's samples would tell, so there discs are at least 3/8 as wide.
+    // a pixel few of the pixel's samples would tell: in the first pass radii are 3/8 of it or more.
     TwoRadii irradiance(const Vec3f& position, const Vec3f& normal, NearestPhotons& scratch,
                         float pixelWidth = 0.0f) const;
 

@@ -33,6 +33,18 @@ std::size_t slotsFor(std::size_t photons, float radiusFactor) {
                       kMostSlots);
 }
 
+template <std::size_t N>
+std::array<float, N> load(const std::array<std::atomic<float>, N>& from) {
+    std::array<float, N> values;
+    for (std::size_t i = 0; i < N; ++i) values[i] = from[i].load(std::memory_order_relaxed);
+    return values;
+}
+
+template <std::size_t N>
+void store(const std::array<float, N>& values, std::array<std::atomic<float>, N>& to) {
+    for (std::size_t i = 0; i < N; ++i) to[i].store(values[i], std::memory_order_relaxed);
+}
+
 // Of the cells: another one in each pass, as radii differ from pass to pass.
 Vec3f originOf(const PhotonMap& map, float radius) {
     Vec3f origin;
@@ -71,18 +83,15 @@ IrradianceSites::Slot* IrradianceSites::slotOf(std::uint64_t hash) const {
 
 IrradianceSites::Place IrradianceSites::placeOf(const Cell& cell, Slot* slot) const {
     if (slot && slot->known.load(std::memory_order_acquire) != kNothing) {
-        std::array<float, 6> p;
-        for (std::size_t i = 0; i < p.size(); ++i)
-            p[i] = slot->place[i].load(std::memory_order_relaxed);
+        const std::array<float, 6> p = load(slot->place);
         return {{p[0], p[1], p[2]}, {p[3], p[4], p[5]}};
     }
     Place site;
     if (!m_cells.findSurface(cell, site.position, site.normal)) site = {};
     if (!slot) return site;
-    const std::array<float, 6> p{site.position.x, site.position.y, site.position.z,
-                                 site.normal.x,   site.normal.y,   site.normal.z};
-    for (std::size_t i = 0; i < p.size(); ++i)
-        slot->place[i].store(p[i], std::memory_order_relaxed);
+    store<6>({site.position.x, site.position.y, site.position.z, site.normal.x, site.normal.y,
+              site.normal.z},
+             slot->place);
     // Another thread may know all by now.
     std::uint32_t known = kNothing;
     slot->known.compare_exchange_strong(known, kPlace, std::memory_order_release,
@@ -93,9 +102,7 @@ IrradianceSites::Place IrradianceSites::placeOf(const Cell& cell, Slot* slot) co
 IrradianceSites::Value IrradianceSites::valueOf(const Cell& cell, std::uint64_t hash,
                                                 const Place& site, Slot* slot) const {
     if (slot && slot->known.load(std::memory_order_acquire) == kAll) {
-        std::array<float, 7> v;
-        for (std::size_t i = 0; i < v.size(); ++i)
-            v[i] = slot->value[i].load(std::memory_order_relaxed);
+        const std::array<float, 7> v = load(slot->value);
         return {{{v[0], v[1], v[2]}, {v[3], v[4], v[5]}}, v[6]};
     }
     const SurfaceEstimate estimate = estimateOf(cell.level);
@@ -104,10 +111,7 @@ IrradianceSites::Value IrradianceSites::valueOf(const Cell& cell, std::uint64_t 
         apexHeight(m_estimate.scene(), site.position, site.normal, estimate.radius())};
     if (!slot) return value;
     const auto& [wide, narrow] = value.irradiance;
-    const std::array<float, 7> v{wide.r,   wide.g,   wide.b,      narrow.r,
-                                 narrow.g, narrow.b, value.height};
-    for (std::size_t i = 0; i < v.size(); ++i)
-        slot->value[i].store(v[i], std::memory_order_relaxed);
+    store<7>({wide.r, wide.g, wide.b, narrow.r, narrow.g, narrow.b, value.height}, slot->value);
     slot->known.store(kAll, std::memory_order_release);
     return value;
 }

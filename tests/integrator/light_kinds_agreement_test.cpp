@@ -95,7 +95,7 @@ TEST_P(LightKindAgreement, WithPath) {
     };
     compare(kEmission, 0, 0);
     compare(kDirect, 0, 0);
-    // Discs are 3/8 of a pixel wide or more, and a pixel is 1/8 of a region.
+    // Discs' radii are 3/8 of a pixel's width or more, and a pixel is 1/8 of a region wide.
     compare(kCaustic, 0.2, 0.03);
     compare(kIndirect, 0.03, 0.012);
     compare(kCorrected, 0, 0.003);
