@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace pm::host {
@@ -43,11 +44,21 @@ int32_t boundaryOf(int interpolateBoundary) {
     return interpolateBoundary == 2 ? PMR_BOUNDARY_EDGE_ONLY : PMR_BOUNDARY_EDGE_AND_CORNER;
 }
 
+// From OpenSubdiv's numbers.
+int32_t faceVaryingOf(int number) {
+    constexpr std::array<int32_t, 6> kOf = {
+        PMR_FACE_VARYING_SMOOTH,        PMR_FACE_VARYING_CORNERS_ONLY,
+        PMR_FACE_VARYING_CORNERS_PLUS1, PMR_FACE_VARYING_CORNERS_PLUS2,
+        PMR_FACE_VARYING_BOUNDARIES,    PMR_FACE_VARYING_ALL};
+    return kOf.at(static_cast<std::size_t>(number));
+}
+
 PmrCageDesc describeCage(const PmrMeshDesc& mesh, const CageTags& tags) {
     auto desc = PMR_INIT(PmrCageDesc);
     desc.mesh = &mesh;
     desc.scheme = PMR_SCHEME_CATMULL_CLARK;
     desc.boundary = boundaryOf(tags.boundary);
+    desc.faceVarying = faceVaryingOf(tags.faceVarying);
     desc.creases = tags.creases.data();
     desc.creaseSharpness = tags.creaseSharpness.data();
     desc.creaseCount = tags.creaseSharpness.size();

@@ -26,6 +26,8 @@ class TagReader {
             hole(tag);
         } else if (tag.name == "interpolateboundary") {
             boundary(tag);
+        } else if (tag.name == "facevaryinginterpolateboundary") {
+            faceVarying(tag);
         } else {
             m_warn(Warning::kSubdivision, fmt::format("{}:{}: subdivision tag '{}' is not obeyed",
                                                       m_file, tag.line, tag.name));
@@ -91,6 +93,15 @@ class TagReader {
             fail(tag, "interpolateboundary must be 0 (none), 1 (edge and corner) or 2 (edge only)");
         }
         m_tags.boundary = static_cast<int>(tag.integers[0]);
+    }
+
+    void faceVarying(const SubdivisionTag& tag) {
+        if (tag.integers.empty() || tag.integers[0] < 0 || tag.integers[0] > 5) {
+            fail(tag,
+                 "facevaryinginterpolateboundary must be 0 (smooth), 1 to 3 (corners of charts "
+                 "stay), 4 (linear along the edges of charts) or 5 (linear everywhere)");
+        }
+        m_tags.faceVarying = static_cast<int>(tag.integers[0]);
     }
 
     const MeshAssembly& m_assembly;

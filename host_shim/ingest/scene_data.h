@@ -53,6 +53,9 @@ struct CageTags {
     std::vector<float> cornerSharpness;
     std::vector<std::uint32_t> holes;
     int boundary{1};  // RenderMan's numbers: 0 none, 1 edge and corner, 2 edge only
+    // Texture coordinates, OpenSubdiv's numbers: 0 smooth, 1 corners stay, 2 and 3 also where
+    // charts meet, 4 linear along the edges of charts, 5 linear everywhere.
+    int faceVarying{4};
 };
 
 inline constexpr std::uint32_t kNoIndex = 0xffffffffu;

@@ -11,7 +11,9 @@
 
 #include <algorithm>
 #include <mutex>
+#include <numeric>
 #include <shared_mutex>
+#include <tuple>
 
 #include "integrator/geometry/cage_topology.h"
 #include "integrator/values/error.h"
@@ -112,6 +114,24 @@ void RefinerInput::addVertices() {
     }
 }
 
+// Of each texture coordinate the first that has its value: many exporters write a new one for each
+// corner, and where two faces have equal ones the coordinates go on over their edge.
+std::vector<int> firstOfEqual(const std::vector<Vec2f>& texcoords) {
+    std::vector<int> order(texcoords.size()), first(texcoords.size());
+    std::iota(order.begin(), order.end(), 0);
+    const auto key = [&](int i) {
+        const Vec2f& t = texcoords[static_cast<std::size_t>(i)];
+        return std::tuple(t.x, t.y);
+    };
+    std::ranges::stable_sort(order, {}, key);
+    for (std::size_t i = 0; i < order.size(); ++i) {
+        const bool isNew = i == 0 || key(order[i]) != key(order[i - 1]);
+        first[static_cast<std::size_t>(order[i])] =
+            isNew ? order[i] : first[static_cast<std::size_t>(order[i - 1])];
+    }
+    return first;
+}
+
 // Corners without a texture coordinate share one more value, (0, 0).
 void RefinerInput::addTexcoords() {
     for (const Vec2f& texcoord : m_cage.mesh.texcoords) {
@@ -119,8 +139,9 @@ void RefinerInput::addTexcoords() {
     }
     const auto zero = static_cast<int>(m_cage.mesh.texcoords.size());
     m_texcoords.insert(m_texcoords.end(), {0.0, 0.0});
+    const std::vector<int> first = firstOfEqual(m_cage.mesh.texcoords);
     for (const std::int32_t index : m_cage.mesh.texcoordIndices) {
-        m_texcoordIndices.push_back(index < 0 ? zero : index);
+        m_texcoordIndices.push_back(index < 0 ? zero : first[static_cast<std::size_t>(index)]);
     }
 }
 

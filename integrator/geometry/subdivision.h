@@ -18,6 +18,7 @@ enum class SubdivisionScheme { kCatmullClark, kLoop, kBilinear };
 enum class BoundaryInterpolation { kNone, kEdgeOnly, kEdgeAndCorner };
 
 // Where texture coordinates are interpolated linearly instead of smoothly (names of OpenSubdiv).
+// kBoundaries, smooth inside and linear along the edges of charts, is what modelling programs do.
 enum class FaceVaryingInterpolation {
     kSmooth,
     kCornersOnly,
@@ -48,7 +49,7 @@ struct SubdivisionCage {
     PolygonMesh mesh;
     SubdivisionScheme scheme = SubdivisionScheme::kCatmullClark;
     BoundaryInterpolation boundary = BoundaryInterpolation::kEdgeAndCorner;
-    FaceVaryingInterpolation faceVarying = FaceVaryingInterpolation::kAllLinear;
+    FaceVaryingInterpolation faceVarying = FaceVaryingInterpolation::kBoundaries;
     CreaseMethod creaseMethod = CreaseMethod::kUniform;
     bool smoothTriangles = false;  // other weights for triangles under Catmull-Clark
     std::vector<Crease> creases;

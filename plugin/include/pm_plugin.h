@@ -173,6 +173,14 @@ typedef struct PmrMeshDesc {
 #define PMR_BOUNDARY_EDGE_AND_CORNER 0
 #define PMR_BOUNDARY_EDGE_ONLY 1
 #define PMR_BOUNDARY_NONE 2
+/* Where texture coordinates of a limit surface are linear in each face of the cage; elsewhere they
+ * are as smooth as the surface. Charts end where faces have unlike coordinates. */
+#define PMR_FACE_VARYING_BOUNDARIES 0    /* along the edges of charts */
+#define PMR_FACE_VARYING_SMOOTH 1        /* nowhere: edges of charts move inwards and bend */
+#define PMR_FACE_VARYING_CORNERS_ONLY 2  /* corners of charts stay, their edges bend */
+#define PMR_FACE_VARYING_CORNERS_PLUS1 3 /* ... and where more than two charts meet */
+#define PMR_FACE_VARYING_CORNERS_PLUS2 4 /* ... and at darts and concave corners */
+#define PMR_FACE_VARYING_ALL 5           /* everywhere */
 
 /* A subdivision cage, rendered as its limit surface. The mesh's normals are not used. */
 typedef struct PmrCageDesc {
@@ -189,7 +197,7 @@ typedef struct PmrCageDesc {
     const uint32_t* holes; /* holeCount face indices */
     uint64_t holeCount;
     uint32_t tessellationRate; /* segments along a regular face's edge, 1 to 64; 0 = 4 */
-    uint32_t reserved;
+    int32_t faceVarying;       /* PMR_FACE_VARYING_* */
 } PmrCageDesc;
 
 /* An analytic sphere, one material slot. Its front is outside. Textures are latitude-longitude

@@ -47,7 +47,7 @@ static_assert(offsetof(PmrCageDesc, cornerCount) == 64);
 static_assert(offsetof(PmrCageDesc, holes) == 72);
 static_assert(offsetof(PmrCageDesc, holeCount) == 80);
 static_assert(offsetof(PmrCageDesc, tessellationRate) == 88);
-static_assert(offsetof(PmrCageDesc, reserved) == 92);
+static_assert(offsetof(PmrCageDesc, faceVarying) == 92);
 
 static_assert(sizeof(PmrSphereDesc) == 40);
 static_assert(offsetof(PmrSphereDesc, size) == 0);

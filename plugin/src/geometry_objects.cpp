@@ -192,6 +192,26 @@ BoundaryInterpolation toBoundary(std::int32_t boundary) {
     }
 }
 
+FaceVaryingInterpolation toFaceVarying(std::int32_t faceVarying) {
+    switch (faceVarying) {
+        case PMR_FACE_VARYING_BOUNDARIES:
+            return FaceVaryingInterpolation::kBoundaries;
+        case PMR_FACE_VARYING_SMOOTH:
+            return FaceVaryingInterpolation::kSmooth;
+        case PMR_FACE_VARYING_CORNERS_ONLY:
+            return FaceVaryingInterpolation::kCornersOnly;
+        case PMR_FACE_VARYING_CORNERS_PLUS1:
+            return FaceVaryingInterpolation::kCornersPlus1;
+        case PMR_FACE_VARYING_CORNERS_PLUS2:
+            return FaceVaryingInterpolation::kCornersPlus2;
+        case PMR_FACE_VARYING_ALL:
+            return FaceVaryingInterpolation::kAllLinear;
+        default:
+            throw argumentError(fmt::format(
+                "faceVarying is {}; it must be 0 to 5 (PMR_FACE_VARYING_*)", faceVarying));
+    }
+}
+
 SubdivisionCage toCage(const PmrCageDesc& desc, const PmrMeshDesc& meshDesc,
                        const CancelCheck& cancel) {
     const MeshReader reader(cancel);
@@ -199,6 +219,7 @@ SubdivisionCage toCage(const PmrCageDesc& desc, const PmrMeshDesc& meshDesc,
     cage.mesh = reader.read(meshDesc);
     cage.scheme = toScheme(desc.scheme);
     cage.boundary = toBoundary(desc.boundary);
+    cage.faceVarying = toFaceVarying(desc.faceVarying);
     checkArray(desc.creases, desc.creaseCount, "creases");
     checkArray(desc.creaseSharpness, desc.creaseCount, "creaseSharpness");
     for (std::uint64_t i = 0; i < desc.creaseCount; ++i)
@@ -245,7 +266,6 @@ std::shared_ptr<MeshObject> makeCage(std::shared_ptr<Context> context, const Pmr
     meshDesc.normalIndices = nullptr;
     const std::uint64_t slotCount = slotCountOf(meshDesc);
     const int rate = static_cast<int>(checkedRate(desc.tessellationRate));
-    if (desc.reserved != 0) throw argumentError("PmrCageDesc: reserved must be 0");
     BuiltMesh built =
         runLeavable(context->buildCheck(), "tessellating",
                     [cage = toCage(desc, meshDesc, context->buildCheck()), rate,

@@ -109,6 +109,9 @@ TEST_F(MisuseScene, Cages) {
     bad.boundary = -1;
     EXPECT_EQ(PMR_ERROR_ARGUMENT, cage(bad));
     bad = good;
+    bad.faceVarying = 6;
+    EXPECT_EQ(PMR_ERROR_ARGUMENT, cage(bad));
+    bad = good;
     bad.tessellationRate = 65;
     EXPECT_EQ(PMR_ERROR_ARGUMENT, cage(bad));
     bad = good;

@@ -235,5 +235,75 @@ TEST(LimitSurface, TextureCoordinatesAreLinearOnEachFace) {
     EXPECT_EQ(seen.size(), 49u);
 }
 
+// A grid whose inner vertices are moved within its plane, with (x, y) as texture coordinates.
+SubdivisionCage movedGrid(bool ownTexcoordAtEachCorner) {
+    SubdivisionCage cage = test::gridCage(4);
+    for (std::size_t i = 0; i < cage.mesh.positions.size(); ++i) {
+        Vec3f& p = cage.mesh.positions[i];
+        if (p.x == 0 || p.x == 4 || p.y == 0 || p.y == 4) continue;
+        p.x += 0.3f * static_cast<float>(i % 3) - 0.2f;
+        p.y += 0.2f * static_cast<float>(i % 4) - 0.3f;
+    }
+    PolygonMesh& mesh = cage.mesh;
+    for (const std::uint32_t vertex : mesh.vertexIndices) {
+        const Vec3f& p = mesh.positions[vertex];
+        mesh.texcoordIndices.push_back(static_cast<std::int32_t>(
+            ownTexcoordAtEachCorner ? mesh.texcoords.size() : std::size_t{vertex}));
+        if (ownTexcoordAtEachCorner) mesh.texcoords.push_back({p.x, p.y});
+    }
+    if (!ownTexcoordAtEachCorner) {
+        for (const Vec3f& p : mesh.positions) mesh.texcoords.push_back({p.x, p.y});
+    }
+    return cage;
+}
+
+float largestWayFromTexcoords(const TriangleMesh& mesh) {
+    float largest = 0;
+    for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
+        for (std::size_t corner = 0; corner < 3; ++corner) {
+            const Vec3f p = mesh.positions[mesh.triangles[i][corner]];
+            const Vec2f t = mesh.texcoords[mesh.texcoordIndices[i][corner]];
+            largest = std::max({largest, std::abs(t.x - p.x), std::abs(t.y - p.y)});
+        }
+    }
+    return largest;
+}
+
+// What goes linearly with the cage's points goes so with the limit's: a texture isn't pulled along.
+TEST(LimitSurface, TextureCoordinatesAreAsSmoothAsTheSurface) {
+    for (const bool own : {false, true}) {
+        SubdivisionCage cage = movedGrid(own);
+        EXPECT_LT(largestWayFromTexcoords(tessellate(cage, 4).mesh), 2e-6f) << own;
+        cage.faceVarying = FaceVaryingInterpolation::kAllLinear;
+        EXPECT_GT(largestWayFromTexcoords(tessellate(cage, 4).mesh), 0.05f) << own;
+    }
+}
+
+TEST(LimitSurface, TextureCoordinatesAreLinearAlongTheEdgesOfCharts) {
+    SubdivisionCage cage = movedGrid(true);
+    PolygonMesh& mesh = cage.mesh;
+    constexpr float kAway = 10;
+    std::vector<float> seam(5);  // u of the cage's points at x = 2 of the left chart, by their row
+    for (std::size_t corner = 0; corner < mesh.vertexIndices.size(); ++corner) {
+        const std::size_t vertex = mesh.vertexIndices[corner];
+        if (vertex % 5 == 2) seam[vertex / 5] = mesh.positions[vertex].x;
+        if (corner / 4 % 4 >= 2) mesh.texcoords[corner].x += kAway;
+    }
+    // Twice as fine is the same points and one in the middle of each two.
+    std::set<float> left;
+    const TriangleMesh fine = tessellate(cage, 2).mesh;
+    for (std::size_t i = 0; i < fine.triangles.size(); ++i) {
+        if (fine.faces[i] % 4 != 1) continue;  // the left chart's faces at the seam
+        for (const std::uint32_t index : fine.texcoordIndices[i])
+            left.insert(fine.texcoords[index].x);
+    }
+    for (std::size_t row = 0; row + 1 < seam.size(); ++row) {
+        const float middle = 0.5f * (seam[row] + seam[row + 1]);
+        const auto next = left.lower_bound(middle - 1e-6f);
+        EXPECT_TRUE(next != left.end() && *next < middle + 1e-6f) << row;
+        EXPECT_TRUE(left.lower_bound(seam[row] - 1e-6f) != left.end()) << row;
+    }
+}
+
 }  // namespace
 }  // namespace pm

@@ -200,7 +200,8 @@ TEST(Obj, tagsBelongToTheirGroup) {
     const SceneData scene = read(kQuad +
                                  "g plain\nf 1 2 3\ng tagged\nf 1 2 3 4\n"
                                  "t crease 3/1/0 0 1 2 2.5\nt corner 1/1/0 3 20\n"
-                                 "t interpolateboundary 1/0/0 2\nt hole 1/0/0 1\n");
+                                 "t interpolateboundary 1/0/0 2\nt hole 1/0/0 1\n"
+                                 "t facevaryinginterpolateboundary 1/0/0 5\n");
     ASSERT_EQ(scene.meshes.size(), 2u);
     EXPECT_FALSE(scene.meshes[0].tags);
     ASSERT_TRUE(scene.meshes[1].tags);
@@ -211,12 +212,15 @@ TEST(Obj, tagsBelongToTheirGroup) {
     EXPECT_EQ(tags.cornerSharpness, std::vector<float>{10.0f});
     EXPECT_EQ(tags.holes, std::vector<std::uint32_t>{0});
     EXPECT_EQ(tags.boundary, 2);
+    EXPECT_EQ(tags.faceVarying, 5);
 }
 
 TEST(Obj, refusesTagsOutOfRange) {
     EXPECT_TRUE(refusal(kQuad + "f 1 2 3\nt crease 2/1/0 0 3 1\n").starts_with("3 scene.obj:6:"));
     EXPECT_TRUE(refusal(kQuad + "f 1 2 3\nt hole 1/0/0 7\n").starts_with("3 scene.obj:6:"));
     EXPECT_TRUE(refusal(kQuad + "f 1 2 3\nt corner 1/x/0 7\n").starts_with("3 scene.obj:6:"));
+    EXPECT_TRUE(refusal(kQuad + "f 1 2 3\nt facevaryinginterpolateboundary 1/0/0 6\n")
+                    .starts_with("3 scene.obj:6:"));
 }
 
 TEST(Obj, aCommaLocaleChangesNothing) {
