@@ -150,9 +150,23 @@ void Bsdf::setDielectric(const Scene& scene, const Surface& surface) {
     const float reflected = fresnelDielectric(clamp01(dot(m_out, m_ns)), m_eta);
     m_tint =
         clamp01(textured(scene, m_material.transmission, m_material.transmissionTexture, surface));
+    if (surface.isPane) {
+        setPane(reflected);
+        return;
+    }
     m_hasPhotonWays = m_transport == Transport::kPhotons && m_nd != m_ng;
     m_reflectance[index(Lobe::kReflection)] = Rgb(reflected * m_opacity);
     m_reflectance[index(Lobe::kRefraction)] = m_tint * ((1.0f - reflected) * m_opacity);
+}
+
+// With R of one boundary, and the tint at each passage: (1 - R)^2 goes through both, and of the
+// (1 - R) inside R^2, R^4 ... are sent to and fro before they leave.
+void Bsdf::setPane(float reflected) {
+    const float through = (1.0f - reflected) / (1.0f + reflected);
+    m_eta = 1.0f;
+    m_reflectance[index(Lobe::kRefraction)] = m_tint * m_tint * through;
+    m_reflectance[index(Lobe::kReflection)] =
+        Rgb(reflected) + m_tint * m_tint * (reflected * through);
 }
 
 void Bsdf::setPhotonWays() {

@@ -104,6 +104,8 @@ class Bsdf {
     void setSurface(const Scene& scene, const Surface& surface);
     void setMirror(const Scene& scene, const Surface& surface);
     void setDielectric(const Scene& scene, const Surface& surface);
+    // Of both boundaries of a body so thin that no ray starts inside it.
+    void setPane(float reflected);
     void limitEnergy();
     void chooseDiffuse(const Rgb& carried);
     void chooseProbabilities(const Rgb& carried);

@@ -29,6 +29,7 @@ struct RayHit {
     std::uint32_t shape = 0;      // in the order in which shapes were added
     std::uint32_t primitive = 0;  // triangle of that shape; 0 for spheres
     float t = 0.0f;
+    bool isPane = false;  // see Surface; never set by the tracer
 };
 
 // A triangle that is intersected in double: one so huge that float's roundings of it matter.

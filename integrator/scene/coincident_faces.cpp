@@ -7,6 +7,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <utility>
 
@@ -27,6 +28,8 @@ constexpr std::uint32_t kMostPoints = 256;
 constexpr float kWindow = 4.0f;
 // Of the way along a ray, beside what its end may be off.
 constexpr float kRoundings = 4 * 0x1p-24f;
+// Faces that a ray meets in one place and that are compared as sides of panes.
+constexpr std::size_t kMostTogether = 8;
 
 }  // namespace
 
@@ -62,6 +65,70 @@ bool Scene::CoincidentFaces::isOn(const Scene& scene, const Face& face, const Su
     return std::abs(dot(way, Vec3d(facet.normal))) <= 2.0 * static_cast<double>(off);
 }
 
+double Scene::CoincidentFaces::depthBehind(const Scene& scene, const Face& face,
+                                           const Face& other) {
+    const ShapeRecord& record = scene.m_shapes[face.shape];
+    const Corner corner = record.corner(face.primitive);
+    // The facet's own normal is rounded, which far corners would feel.
+    const Vec3d normal = cross(corner.e1, corner.e2);
+    const Vec3d way = scene.m_shapes[other.shape].corner(other.primitive).vertex - corner.vertex;
+    const double depth = -dot(way, normal) / length(normal);
+    return dot(normal, Vec3d(record.facets[face.primitive].normal)) < 0 ? -depth : depth;
+}
+
+bool Scene::CoincidentFaces::areOfPane(const Scene& scene, const Face& face, const Face& other) {
+    const ShapeRecord &record = scene.m_shapes[face.shape], &ofOther = scene.m_shapes[other.shape];
+    const std::uint32_t index = record.materialOf(face.primitive);
+    const MaterialDescription& material = scene.material(index);
+    return material.kind == MaterialKind::kDielectric && material.transparency == 0.0f &&
+           material.opacityTexture == kNoTexture && ofOther.mesh &&
+           index == ofOther.materialOf(other.primitive) &&
+           dot(record.facets[face.primitive].normal, ofOther.facets[other.primitive].normal) <
+               0.0f &&
+           depthBehind(scene, face, other) > 0.0;
+}
+
+bool Scene::CoincidentFaces::areNeighbours(const Scene& scene, const Face& face,
+                                           const Face& other) {
+    const auto cornersOf = [&scene](const Face& one) {
+        const Corner corner = scene.m_shapes[one.shape].corner(one.primitive);
+        return std::array{corner.vertex, corner.vertex + corner.e1, corner.vertex + corner.e2};
+    };
+    const auto isIn = [](const Vec3d& point, const std::array<Vec3d, 3>& corners) {
+        return std::ranges::any_of(corners, [&](const Vec3d& c) {
+            return c.x == point.x && c.y == point.y && c.z == point.z;
+        });
+    };
+    const std::array<Vec3d, 3> ours = cornersOf(face), theirs = cornersOf(other);
+    const auto apex = std::ranges::find_if(ours, [&](const Vec3d& p) { return !isIn(p, theirs); });
+    const auto beyond =
+        std::ranges::find_if(theirs, [&](const Vec3d& p) { return !isIn(p, ours); });
+    if (apex == ours.end() || beyond == theirs.end()) return false;
+    const std::size_t at = static_cast<std::size_t>(apex - ours.begin());
+    const Vec3d a = ours[(at + 1) % 3], b = ours[(at + 2) % 3];
+    if (!isIn(a, theirs) || !isIn(b, theirs)) return false;
+    return dot(cross(b - a, *apex - a), cross(b - a, *beyond - a)) < 0.0;
+}
+
+bool Scene::CoincidentFaces::areCutAlike(const Scene& scene, const Face& face, const Face& other) {
+    const std::uint32_t index = scene.m_shapes[face.shape].materialOf(face.primitive);
+    const MaterialDescription& material = scene.material(index);
+    return material.transparency == 0.0f && material.opacityTexture != kNoTexture &&
+           index == scene.m_shapes[other.shape].materialOf(other.primitive);
+}
+
+bool Scene::CoincidentFaces::hidesOther(const Scene& scene, const Face& face, const Face& other) {
+    const Rank rank = rankOf(scene, face), ofOther = rankOf(scene, other);
+    if (rank == Rank::kSheet && ofOther > rank) return true;
+    if (ofOther != rank) return false;
+    if (areNeighbours(scene, face, other)) return false;
+    if (rank == Rank::kGlass) return !areOfPane(scene, face, other);
+    if (rank == Rank::kSheet) return !areCutAlike(scene, face, other);
+    return rank != Rank::kShining ||
+           dot(scene.m_shapes[face.shape].facets[face.primitive].normal,
+               scene.m_shapes[other.shape].facets[other.primitive].normal) > 0.0f;
+}
+
 void Scene::CoincidentFaces::search(const Scene& scene, const Face& face, std::uint32_t points,
                                     Found& found) {
     const ShapeRecord& record = scene.m_shapes[face.shape];
@@ -84,11 +151,7 @@ void Scene::CoincidentFaces::search(const Scene& scene, const Face& face, std::u
             if (other == face || !isOn(scene, other, point)) return;
             found.faces.push_back(other);
             isAmong = true;
-            const bool facesAlike =
-                dot(normal, scene.m_shapes[other.shape].facets[other.primitive].normal) > 0.0f;
-            const Rank ofOther = rankOf(scene, other);
-            isLost |= (ofOther == rank && (rank != Rank::kShining || facesAlike)) ||
-                      (rank == Rank::kSheet && ofOther > rank);
+            isLost |= hidesOther(scene, face, other);
         });
     }
     if (isAmong) found.faces.push_back(face);
@@ -175,15 +238,44 @@ RayHit Scene::CoincidentFaces::chosen(const Ray& ray, const RayHit& nearest) con
     if (!(window < nearest.t)) return nearest;  // along the face, or from it
     RayHit best = nearest;
     auto bestOrder = orderFor(ray, {nearest.shape, nearest.primitive});
+    std::array<RayHit, kMostTogether> met;
+    std::size_t metCount = 0;
     m_scene.m_tracer.forEachHit({ray.origin, ray.direction, nearest.t + window}, nearest.t - window,
                                 [&](const RayHit& hit) {
+                                    if (metCount < met.size()) met[metCount++] = hit;
                                     const Face face{hit.shape, hit.primitive};
                                     const auto order = orderFor(ray, face);
                                     if (!(order < bestOrder)) return;
                                     bestOrder = order;
                                     best = hit;
                                 });
-    return best;
+    if (rankOf(m_scene, {best.shape, best.primitive}) != Rank::kGlass) return best;
+    return nearSide(ray, {met.data(), metCount}, best);
+}
+
+RayHit Scene::CoincidentFaces::nearSide(const Ray& ray, std::span<const RayHit> met,
+                                        const RayHit& soFar) const {
+    const auto isEntered = [&](const RayHit& hit) {
+        return dot(m_scene.m_shapes[hit.shape].facets[hit.primitive].normal, ray.direction) < 0.0f;
+    };
+    for (const RayHit& entered : met) {
+        const ShapeRecord& record = m_scene.m_shapes[entered.shape];
+        if (!record.mesh || !isEntered(entered)) continue;
+        const Face face{entered.shape, entered.primitive};
+        for (const RayHit& left : met) {
+            const Face other{left.shape, left.primitive};
+            if (!m_scene.m_shapes[left.shape].mesh || isEntered(left) ||
+                !areOfPane(m_scene, face, other))
+                continue;
+            const float offset = surfaceOffset(ray.origin + ray.direction * entered.t,
+                                               record.facets[entered.primitive].reach);
+            RayHit hit = entered;
+            hit.isPane =
+                depthBehind(m_scene, face, other) <= static_cast<double>(kThickestPane * offset);
+            return hit;
+        }
+    }
+    return soFar;
 }
 
 std::pair<int, Scene::CoincidentFaces::Face> Scene::CoincidentFaces::orderFor(

@@ -5,6 +5,7 @@
 #include <compare>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -18,7 +19,8 @@ namespace pm {
 // glass, so that light that has come through glass is on the floor and not beyond it; of two alike
 // the first in the scene.
 //
-// Opaque faces that lie on opaque ones are not looked for.
+// The two sides of a pane that is too thin to start rays in are met as one, with what both do to
+// light. Opaque faces that lie on opaque ones are not looked for.
 class Scene::CoincidentFaces {
   public:
     // Null where there are none. Adds a notice for those that no rule helps. Searches in parallel
@@ -30,6 +32,10 @@ class Scene::CoincidentFaces {
 
     // What the ray, whose nearest hit is given, meets by that rule. Threads: any, at once.
     RayHit chosen(const Ray& ray, const RayHit& nearest) const;
+
+    // How far behind its near side the far side of such a pane is at most, in the offsets of rays
+    // that leave it (Surface::offset), and how many of these are surely beyond.
+    static constexpr float kThickestPane = 4.0f, kBeyondPane = 6.0f;
 
     std::uint64_t memoryBytes() const;
 
@@ -44,8 +50,21 @@ class Scene::CoincidentFaces {
     CoincidentFaces(const Scene& scene, const std::vector<Face>& faces);
     static Rank rankOf(const Scene& scene, const Face& face);
     static bool isOn(const Scene& scene, const Face& face, const Surface& point);
+    // Behind the plane of a face, how far another is; scene units, below 0 before it.
+    static double depthBehind(const Scene& scene, const Face& face, const Face& other);
+    // Whether they are the two sides of one body of clear glass, with nothing but it between them.
+    static bool areOfPane(const Scene& scene, const Face& face, const Face& other);
+    // Whether they lie beside each other, with an edge in common.
+    static bool areNeighbours(const Scene& scene, const Face& face, const Face& other);
+    // Whether they let light through by the same picture, as the faces of blocks of leaves.
+    static bool areCutAlike(const Scene& scene, const Face& face, const Face& other);
+    // Whether light that meets one of them does not meet the other, and should.
+    static bool hidesOther(const Scene& scene, const Face& face, const Face& other);
     static void search(const Scene& scene, const Face& face, std::uint32_t points, Found& found);
     static void addNotices(const Found& found, std::vector<Notice>& notices);
+    // Of glass: the side of a body that the ray enters by, where that is among what it meets there
+    // together with the side that it leaves by; else as chosen so far.
+    RayHit nearSide(const Ray& ray, std::span<const RayHit> met, const RayHit& soFar) const;
     // The least is met.
     std::pair<int, Face> orderFor(const Ray& ray, const Face& face) const;
 

@@ -115,6 +115,11 @@ bool Scene::intersect(const Ray& ray, Surface& surface) const {
         double b1, b2;
         barycentrics(ray, corner.vertex, corner.e1, corner.e2, b1, b2);
         surfaceOnTriangle(record, hit.primitive, corner, b1, b2, surface);
+        surface.isPane = hit.isPane;
+        if (hit.isPane) {
+            surface.shadingNormal = surface.geometricNormal;
+            surface.offset *= CoincidentFaces::kBeyondPane;
+        }
         return true;
     }
     const Vec3d origin(ray.origin), direction(ray.direction);
@@ -122,6 +127,7 @@ bool Scene::intersect(const Ray& ray, Surface& surface) const {
                                      record.sphere.centre, record.sphere.radius);
     const Vec3d point = origin + direction * (t > 0 ? t : static_cast<double>(hit.t));
     surfaceOnSphere(record, point - record.sphere.centre, surface);
+    surface.isPane = false;
     return true;
 }
 

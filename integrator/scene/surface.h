@@ -26,6 +26,9 @@ struct Surface {
     std::uint32_t primitive = 0;
     std::uint32_t instanceId = 0;
     std::int32_t light = kNoLight;  // the area light that this primitive is
+    // Of glass: the far side of the same body is so close behind that no ray could start between.
+    // Both are met as one.
+    bool isPane = false;
 };
 
 // Bound on the distance between a computed point on a triangle and where Embree's robust

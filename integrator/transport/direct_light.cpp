@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <span>
 
 #include "integrator/sampling/warps.h"
@@ -24,6 +25,26 @@ struct Question {
     LampStrategy diffuse;
     std::uint32_t samples;
 };
+
+// Share of light that comes along a shadow ray straight through what it meets. Counts further rays.
+float straightShare(const Scene& scene, const Ray& shadowRay, std::uint32_t& rays) {
+    const Vec3f target = shadowRay.origin + shadowRay.direction * shadowRay.tMax;
+    const bool isFar = !std::isfinite(shadowRay.tMax);
+    const Vec3f direction = normalize(shadowRay.direction);
+    Vec3f origin = shadowRay.origin;
+    float share = 1.0f;
+    while (share > 0.0f) {
+        const Ray ray = isFar ? Ray{origin, direction}
+                              : Ray{origin, direction, dot(target - origin, direction)};
+        Surface surface;
+        ++rays;
+        if (!(ray.tMax > 0.0f) || !scene.intersect(ray, surface)) break;
+        const Bsdf bsdf(scene, surface, -direction, Transport::kRadiance, Rgb(1.0f));
+        share *= maxChannel(bsdf.reflectance(Lobe::kStraight));
+        origin = rayOrigin(surface, direction);
+    }
+    return share;
+}
 
 // By one of the lamp samples, to be divided by their number.
 DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, std::uint32_t& rays) {
@@ -48,8 +69,10 @@ DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, st
     result.glossy = contribution(bsdf.phongLobe());
     if (isBlack(result.diffuse) && isBlack(result.glossy)) return result;
     ++rays;
-    if (asked.scene.occluded(light.shadowRay)) return {};
-    return result;
+    if (!asked.scene.occluded(light.shadowRay)) return result;
+    if (!light.isPoint || asked.diffuse != LampStrategy::kBothAndBeyond) return {};
+    const float share = straightShare(asked.scene, light.shadowRay, rays);
+    return {{}, {}, result.diffuse * share, result.glossy * share};
 }
 
 // Sum over all samples, whose lamps are chosen kMost at a time.
@@ -65,6 +88,8 @@ DirectRadiance sumOfSamples(const Question& asked, const Sampler& sampler, std::
             const DirectRadiance part = byLampSample(asked, one, rays);
             sum.diffuse += part.diffuse;
             sum.glossy += part.glossy;
+            sum.diffuseBeyond += part.diffuseBeyond;
+            sum.glossyBeyond += part.glossyBeyond;
         }
     }
     return sum;
@@ -82,7 +107,8 @@ DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
                            : sumOfSamples<kAtOnce>(asked, sampler, rays);
     sampler.skip();
     const auto number = static_cast<float>(samples);
-    return {sum.diffuse / number, sum.glossy / number};
+    return {sum.diffuse / number, sum.glossy / number, sum.diffuseBeyond / number,
+            sum.glossyBeyond / number};
 }
 
 Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const LastScatter& last) {
@@ -111,6 +137,8 @@ Rgb weightedFarLight(const Scene& scene, const LightSampler& lights, const LastS
 }
 
 void recordFirstHit(const Surface& surface, const Bsdf& bsdf, SampleRadiance& result) {
+    const bool isCutAway = bsdf.reflectance(Lobe::kStraight).g == 1.0f;
+    if (result.coverage > 0.0f || isCutAway) return;
     result.coverage = 1.0f;
     result.albedo = bsdf.albedo();
     result.normal = bsdf.facingShadingNormal();

@@ -82,6 +82,8 @@ struct SampleRadiance {
 // Radiance reflected by the diffuse and the Phong lobe, from one light sample.
 struct DirectRadiance {
     Rgb diffuse, glossy;
+    // Of light that came straight through transparent surfaces, where that was asked for.
+    Rgb diffuseBeyond, glossyBeyond;
 };
 
 // How light that a diffuse lobe receives straight from a lamp is found.
@@ -89,6 +91,9 @@ enum class LampStrategy : std::uint8_t {
     kBoth,           // by next-event estimation and by sampling the lobe, weighted
     kNextEventOnly,  // where lamps fill so little of the view that sampling the lobe adds nothing
     kNone,           // it is not asked for
+    // As kBoth, and points and parallel beams are looked for beyond transparent surfaces too: no
+    // lobe that goes on straight ever meets them. All other lamps are left to those lobes.
+    kBothAndBeyond,
 };
 
 // Next-event estimation for both lobes: the mean of `samples` lamp samples, a power of two, with a
@@ -116,7 +121,8 @@ Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const L
 // The same of lights that are infinitely far, where the path that came by `last` meets nothing.
 Rgb weightedFarLight(const Scene& scene, const LightSampler& lights, const LastScatter& last);
 
-// First hit: albedo, normal, position, and which surface it is.
+// First hit: albedo, normal, position, and which surface it is. What is wholly cut away there is
+// passed over, as is every hit after the first.
 void recordFirstHit(const Surface& surface, const Bsdf& bsdf, SampleRadiance& result);
 
 }  // namespace pm

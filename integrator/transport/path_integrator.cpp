@@ -23,16 +23,21 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
         result.of(state.classify()) += path.throughput * weightedEmission(m_lights, surface, last);
         const Bsdf bsdf(m_scene, surface, -path.ray.direction, Transport::kRadiance,
                         path.throughput);
-        if (result.rays == 1) recordFirstHit(surface, bsdf, result);
+        recordFirstHit(surface, bsdf, result);
         if (bsdf.isBlackBody()) return result;
         if (bsdf.reflectsLamps()) {
-            const DirectRadiance direct = estimateDirect(
-                m_scene, m_lights, surface, bsdf, LampStrategy::kBoth, 1, sampler, result.rays);
+            const DirectRadiance direct =
+                estimateDirect(m_scene, m_lights, surface, bsdf, LampStrategy::kBothAndBeyond, 1,
+                               sampler, result.rays);
             PathState byDiffuse = state, byGlossy = state;
             byDiffuse.scatter(Lobe::kDiffuse);
             byGlossy.scatter(bsdf.phongLobe());
             result.of(byDiffuse.classify()) += path.throughput * direct.diffuse;
             result.of(byGlossy.classify()) += path.throughput * direct.glossy;
+            byDiffuse.scatter(Lobe::kStraight);
+            byGlossy.scatter(Lobe::kStraight);
+            result.of(byDiffuse.classify()) += path.throughput * direct.diffuseBeyond;
+            result.of(byGlossy.classify()) += path.throughput * direct.glossyBeyond;
         }
         BsdfSample sample;
         const float uLobe = sampler.next1D();

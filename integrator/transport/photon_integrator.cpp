@@ -74,7 +74,7 @@ SampleRadiance PhotonIntegrator::sample(const View& view, Sampler& sampler,
     SampleRadiance result;
     Branch branch{PathWalk(view.ray), {}, {}, m_lampSamples};
     branch.last.direction = view.ray.direction;
-    follow(branch, true, {view, sampler, scratch, result});
+    follow(branch, {view, sampler, scratch, result});
     return result;
 }
 
@@ -110,10 +110,10 @@ bool PhotonIntegrator::Branch::goOn(const Surface& surface, const Bsdf& bsdf,
     return true;
 }
 
-void PhotonIntegrator::follow(Branch& branch, bool first, const Tree& tree) const {
+void PhotonIntegrator::follow(Branch& branch, const Tree& tree) const {
     const PathWalk& path = branch.path;
     SampleRadiance& result = tree.result;
-    for (;; first = false) {
+    while (true) {
         Surface surface;
         ++result.rays;
         const PathClass found = branch.state.classify();
@@ -126,7 +126,7 @@ void PhotonIntegrator::follow(Branch& branch, bool first, const Tree& tree) cons
             result.of(found) += path.throughput * weightedEmission(m_lights, surface, branch.last);
         Bsdf bsdf(m_scene, surface, -path.ray.direction, Transport::kRadiance, path.throughput);
         bsdf.followAll();
-        if (first) recordFirstHit(surface, bsdf, result);
+        recordFirstHit(surface, bsdf, result);
         if (bsdf.isBlackBody()) return;
         // Where photons are looked up, and rays leave for lamps and light that was reflected.
         if (bsdf.has(Lobe::kDiffuse))
@@ -175,7 +175,7 @@ bool PhotonIntegrator::followLobes(const Surface& surface, const Bsdf& bsdf, Sti
         part.lampSamples = bsdf.reflectsLamps() ? 1
                                                 : std::min(branch.lampSamples,
                                                            raysOfShare(m_lampSamples, part.share));
-        if (next) follow(*next, false, tree);
+        if (next) follow(*next, tree);
         next = part;
     }
     if (next) branch = *next;

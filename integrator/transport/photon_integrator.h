@@ -84,8 +84,8 @@ class PhotonIntegrator {
     using Survival = std::array<float, kLobeCount>;
     // diffuse: whether that lobe is one to follow.
     static Survival divide(const Bsdf& bsdf, const Carried& path, bool diffuse, Sampler& sampler);
-    // To its end. first: the branch leaves the camera.
-    void follow(Branch& branch, bool first, const Tree& tree) const;
+    // To its end.
+    void follow(Branch& branch, const Tree& tree) const;
     // Along all lobes but one, which `branch` then is on. False: there is none.
     bool followLobes(const Surface& surface, const Bsdf& bsdf, StillToFind still, Branch& branch,
                      const Tree& tree) const;

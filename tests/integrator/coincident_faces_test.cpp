@@ -5,11 +5,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <vector>
 
+#include "integrator/materials/bsdf.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/direct_light.h"
 #include "tests/integrator/scene_maker.h"
+#include "tests/integrator/sky_picture.h"
 #include "tests/integrator/statistics.h"
 
 namespace pm::test {
@@ -115,6 +119,59 @@ TEST(CoincidentFaces, ASheetOnAFloorIsMetAsTheFloor) {
             return notice.text.starts_with("18 half-transparent triangles lie on others");
         }));
     });
+}
+
+// Where blocks of leaves touch, two faces are cut by the same picture: what one lets through the
+// other would too. Of unlike ones, and of evenly half-transparent ones, one is missed.
+TEST(CoincidentFaces, SheetsCutAlikeAreNoFault) {
+    const auto notices = [](const MaterialDescription& one, const MaterialDescription& other) {
+        std::size_t count = 0;
+        for (const Frame3& at : frames()) {
+            SceneMaker maker;
+            const auto first = maker.material(one);
+            square(maker, at, 2, true, first);
+            square(maker, at, 2, false, &one == &other ? first : maker.material(other));
+            maker.description.textures = std::make_shared<const SkyPicture>(
+                4, 2, [](std::uint32_t, std::uint32_t) { return Rgb(0.0f); });
+            maker.pointLight({0, 0, 100}, Rgb(1.0f));
+            count += maker.build()->notices().size();
+        }
+        return count;
+    };
+    MaterialDescription leaves, decal, veil;
+    leaves.diffuse = decal.diffuse = veil.diffuse = Rgb(0.5f);
+    leaves.opacityTexture = decal.opacityTexture = 0;
+    veil.transparency = 0.5f;
+    EXPECT_EQ(notices(leaves, leaves), 0u);
+    EXPECT_EQ(notices(leaves, decal), frames().size());
+    EXPECT_EQ(notices(veil, veil), frames().size());
+}
+
+// What is wholly cut away is not what a pixel shows; what is there in part is.
+TEST(FirstHits, PassOverWhatIsCutAway) {
+    for (const float opacity : {0.0f, 0.5f, 1.0f}) {
+        SceneMaker maker;
+        MaterialDescription sheet;
+        sheet.diffuse = Rgb(0.25f);
+        sheet.opacityTexture = 0;
+        const auto above = maker.material(sheet), below = maker.diffuse(Rgb(0.75f));
+        maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, below);
+        maker.quad({-1, -1, 1}, {2, 0, 0}, {0, 2, 0}, above);
+        maker.description.textures = std::make_shared<const SkyPicture>(
+            4, 2, [&](std::uint32_t, std::uint32_t) { return Rgb(opacity); });
+        const auto scene = maker.build();
+        SampleRadiance result;
+        for (Ray ray{{0.1f, 0.2f, 3.0f}, {0, 0, -1}};;) {
+            Surface surface;
+            if (!scene->intersect(ray, surface)) break;
+            recordFirstHit(
+                surface, Bsdf(*scene, surface, {0, 0, 1}, Transport::kRadiance, Rgb(1.0f)), result);
+            ray = rayFrom(surface, ray.direction);
+        }
+        EXPECT_EQ(result.coverage, 1);
+        EXPECT_EQ(result.firstMaterial, opacity > 0 ? above : below);
+        EXPECT_NEAR(result.albedo.r, opacity > 0 ? 1 - opacity * 0.75f : 0.75f, 1e-6);
+    }
 }
 
 // Two faces as one lamp that shines both ways.

@@ -123,6 +123,13 @@ TEST(LightKindPlan, TellsWhatPathsMiss) {
     EXPECT_EQ(notices(parallel), 1u);
     EXPECT_EQ(notices(disc), 0u);
     EXPECT_EQ(notices(sky), 0u);
+    SceneMaker sheet;
+    sheet.quad({-1, -1, 1}, {2, 0, 0}, {0, 0, -2}, sheet.diffuse(Rgb(0.5f)));
+    MaterialDescription half;
+    half.transparency = 0.5f;
+    sheet.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, sheet.material(half));
+    sheet.sun({0, -1, 0}, Rgb(1.0f), 0);
+    EXPECT_EQ(notices(sheet), 0u);
     EXPECT_NE(makePlan(*sky.build(), {}).explain().find("light from afar"), std::string::npos);
     EXPECT_TRUE(makePlan(*sky.build(), {}).causticMap);
     // Black ones are no lights at all.

@@ -114,6 +114,43 @@ TEST_P(LightKindForm, Directional) {
     EXPECT_EQ(render(below).beauty.mean[0], 0);
 }
 
+// What is straight transparent, above the patch and the camera: black, half of a mirror, leaning.
+void addSheet(SceneMaker& maker, double height, float transparency, MaterialKind kind) {
+    MaterialDescription sheet;
+    sheet.kind = kind;
+    sheet.glossy = Rgb(kind == MaterialKind::kMirror ? 0.4f : 0.0f);
+    sheet.transparency = transparency;
+    maker.quad({-5, -5, height}, {10, 0, 0.3}, {0, 10, 0.2}, maker.material(sheet));
+}
+
+// Lamps without extent shine through sheets by the product of their shares, however they face.
+TEST(PathForm, SheetsUnderPointsAndBeams) {
+    const auto beauty = [](const SceneMaker& maker) {
+        return measure(maker.build(), smallFrame(8, 8, IntegratorKind::kPath, 4, 2)).beauty;
+    };
+    for (int lamp = 0; lamp < 4; ++lamp) {
+        SceneMaker open;
+        addPatch(open, {});
+        if (lamp == 0) open.sun({0.3, 0, -1}, Rgb(2.0f), 0);
+        if (lamp == 1) open.pointLight({0.5, 0.5, 9}, Rgb(90.0f));
+        if (lamp == 2) open.spot({0, 0.5, 9}, {0, -0.5, -9}, Rgb(90.0f), 0.2, 0.1);
+        // An extended one is met by the paths that go on straight, and must not count twice.
+        if (lamp == 3) open.quad({-1, -1, 9}, {0, 2, 0}, {2, 0, 0}, open.diffuse({}, Rgb(9.0f)));
+        SceneMaker one = open, two = open, opaque = open;
+        addSheet(one, 2, 0.3f, MaterialKind::kSurface);
+        addSheet(two, 2, 0.3f, MaterialKind::kSurface);
+        addSheet(two, 4, 0.6f, MaterialKind::kMirror);
+        addSheet(opaque, 2, 0.3f, MaterialKind::kSurface);
+        addSheet(opaque, 4, 0.0f, MaterialKind::kSurface);
+        const Measured whole = beauty(open);
+        const auto share = [&](float of) { return Rgb(static_cast<float>(whole.mean[0]) * of); };
+        const double noise = 4 * whole.standardError[0] / whole.mean[0];
+        EXPECT_TRUE(agrees(beauty(one), share(0.3f), 1e-5 + noise)) << lamp;
+        EXPECT_TRUE(agrees(beauty(two), share(0.18f), 1e-5 + noise)) << lamp;
+        EXPECT_EQ(beauty(opaque).mean[0], 0) << lamp;
+    }
+}
+
 // A disc seen: radiance E / (pi sin^2), and nothing beside it. Analytic B7 read backwards.
 TEST_P(LightKindForm, DiscIsSeen) {
     const double radius = 0.1;
