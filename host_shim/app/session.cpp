@@ -4,6 +4,7 @@
 
 #include "host_shim/app/guarded.h"
 #include "host_shim/app/interrupt.h"
+#include "host_shim/app/material_rules.h"
 #include "host_shim/app/outputs.h"
 #include "host_shim/app/picture_assembly.h"
 #include "host_shim/app/scene_builder.h"
@@ -155,14 +156,23 @@ void Session::readReference(const ColourPipeline& colour) {
     }
 }
 
+void Session::noteMaterialFiles(const SceneData& data) {
+    m_statistics.materialFiles = data.materialFiles;
+    for (const MaterialFile& library : data.materialFiles)
+        m_log.message(Level::kDebug, fmt::format("{}: MTL as {} writes it: {}", library.file,
+                                                 library.dialect, library.reason));
+}
+
 // Reads the scene's file and builds what is rendered; what was read is free again at the end.
 void Session::buildScene(const ColourPipeline& colour, const PluginContext& context,
                          MaterialBuilder& materials, PluginScene& scene) {
     const WarningSink sink = [this](Warning code, const std::string& text) { warn(code, text); };
     SceneData data;
     phase("readSceneSeconds", [&] {
-        data = readObjFile(m_options.scene, sink, throwIfInterrupted, m_options.camera.eye);
+        data = readObjFile(m_options.scene, sink, throwIfInterrupted, m_options.camera.eye,
+                           materialRules(m_options));
     });
+    noteMaterialFiles(data);
     warnOfLampsWithoutArea(data, m_options.scene.string(), sink);
     m_mayWriteStatistics = false;
     checkNotInputs(allOutputs(m_options), inputsOf(m_options, &data));
@@ -207,7 +217,7 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
             run.keepFrame(whole + " needs the whole picture at once");
     }
     if (m_options.explain) {
-        std::fputs(run.explain().c_str(), stdout);
+        std::fputs((run.explain() + explainMaterials(m_statistics.materialFiles)).c_str(), stdout);
         m_statistics.stopReason = "finished";
         return 0;
     }

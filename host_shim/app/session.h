@@ -33,6 +33,7 @@ class Session {
     void readReference(const ColourPipeline& colour);
     void buildScene(const ColourPipeline& colour, const PluginContext& context,
                     MaterialBuilder& materials, PluginScene& scene);
+    void noteMaterialFiles(const SceneData& data);
     int renderScene(const ColourPipeline& colour, const PluginContext& context);
     int merge();
     void checkBeforeMerging();

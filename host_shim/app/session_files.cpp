@@ -18,7 +18,7 @@ std::vector<fs::path> inputsOf(const Options& options, const SceneData* scene) {
     if (!options.photonMap.empty() && !options.photonsOnly) inputs.push_back(options.photonMap);
     if (!options.colour.ocioFile.empty()) inputs.emplace_back(options.colour.ocioFile);
     if (scene == nullptr) return inputs;
-    for (const std::string& file : scene->materialFiles) inputs.emplace_back(file);
+    for (const MaterialFile& library : scene->materialFiles) inputs.emplace_back(library.file);
     for (const MaterialData& material : scene->materials) {
         for (const auto* use :
              {&material.diffuseTexture, &material.glossyTexture, &material.glossyExponentTexture,

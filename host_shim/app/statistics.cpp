@@ -103,6 +103,10 @@ std::string Statistics::toJson(const Log& log) const {
     mine["pluginFile"] = pluginFile;
     mine["colour"] = {{"config", colourConfig}, {"renderingSpace", renderingSpace}};
     mine["scene"] = scene;
+    mine["materialFiles"] = Json::array();
+    for (const MaterialFile& library : materialFiles)
+        mine["materialFiles"].push_back(
+            {{"file", library.file}, {"dialect", library.dialect}, {"reason", library.reason}});
     mine["outputs"] = outputs;
     mine["phases"] = phaseSeconds;
     mine["phases"]["elapsedSeconds"] = log.elapsedSeconds();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "host_shim/app/log.h"
+#include "host_shim/ingest/scene_data.h"
 
 #include <nlohmann/json_fwd.hpp>
 
@@ -19,6 +20,7 @@ namespace pm::host {
 struct Statistics {
     std::vector<std::string> commandLine;
     std::string scene;
+    std::vector<MaterialFile> materialFiles;
     std::string pluginFile;
     std::string pluginVersion;
     std::string colourConfig;

@@ -176,6 +176,18 @@ void readChoices(const Typed& typed, Options& options) {
     }
 }
 
+void readMaterialRules(const Typed& typed, Options& options) {
+    MaterialRules& rules = options.materials;
+    if (!typed.mtlDialect.empty()) {
+        rules.dialect = dialectByName(typed.mtlDialect);
+        if (!rules.dialect)
+            throw HostError(ExitCode::kUsage, fmt::format("--mtl-dialect '{}': allowed are {}",
+                                                          typed.mtlDialect, allDialectNames()));
+    }
+    for (const std::string& folder : typed.searchPaths)
+        rules.files.searchPaths.emplace_back(folder);
+}
+
 std::string oneLine(std::string text) {
     std::ranges::replace(text, '\n', ' ');
     return text;
@@ -221,6 +233,7 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
         checkMerge(options);
         return options;
     }
+    readMaterialRules(typed, options);
     readCamera(typed, options);
     readSettings(typed, frame, options);
     readPhotonMap(typed.photonMap, typed.settings, frame, options);

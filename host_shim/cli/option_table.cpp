@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/cli/option_table.h"
 
+#include "host_shim/ingest/mtl_dialect.h"
+
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
@@ -64,6 +66,13 @@ void addOutputOptions(CLI::App& app, Typed& typed, Options& options, bool isMerg
     app.add_flag("--exr-half", options.exrHalf, "store colour as half; data stays float");
 }
 
+void addUntrusted(CLI::App& app, Options& options) {
+    app.add_flag_callback(
+        "--untrusted", [&options] { options.materials.files.isTrusted = false; },
+        "the scene reads only below its own folder, --search-path and the folder of the colour "
+        "config");
+}
+
 void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
     addText(app, "SCENE", typed.scene, "FILE", "the scene, an .obj");
     addOutputOptions(app, typed, options, false);
@@ -75,6 +84,16 @@ void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
     addText(app, "--crop", typed.crop, "x0,y0,x1,y1", "half-open pixels; may exceed the frame");
     addText(app, "--subdivide", typed.subdivide, "all|tagged|none",
             "which groups become Catmull-Clark limit surfaces (tagged)");
+    addText(app, "--mtl-dialect", typed.mtlDialect, "NAME",
+            "which program's MTL it is: " + allDialectNames() + " (by the headers of the files)");
+    app.add_option("--search-path", typed.searchPaths,
+                   "where libraries and textures are looked for that are not found beside the "
+                   "scene; may be repeated")
+        ->type_name("DIR")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->check(valueFault);
+    addUntrusted(app, options);
     app.add_option("--aov", typed.layers, "extra channels in the EXR, see --list aovs")
         ->type_name("NAME[,NAME]")
         ->expected(1)

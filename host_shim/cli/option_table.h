@@ -19,8 +19,8 @@ namespace pm::host {
 // reads numbers through the locale.
 struct Typed {
     std::string scene, frame, size, eye, lookAt, up, fov, crop, aa, seed, subdivide, onlyPixel,
-        errorLimit, progress, checkpoint, photonMap;
-    std::vector<std::string> outputs, context, layers, parts;
+        errorLimit, progress, checkpoint, photonMap, mtlDialect;
+    std::vector<std::string> outputs, context, layers, parts, searchPaths;
     std::map<std::string, std::string> settings;  // option -> text
 };
 

@@ -4,6 +4,7 @@
 
 #include "host_shim/colour/colour_pipeline.h"
 #include "host_shim/ingest/framing.h"
+#include "host_shim/ingest/obj_reader.h"
 #include "host_shim/pictures/picture.h"
 
 #include <array>
@@ -38,6 +39,7 @@ struct Options {
     std::string isa;
     std::uint32_t threads{0};  // 0 = all allowed
     Subdivide subdivide{Subdivide::kTagged};
+    MaterialRules materials;
     std::string layers;  // separated by commas
     ColourOptions colour;
     std::filesystem::path reference;

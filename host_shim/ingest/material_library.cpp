@@ -3,6 +3,7 @@
 #include "host_shim/ingest/material_library.h"
 
 #include "host_shim/ingest/file_names.h"
+#include "host_shim/ingest/material_checks.h"
 #include "host_shim/ingest/materials.h"
 #include "host_shim/ingest/obj_reader.h"
 #include "host_shim/ingest/text_lines.h"
@@ -13,6 +14,7 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <utility>
 
 namespace pm::host {
 namespace {
@@ -29,16 +31,25 @@ std::string takeEscapedWord(std::string_view& rest) {
     return word;
 }
 
+struct LibraryFile {
+    fs::path file;
+    std::string whyNone;  // empty where it is a file
+};
+
 // The files that one mtllib line means: the whole of it when there is such a file (names may hold
 // blanks), else each of its words.
-std::vector<fs::path> libraryFiles(std::string_view argument, const fs::path& folder) {
-    if (const auto whole = findFile(folder, argument)) return {*whole};
-    std::vector<fs::path> files;
+std::vector<LibraryFile> libraryFiles(std::string_view argument, const fs::path& folder,
+                                      SceneFiles& files) {
+    if (const auto whole = files.find(folder, argument)) return {{*whole, ""}};
+    std::vector<LibraryFile> found;
     for (std::string_view rest = withoutComment(argument); !rest.empty();) {
         const std::string word = takeEscapedWord(rest);
-        files.push_back(findFile(folder, word).value_or(folder / word));
+        if (const auto file = files.find(folder, word))
+            found.push_back({*file, ""});
+        else
+            found.push_back({folder / word, files.whyNone(folder, word)});
     }
-    return files;
+    return found;
 }
 
 // missing: places in the list of names, in the order of the file.
@@ -66,72 +77,136 @@ void warnOfMissing(const ObjText& text, const std::vector<std::size_t>& missing,
                      firstLine, list));
 }
 
-// The names of usemtl lines. A comment may follow there or in the library, or what looks like one
-// is part of the name: so a name counts as it stands, else without its comment, else for one of the
-// library that has a comment.
+std::string lowerCase(std::string_view text) {
+    std::string lower(text);
+    std::ranges::transform(lower, lower.begin(), [](char c) {
+        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+    });
+    return lower;
+}
+
+// The names of usemtl lines, in any case of letters. A comment may follow there or in the library,
+// or what looks like one is part of the name: so a name counts as it stands, else without its
+// comment, else for one of the library that has a comment.
 class NamesInUse {
   public:
     explicit NamesInUse(const std::vector<std::string>& names) {
         for (const std::string& name : names) {
-            m_names.insert(name);
-            m_bareNames.emplace(withoutComment(name));
+            m_names.insert(lowerCase(name));
+            m_bareNames.insert(lowerCase(withoutComment(name)));
         }
     }
 
     bool has(const std::string& inLibrary) const {
-        return m_names.contains(inLibrary) || m_bareNames.contains(inLibrary) ||
-               m_names.contains(std::string(withoutComment(inLibrary)));
+        const std::string lower = lowerCase(inLibrary);
+        return m_names.contains(lower) || m_bareNames.contains(lower) ||
+               m_names.contains(lowerCase(withoutComment(inLibrary)));
     }
 
   private:
     std::set<std::string> m_names, m_bareNames;
 };
 
-using Materials = std::map<std::string, MaterialData>;
+// The materials of all libraries. A name counts as it stands, else without its comment, else with
+// letters of the other case.
+class Materials {
+  public:
+    void add(std::map<std::string, MaterialData> more) { m_byName.merge(more); }
 
-const MaterialData* materialIn(const Materials& materials, const std::string& name) {
-    const auto found = materials.find(name);
-    return found != materials.end() ? &found->second : nullptr;
+    // After the last was added.
+    void index() {
+        for (const auto& [name, material] : m_byName) {
+            m_byBareName.emplace(withoutComment(name), &material);
+            m_byLowerName.emplace(lowerCase(name), &material);
+            m_byLowerBareName.emplace(lowerCase(withoutComment(name)), &material);
+        }
+    }
+
+    // Null where there is none.
+    const MaterialData* find(const std::string& name) const {
+        const std::string bare(withoutComment(name));
+        for (const std::string& wanted : {name, bare}) {
+            const auto found = m_byName.find(wanted);
+            if (found != m_byName.end()) return &found->second;
+        }
+        for (const auto& [names, wanted] :
+             {std::pair{&m_byBareName, name}, std::pair{&m_byLowerName, lowerCase(name)},
+              std::pair{&m_byLowerName, lowerCase(bare)},
+              std::pair{&m_byLowerBareName, lowerCase(name)}}) {
+            const auto found = names->find(wanted);
+            if (found != names->end()) return found->second;
+        }
+        return nullptr;
+    }
+
+  private:
+    using Index = std::map<std::string, const MaterialData*>;
+
+    std::map<std::string, MaterialData> m_byName;
+    Index m_byBareName, m_byLowerName, m_byLowerBareName;
+};
+
+DialectChoice dialectFor(std::string_view text, const std::string& file,
+                         const LibrarySource& source) {
+    if (source.asked) return *source.asked;
+    const auto own = dialectOfHeader(text, file);
+    if (own && !(own->isVague && source.ofScene)) return *own;
+    if (source.ofScene) return *source.ofScene;
+    return {MtlDialect::kGeneric, "no header says which program wrote it"};
 }
 
-Materials withBareNames(const Materials& materials) {
-    Materials bare;
-    for (const auto& [name, material] : materials) bare.emplace(withoutComment(name), material);
-    return bare;
+// Reads one library and adds to library what it has. Errors: kFile.
+void readLibrary(const LibraryFile& library, const LibrarySource& source, SceneFiles& files,
+                 const WarningSink& warn, const NameFilter& isUsed, Materials& materials,
+                 std::vector<MaterialFile>& read) {
+    std::error_code ignored;
+    const fs::path& file = library.file;
+    // A folder, a pipe or nothing is told by who reads it. A device may have no end.
+    const bool isOfSystem = fs::is_character_file(file, ignored) ||
+                            fs::is_block_file(file, ignored) || fs::is_socket(file, ignored);
+    if (!library.whyNone.empty() && !files.isTrusted())
+        throw HostError(ExitCode::kFile, library.whyNone);
+    if (isOfSystem)
+        throw HostError(
+            ExitCode::kFile,
+            fmt::format("{}: can't be read: it is a device; a file is wanted", file.string()));
+    const std::string text = readWholeFile(file);
+    const DialectChoice choice = dialectFor(text, file.string(), source);
+    materials.add(readMaterials(text, {file.string(), file.parent_path(), choice.dialect}, files,
+                                warn, isUsed));
+    read.push_back({file.string(), nameOf(choice.dialect).name, choice.reason});
 }
 
 }  // namespace
 
-MaterialLibrary loadMaterials(const ObjText& text, const std::string& fileName,
-                              const fs::path& folder, const WarningSink& warn) {
+MaterialLibrary loadMaterials(const ObjText& text, const LibrarySource& source, SceneFiles& files,
+                              const WarningSink& warn, const GoOn& goOn) {
     MaterialLibrary library;
     Materials found;
     const NamesInUse names(text.materialNames);
     const auto isUsed = [&names](const std::string& name) { return names.has(name); };
     for (std::size_t i = 0; i < text.materialFiles.size(); ++i) {
-        for (const fs::path& file : libraryFiles(text.materialFiles[i], folder)) {
+        if (goOn) goOn();
+        for (const LibraryFile& file : libraryFiles(text.materialFiles[i], source.folder, files)) {
             try {
-                found.merge(readMaterials(readWholeFile(file), file.string(), file.parent_path(),
-                                          warn, isUsed));
-                library.files.push_back(file.string());
+                readLibrary(file, source, files, warn, isUsed, found, library.files);
             } catch (const HostError& error) {
                 warn(Warning::kMaterialFile,
                      fmt::format("{}:{}: material library missing: {}; a grey of 0.8 is taken for "
                                  "materials that no other library has",
-                                 fileName, text.materialFileLines[i], error.what()));
+                                 source.sceneName, text.materialFileLines[i], error.what()));
             }
         }
     }
-    const Materials bare = withBareNames(found);
+    found.index();
     std::vector<std::size_t> missing;
     for (const std::string& name : text.materialNames) {
-        const MaterialData* material = materialIn(found, name);
-        if (material == nullptr) material = materialIn(found, std::string(withoutComment(name)));
-        if (material == nullptr) material = materialIn(bare, name);
+        const MaterialData* material = found.find(name);
         if (material == nullptr) missing.push_back(library.materials.size());
         library.materials.push_back(material != nullptr ? *material : defaultMaterial(name));
     }
-    warnOfMissing(text, missing, fileName, warn);
+    warnOfMissing(text, missing, source.sceneName, warn);
+    warnOfUnlikelyMaterials(library.materials, source.sceneName, warn);
     library.materials.push_back(defaultMaterial("default"));
     return library;
 }

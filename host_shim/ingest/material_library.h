@@ -2,11 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include "host_shim/ingest/mtl_dialect.h"
 #include "host_shim/ingest/obj_text.h"
 #include "host_shim/ingest/scene_data.h"
+#include "host_shim/ingest/scene_files.h"
 #include "host_shim/ingest/warnings.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,12 +17,21 @@ namespace pm::host {
 
 struct MaterialLibrary {
     std::vector<MaterialData> materials;
-    std::vector<std::string> files;  // that were read
+    std::vector<MaterialFile> files;  // that were read
+};
+
+// Where libraries are looked for, and how they are read.
+struct LibrarySource {
+    std::string sceneName;  // for messages
+    std::filesystem::path folder;
+    std::optional<DialectChoice> asked;    // for all of them; none: by their headers,
+    std::optional<DialectChoice> ofScene;  // and by that of the scene where they have none
 };
 
 // Reads the libraries of a scene and answers with one material for each name of
-// text.materialNames, in their order, and the default material after them.
-MaterialLibrary loadMaterials(const ObjText& text, const std::string& fileName,
-                              const std::filesystem::path& folder, const WarningSink& warn);
+// text.materialNames, in their order, and the default material after them. Errors: what goOn
+// throws.
+MaterialLibrary loadMaterials(const ObjText& text, const LibrarySource& source, SceneFiles& files,
+                              const WarningSink& warn, const GoOn& goOn = {});
 
 }  // namespace pm::host

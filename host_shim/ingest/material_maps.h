@@ -2,29 +2,26 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include "host_shim/ingest/map_line.h"
 #include "host_shim/ingest/scene_data.h"
-
-#include <tiny_obj_loader.h>
+#include "host_shim/ingest/scene_files.h"
 
 #include <filesystem>
-#include <optional>
 #include <string>
 
 namespace pm::host {
 
-// Map lines of materials: picture names as they can be opened, and their options.
-class MapReader {
-  public:
-    explicit MapReader(std::filesystem::path folder) : m_folder(std::move(folder)) {}
-
-    // None when the name is empty.
-    std::optional<TextureUse> read(const std::string& name,
-                                   const tinyobj::texture_option_t& options, bool isData) const;
-
-  private:
-    std::string locate(std::string name) const;
-
-    std::filesystem::path m_folder;
+// A map line of a material, and the picture as it can be opened.
+struct MaterialMap {
+    MapLine line;
+    TextureUse use;
+    // The picture was not found, or may not be opened. A use that is kept all the same is for the
+    // message of who tries to open it.
+    bool isMissing{};
 };
+
+// text: options and name as they stand. isData: never converted between colour spaces.
+MaterialMap readMap(const std::string& text, const std::filesystem::path& folder, bool isData,
+                    SceneFiles& files);
 
 }  // namespace pm::host

@@ -3,14 +3,14 @@
 #include "host_shim/ingest/materials.h"
 
 #include "host_shim/ingest/material_maps.h"
+#include "host_shim/ingest/mtl_keys.h"
+#include "host_shim/ingest/mtl_text.h"
 
 #include <fmt/format.h>
-#include <tiny_obj_loader.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <sstream>
 
 namespace pm::host {
 namespace {
@@ -18,45 +18,31 @@ namespace {
 // Exponents above are as sharp as float directions can tell.
 constexpr double kLargestExponent = 1e7;
 constexpr double kLargestIor = 100.0;
-constexpr char kUsualChannel = 'm';  // of -imfchan, in the parser's letters
-
-tinyobj::material_t parseSection(const std::string& text) {
-    std::map<std::string, int> names;
-    std::vector<tinyobj::material_t> materials;
-    std::istringstream stream(text);
-    std::string warning, error;
-    tinyobj::LoadMtl(&names, &materials, &stream, &warning, &error);
-    return materials.empty() ? tinyobj::material_t{} : materials.front();
-}
-
-std::array<float, 3> rounded(const tinyobj::real_t (&colour)[3]) {
-    return {static_cast<float>(colour[0]), static_cast<float>(colour[1]),
-            static_cast<float>(colour[2])};
-}
 
 bool isBlack(const std::array<float, 3>& colour) {
     return colour[0] == 0 && colour[1] == 0 && colour[2] == 0;
 }
 
+float largestOf(const std::array<float, 3>& colour) {
+    return std::ranges::max(colour);
+}
+
 // Turns one section into a material.
 class MaterialReader {
   public:
-    MaterialReader(const MtlSection& section, const std::string& fileName,
-                   const std::filesystem::path& folder, const WarningSink& warn)
-        : m_section(section),
-          m_file(fileName),
-          m_folder(folder),
-          m_warn(warn),
-          m_parsed(parseSection(section.cleaned)) {}
+    MaterialReader(MtlSection section, const MtlSource& source, SceneFiles& files,
+                   const WarningSink& warn)
+        : m_section(std::move(section)), m_source(source), m_files(files), m_warn(warn) {}
 
     MaterialData read() {
         m_material.name = m_section.name;
-        for (const auto& [statement, text] : m_section.notUnderstood) {
-            note(Warning::kMaterialValue, statement,
-                 fmt::format("'{} {}' is not understood and left out", statement, text));
-        }
-        readMaps();
+        for (const auto& [key, text] : m_section.notUnderstood)
+            note(Warning::kMaterialValue, key,
+                 fmt::format("'{}' is not understood and left out", text));
+        for (const DialectNote& told : translateToGeneric(m_source.dialect, m_section))
+            note(Warning::kMaterialPart, told.key, told.text);
         noteLeftOut();
+        readMaps();
         readColours();
         decideKind();
         readKind();
@@ -65,104 +51,97 @@ class MaterialReader {
     }
 
   private:
-    bool given(const char* statement) const {
-        return m_section.has(statement) && !m_section.notUnderstood.contains(statement);
+    bool given(const char* key) const {
+        return m_section.colours.contains(key) || m_section.numbers.contains(key);
+    }
+
+    double number(const char* key, double otherwise) const {
+        return m_section.number(key).value_or(otherwise);
+    }
+
+    int illum() const {
+        constexpr double kLargest = 1e6;
+        return static_cast<int>(std::clamp(number("illum", -1), -kLargest, kLargest));
     }
 
     // FILE:LINE of a statement, or where the material begins.
-    std::string place(const std::string& statement) const {
-        const auto found = m_section.lines.find(statement);
+    std::string place(const std::string& key) const {
+        const auto found = m_section.lines.find(key);
         return fmt::format(
-            "{}:{}", m_file,
+            "{}:{}", m_source.fileName,
             found != m_section.lines.end() ? found->second : m_section.lines.at("newmtl"));
     }
 
-    void note(Warning code, const std::string& statement, const std::string& text) const {
-        m_warn(code, fmt::format("{}: material {}: {}", place(statement), m_material.name, text));
+    void note(Warning code, const std::string& key, const std::string& text) const {
+        m_warn(code, fmt::format("{}: material {}: {}", place(key), m_material.name, text));
     }
 
-    std::optional<TextureUse> map(const char* statement, const std::string& name,
-                                  const tinyobj::texture_option_t& options, bool isData) const {
-        auto use = MapReader(m_folder).read(name, options, isData);
-        if (!use) {
-            if (m_section.has(statement))
-                note(Warning::kTexture, statement, fmt::format("{} names no file", statement));
-            return use;
+    std::optional<TextureUse> map(const char* key, bool isData) {
+        const auto found = m_section.maps.find(key);
+        if (found == m_section.maps.end()) return std::nullopt;
+        MaterialMap map = readMap(found->second, m_source.folder, isData, m_files);
+        for (const std::string& option : map.line.leftOut)
+            note(Warning::kTexture, key,
+                 fmt::format("the option {} of {} is not rendered yet and left out", option, key));
+        if (map.line.name.empty()) {
+            note(Warning::kTexture, key, fmt::format("{} names no file", key));
+            return std::nullopt;
         }
-        use->place = place(statement);
-        const auto leaveOut = [&](const char* option) {
-            note(Warning::kTexture, statement,
-                 fmt::format("the option {} of {} is not rendered yet and left out", option,
-                             statement));
-        };
-        if (std::ranges::any_of(options.turbulence, [](auto size) { return size != 0; }))
-            leaveOut("-t");
-        if (options.imfchan != kUsualChannel) leaveOut("-imfchan");
-        return use;
+        if (map.isMissing && !m_files.isTrusted()) {
+            note(Warning::kTexture, key,
+                 fmt::format("{}: {}; its number is used alone", key,
+                             m_files.whyNone(m_source.folder, map.line.name)));
+            return std::nullopt;
+        }
+        map.use.place = place(key);
+        return map.use;
     }
 
     void readMaps() {
-        m_material.diffuseTexture =
-            map("map_Kd", m_parsed.diffuse_texname, m_parsed.diffuse_texopt, false);
-        m_material.glossyTexture =
-            map("map_Ks", m_parsed.specular_texname, m_parsed.specular_texopt, false);
-        m_material.glossyExponentTexture = map("map_Ns", m_parsed.specular_highlight_texname,
-                                               m_parsed.specular_highlight_texopt, true);
-        m_material.opacityTexture =
-            map("map_d", m_parsed.alpha_texname, m_parsed.alpha_texopt, true);
-        m_material.emissionTexture =
-            map("map_Ke", m_parsed.emissive_texname, m_parsed.emissive_texopt, false);
-        if (!m_section.transmissionMap.empty()) {
-            const tinyobj::material_t tint = parseSection(m_section.transmissionMap);
-            m_material.transmissionTexture =
-                map("map_Tf", tint.diffuse_texname, tint.diffuse_texopt, false);
-        }
-        for (const char* statement : {"map_bump", "map_Bump", "bump", "norm", "disp", "map_disp",
-                                      "map_Disp", "refl", "map_Pr", "map_Pm", "map_Ps"}) {
-            if (m_section.has(statement)) {
-                note(Warning::kMaterialPart, statement,
-                     fmt::format("{} is not rendered yet and left out", statement));
-            }
-        }
+        m_material.diffuseTexture = map("map_Kd", false);
+        m_material.glossyTexture = map("map_Ks", false);
+        m_material.glossyExponentTexture = map("map_Ns", true);
+        m_material.opacityTexture = map("map_d", true);
+        m_material.emissionTexture = map("map_Ke", false);
+        m_material.transmissionTexture = map("map_Tf", false);
     }
 
     void noteLeftOut() const {
-        const std::array<std::pair<const char*, double>, 4> numbers{
-            {{"Pr", m_parsed.roughness},
-             {"Pm", m_parsed.metallic},
-             {"Ps", m_parsed.sheen},
-             {"Pc", m_parsed.clearcoat_thickness}}};
-        for (const auto& [statement, value] : numbers) {
-            if (!given(statement) || value == 0) continue;
-            note(Warning::kMaterialPart, statement,
-                 fmt::format("{} is not rendered yet and left out", statement));
+        for (const MtlKey& key : mtlKeys()) {
+            if (std::string_view(key.key) != key.meansKey) continue;
+            const bool isLeftOut =
+                (key.kind == MtlKind::kMapLeftOut && m_section.hasMap(key.key)) ||
+                (key.kind == MtlKind::kNumberLeftOut && number(key.key, 0) != 0);
+            if (isLeftOut)
+                note(Warning::kMaterialPart, key.key,
+                     fmt::format("{} is not rendered yet and left out", key.key));
         }
-        if (given("illum") && (m_parsed.illum < 0 || m_parsed.illum > 10)) {
+        if (given("illum") && (illum() < 0 || illum() > 10)) {
             note(Warning::kMaterialValue, "illum",
-                 fmt::format("illum {} is outside [0, 10] and left out", m_parsed.illum));
+                 fmt::format("illum {} is outside [0, 10] and left out", illum()));
         }
     }
 
     // The number beside a map multiplies it, so one that is not given counts as 1.
-    std::array<float, 3> colour(const char* statement, const tinyobj::real_t (&value)[3],
-                                bool hasMap) const {
-        if (!given(statement))
-            return hasMap ? std::array<float, 3>{1, 1, 1} : std::array<float, 3>{};
-        if (hasMap && isBlack(rounded(value))) {
-            note(Warning::kMaterialValue, statement,
-                 fmt::format("{} 0 0 0 multiplies map_{}, so the map has no effect", statement,
-                             statement));
+    std::array<float, 3> colour(const char* key) const {
+        const std::string mapKey = fmt::format("map_{}", key);
+        const bool hasMap = m_section.hasMap(mapKey);
+        const auto value = m_section.colour(key);
+        if (!value) return hasMap ? std::array<float, 3>{1, 1, 1} : std::array<float, 3>{};
+        const std::array<float, 3> rounded{static_cast<float>((*value)[0]),
+                                           static_cast<float>((*value)[1]),
+                                           static_cast<float>((*value)[2])};
+        if (hasMap && isBlack(rounded)) {
+            note(Warning::kMaterialValue, key,
+                 fmt::format("{} 0 0 0 multiplies {}, so the map has no effect", key, mapKey));
         }
-        return rounded(value);
+        return rounded;
     }
 
     void readColours() {
-        m_material.diffuse = reflectance(
-            "Kd", colour("Kd", m_parsed.diffuse, m_material.diffuseTexture.has_value()));
-        m_material.glossy = reflectance(
-            "Ks", colour("Ks", m_parsed.specular, m_material.glossyTexture.has_value()));
-        m_material.emission =
-            colour("Ke", m_parsed.emission, m_material.emissionTexture.has_value());
+        m_material.diffuse = reflectance("Kd", colour("Kd"));
+        m_material.glossy = reflectance("Ks", colour("Ks"));
+        m_material.emission = colour("Ke");
         std::string faults;
         for (float& channel : m_material.emission) {
             if (channel >= 0 && std::isfinite(channel)) continue;
@@ -174,47 +153,50 @@ class MaterialReader {
                  fmt::format("Ke{} is not in [0, {}]; 0 is taken", faults,
                              std::numeric_limits<float>::max()));
         }
-        const bool saysNothing = !given("Kd") && !given("Ks") && !given("Ke") && !given("Tf") &&
-                                 !given("Kt") && !m_material.diffuseTexture &&
-                                 !m_material.glossyTexture && !m_material.emissionTexture;
+        const bool saysNothing =
+            std::ranges::none_of(std::array{"Kd", "Ks", "Ke", "Tf"},
+                                 [this](const char* key) { return given(key); }) &&
+            !m_material.diffuseTexture && !m_material.glossyTexture && !m_material.emissionTexture;
         if (saysNothing) m_material.diffuse = defaultMaterial("").diffuse;
     }
 
-    std::array<float, 3> reflectance(const char* statement, std::array<float, 3> value) const {
-        const auto clamped = clampedToUnit(value);
-        if (clamped != value) {
-            note(Warning::kMaterialValue, statement,
-                 fmt::format("{} {} {} {} is outside [0,1]; {} {} {} is taken", statement, value[0],
-                             value[1], value[2], clamped[0], clamped[1], clamped[2]));
-        }
+    std::array<float, 3> reflectance(const char* key, std::array<float, 3> value) const {
+        std::array<float, 3> clamped = value;
+        for (float& channel : clamped) channel = channel > 0 ? std::min(channel, 1.0f) : 0.0f;
+        if (clamped == value) return value;
+        constexpr float kOfBytes = 2.0f;
+        note(Warning::kMaterialValue, key,
+             fmt::format("{} {} {} {} is outside [0,1]; {} {} {} is taken{}", key, value[0],
+                         value[1], value[2], clamped[0], clamped[1], clamped[2],
+                         largestOf(value) > kOfBytes
+                             ? " (numbers from 0 to 255 have to be divided by 255)"
+                             : ""));
         return clamped;
     }
 
-    static std::array<float, 3> clampedToUnit(std::array<float, 3> value) {
-        for (float& channel : value) channel = channel > 0 ? std::min(channel, 1.0f) : 0.0f;
-        return value;
-    }
-
-    double dissolve() const {
-        const double value = m_parsed.dissolve;
+    // d wins over Tr, whichever comes first.
+    double opacity() const {
+        const double value = number("d", 1 - number("Tr", 0));
         const double clamped = std::clamp(value, 0.0, 1.0);
         if (clamped != value) {
-            note(Warning::kMaterialValue, given("d") ? "d" : "Tr",
+            note(Warning::kMaterialValue, opacityKey(),
                  fmt::format("opacity {} is outside [0,1]; {} is taken", value, clamped));
         }
         return clamped;
     }
 
+    const char* opacityKey() const { return given("d") ? "d" : "Tr"; }
+
     void decideKind() {
-        const int illum = given("illum") ? m_parsed.illum : -1;
         const bool reflects = !isBlack(m_material.glossy);
-        m_opacity = static_cast<float>(dissolve());
-        const bool hasIor = given("Ni") && m_parsed.ior != 1.0;
-        if (illum == 4 || illum == 6 || illum == 7 || (m_opacity < 1 && hasIor)) {
+        m_opacity = static_cast<float>(opacity());
+        const bool hasIor = number("Ni", 1) != 1;
+        const int model = illum();
+        if (model == 4 || model == 6 || model == 7 || (m_opacity < 1 && hasIor)) {
             m_material.kind = MaterialKind::kDielectric;
-        } else if ((illum == 3 || illum == 5) && reflects) {
+        } else if ((model == 3 || model == 5) && reflects) {
             m_material.kind = MaterialKind::kMirror;
-            m_material.fresnel = illum == 5;
+            m_material.fresnel = model == 5;
         } else {
             m_material.kind = MaterialKind::kSurface;
         }
@@ -227,7 +209,7 @@ class MaterialReader {
         }
         m_material.transparency = 1.0f - m_opacity;
         if (m_opacity == 0 && !m_material.opacityTexture) {
-            note(Warning::kMaterialValue, given("d") ? "d" : "Tr",
+            note(Warning::kMaterialValue, opacityKey(),
                  "fully transparent, so it can't be seen (d 1 or Tr 0 is opaque)");
         }
         if (m_material.kind == MaterialKind::kMirror) {
@@ -238,18 +220,12 @@ class MaterialReader {
     }
 
     void readDielectric() {
-        const bool hasTint = given("Tf") || given("Kt") || m_material.transmissionTexture;
         m_material.transmission = {1, 1, 1};
-        if (hasTint) {
-            const char* statement = given("Kt") ? "Kt" : "Tf";
-            m_material.transmission =
-                reflectance(statement, colour(statement, m_parsed.transmittance,
-                                              m_material.transmissionTexture.has_value()));
-            if (isBlack(m_material.transmission)) {
-                note(Warning::kMaterialValue, statement, "this glass lets nothing through");
-            }
+        if (given("Tf") || m_section.hasMap("map_Tf")) {
+            m_material.transmission = reflectance("Tf", colour("Tf"));
+            noteDarkGlass();
         }
-        const double ior = given("Ni") ? m_parsed.ior : 1.5;
+        const double ior = number("Ni", 1.5);
         if (!given("Ni")) {
             note(Warning::kMaterialValue, "illum", "glass without Ni; 1.5 is taken");
         }
@@ -266,6 +242,22 @@ class MaterialReader {
         m_material.glossyExponentTexture.reset();
     }
 
+    // Programs that don't let light through glass write any Tf.
+    void noteDarkGlass() const {
+        constexpr float kDark = 0.3f;
+        const float most = largestOf(m_material.transmission);
+        if (most == 0) {
+            note(Warning::kMaterialValue, "Tf",
+                 "this glass lets nothing through, so it is black (Tf 1 1 1 is clear)");
+        } else if (most < kDark) {
+            note(
+                Warning::kMaterialValue, "Tf",
+                fmt::format("this glass lets {:.2g} through at each boundary and {:.2g} at two, so "
+                            "it looks black (Tf 1 1 1 is clear)",
+                            most, most * most));
+        }
+    }
+
     void readMirror() {
         dropDiffuse("mirror");
         if (m_material.fresnel) {
@@ -277,7 +269,7 @@ class MaterialReader {
     }
 
     void readLobe() {
-        const bool noLobe = given("illum") && (m_parsed.illum == 0 || m_parsed.illum == 1);
+        const bool noLobe = illum() == 0 || illum() == 1;
         if (noLobe || !hasExponent()) {
             m_material.glossy = {};
             m_material.glossyTexture.reset();
@@ -290,7 +282,7 @@ class MaterialReader {
     bool hasExponent() const { return given("Ns") || m_material.glossyExponentTexture; }
 
     float exponent() const {
-        const double value = given("Ns") ? m_parsed.shininess : 1.0;
+        const double value = number("Ns", 1);
         const double clamped = std::clamp(value, 0.0, kLargestExponent);
         if (clamped != value) {
             note(Warning::kMaterialValue, "Ns",
@@ -304,7 +296,7 @@ class MaterialReader {
         // Boxes in common use give their spheres a Kd of 0.01; that much is not worth a line.
         constexpr float kWorthALine = 0.02f;
         const bool isGiven = given("Kd") || m_material.diffuseTexture;
-        if (isGiven && *std::ranges::max_element(m_material.diffuse) > kWorthALine) {
+        if (isGiven && largestOf(m_material.diffuse) > kWorthALine) {
             note(Warning::kMaterialPart, "Kd",
                  fmt::format("the diffuse part of a {} is not rendered and left out", kind));
         }
@@ -330,11 +322,10 @@ class MaterialReader {
         }
     }
 
-    const MtlSection& m_section;
-    const std::string& m_file;
-    const std::filesystem::path& m_folder;
+    MtlSection m_section;
+    const MtlSource& m_source;
+    SceneFiles& m_files;
     const WarningSink& m_warn;
-    tinyobj::material_t m_parsed;
     MaterialData m_material;
     float m_opacity{1.0f};
 };
@@ -347,21 +338,21 @@ MaterialData defaultMaterial(const std::string& name) {
     return material;
 }
 
-std::map<std::string, MaterialData> readMaterials(std::string_view mtlText,
-                                                  const std::string& fileName,
-                                                  const std::filesystem::path& folder,
-                                                  const WarningSink& warn,
+std::map<std::string, MaterialData> readMaterials(std::string_view mtlText, const MtlSource& source,
+                                                  SceneFiles& files, const WarningSink& warn,
                                                   const NameFilter& isUsed) {
     std::map<std::string, MaterialData> materials;
-    for (const MtlSection& section : readMtlText(mtlText)) {
+    for (MtlSection& section : readMtlText(mtlText)) {
         if (isUsed && !isUsed(section.name)) continue;
         if (materials.contains(section.name)) {
             warn(Warning::kMaterialValue,
-                 fmt::format("{}:{}: material {} is defined twice; the first counts", fileName,
-                             section.lines.at("newmtl"), section.name));
+                 fmt::format("{}:{}: material {} is defined twice; the first counts",
+                             source.fileName, section.lines.at("newmtl"), section.name));
             continue;
         }
-        materials.emplace(section.name, MaterialReader(section, fileName, folder, warn).read());
+        std::string name = section.name;
+        materials.emplace(std::move(name),
+                          MaterialReader(std::move(section), source, files, warn).read());
     }
     return materials;
 }

@@ -2,25 +2,32 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace pm::host {
 
-// One newmtl section. tinyobjloader forgets which statements were there, lets Kd of one material
-// set what is assumed for the next, reads a lone `Kd 0.5` as 0.5 0 0, and takes the file name of
-// `map_Kd -s 2 2 wood.png` for the third number: so each section is cleaned and parsed alone.
+// One newmtl section, statement by statement, as it stands. Of two statements with the same key
+// the last counts. Keys are those of mtlKeys(), under the name that they mean. (tinyobjloader's own
+// reader forgets which statements were there, lets one material set what is assumed for the next,
+// and takes options that it doesn't know for names of files.)
 struct MtlSection {
     std::string name;
-    std::string cleaned;
-    std::map<std::string, std::uint64_t> lines;        // statement -> line where it stands
-    std::map<std::string, std::string> notUnderstood;  // statement -> its text, left out
-    std::string transmissionMap;                       // map_Tf or map_Kt, which the parser drops
+    std::map<std::string, std::uint64_t> lines;        // key -> line where it stands
+    std::map<std::string, std::string> notUnderstood;  // key -> its text, left out
+    std::map<std::string, std::array<double, 3>> colours;
+    std::map<std::string, double> numbers;
+    std::map<std::string, std::string> maps;  // key -> options and name, as they stand
 
-    bool has(const std::string& statement) const { return lines.contains(statement); }
+    // None where it isn't given or isn't understood.
+    std::optional<std::array<double, 3>> colour(const std::string& key) const;
+    std::optional<double> number(const std::string& key) const;
+    bool hasMap(const std::string& key) const { return maps.contains(key); }
 };
 
 // Splits the text of an MTL file. Statements before the first newmtl are dropped. No errors.

@@ -185,6 +185,15 @@ void visitFaces(const tinyobj::attrib_t& attributes, const std::vector<tinyobj::
     }
 }
 
+MaterialLibrary readLibraries(std::string_view text, const ObjText& objText, LibrarySource source,
+                              const MaterialRules& rules, const WarningSink& warn,
+                              const GoOn& goOn) {
+    if (rules.dialect) source.asked = DialectChoice{*rules.dialect, "--mtl-dialect asks for it"};
+    source.ofScene = dialectOfHeader(text, source.sceneName);
+    SceneFiles files(source.folder, rules.files);
+    return loadMaterials(objText, source, files, warn, goOn);
+}
+
 }  // namespace
 
 bool SceneData::hasLight() const {
@@ -197,7 +206,7 @@ bool SceneData::hasLight() const {
 
 SceneData readObj(std::string_view text, const std::string& fileName, const fs::path& folder,
                   const WarningSink& warn, const GoOn& goOn,
-                  const std::optional<std::array<double, 3>>& eye) {
+                  const std::optional<std::array<double, 3>>& eye, const MaterialRules& rules) {
     const auto ask = [&goOn] {
         if (goOn) goOn();
     };
@@ -207,7 +216,8 @@ SceneData readObj(std::string_view text, const std::string& fileName, const fs::
     checkParsed(parsed, objText, fileName);
     ask();
     SceneData scene;
-    MaterialLibrary library = loadMaterials(objText, fileName, folder, warn);
+    MaterialLibrary library =
+        readLibraries(text, objText, {fileName, folder, {}, {}}, rules, warn, goOn);
     scene.materials = std::move(library.materials);
     scene.materialFiles = std::move(library.files);
     scene.bounds = boundsOfFaces(parsed.attributes, parsed.shapes);
@@ -233,9 +243,9 @@ SceneData readObj(std::string_view text, const std::string& fileName, const fs::
 }
 
 SceneData readObjFile(const fs::path& file, const WarningSink& warn, const GoOn& goOn,
-                      const std::optional<std::array<double, 3>>& eye) {
+                      const std::optional<std::array<double, 3>>& eye, const MaterialRules& rules) {
     checkSceneFile(file);
-    return readObj(readWholeFile(file), file.string(), file.parent_path(), warn, goOn, eye);
+    return readObj(readWholeFile(file), file.string(), file.parent_path(), warn, goOn, eye, rules);
 }
 
 void checkSceneFile(const fs::path& file) {

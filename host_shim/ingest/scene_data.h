@@ -85,13 +85,20 @@ struct Bounds {
     }
 };
 
+// A material library that was read, and the dialect that was taken for it.
+struct MaterialFile {
+    std::string file;
+    std::string dialect;  // as --mtl-dialect names it
+    std::string reason;
+};
+
 struct SceneData {
     std::array<double, 3> centre{};  // what was subtracted from every position
     Bounds bounds;                   // of what faces refer to
     std::vector<MaterialData> materials;
     std::vector<MeshData> meshes;
     std::uint64_t faceCount{};
-    std::vector<std::string> materialFiles;  // libraries that were read
+    std::vector<MaterialFile> materialFiles;
 
     // Whether any face has a material that emits.
     bool hasLight() const;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Names of files in scene files, as people and other systems write them.
-#include "host_shim/ingest/file_names.h"
+#include "host_shim/ingest/scene_files.h"
 #include "tests/ingest/heard.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,8 @@ class FileNames : public ::testing::Test {
         std::ofstream(m_folder / name, std::ios::binary) << text;
     }
     std::string found(std::string_view name) const {
-        const auto file = findFile(m_folder, name);
+        SceneFiles files(m_folder, {});
+        const auto file = files.find(m_folder, name);
         return file ? fs::relative(*file, m_folder).string() : "none";
     }
     SceneData read(const std::string& head, Heard& heard) const {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // MTL sections to materials, as section by section.
+#include "host_shim/ingest/material_checks.h"
 #include "host_shim/ingest/materials.h"
 #include "tests/ingest/heard.h"
 
@@ -20,7 +21,9 @@ struct Result {
 
 Result read(const std::string& statements) {
     Result result;
-    const auto all = readMaterials("newmtl m\n" + statements, "a.mtl", "folder", result.heard.sink);
+    SceneFiles files("folder", {});
+    const auto all =
+        readMaterials("newmtl m\n" + statements, {"a.mtl", "folder", {}}, files, result.heard.sink);
     result.material = all.at("m");
     return result;
 }
@@ -97,8 +100,8 @@ TEST(Material, valuesOutOfRangeAreClampedWithTheLine) {
 }
 
 TEST(Material, whatIsUnknownOrNotRenderedIsSaid) {
-    EXPECT_TRUE(read("kd 0.5 0.5 0.5\n")
-                    .heard.has(Warning::kMaterialValue, "a.mtl:2: material m: 'kd 0.5 0.5 0.5'"));
+    EXPECT_TRUE(read("Kdd 0.5 0.5 0.5\n")
+                    .heard.has(Warning::kMaterialValue, "a.mtl:2: material m: 'Kdd 0.5 0.5 0.5'"));
     const Result shiny = read("Kd 0.5 0.5 0.5\nPr 0.3\nPm 0\nPs 0\nPc 1\n");
     EXPECT_EQ(shiny.heard.list.size(), 2u);
     EXPECT_TRUE(shiny.heard.has(Warning::kMaterialPart, "a.mtl:3: material m: Pr is not rendered"));
@@ -165,8 +168,8 @@ TEST(Material, mapsWithoutAFileAndOptionsLeftOutAreWarnedOf) {
 }
 
 TEST(Material, mapsOfNoKnownNameAreWarnedOf) {
-    const Result r = read("map_Ks b.png\nmap_kd a.png\nmap_aat on\n");
-    EXPECT_TRUE(r.heard.has(Warning::kMaterialValue, "a.mtl:3: material m: 'map_kd a.png' is not"));
+    const Result r = read("map_Ks b.png\nmap_xy a.png\nmap_aat on\n");
+    EXPECT_TRUE(r.heard.has(Warning::kMaterialValue, "a.mtl:3: material m: 'map_xy a.png' is not"));
     EXPECT_EQ(r.heard.list.size(), 1u);
 }
 
@@ -176,10 +179,11 @@ TEST(Material, aLoneNumberIsGrey) {
 
 TEST(Material, oneSectionSaysNothingAboutTheNext) {
     Heard heard;
+    SceneFiles files(".", {});
     const auto all = readMaterials(
         "newmtl a\nKd 0.1 0.1 0.1\nnewmtl b c\nmap_Kd x.png\n"
         "newmtl a\nKd 1 1 1\nnewmtl e\n",
-        "a.mtl", ".", heard.sink);
+        {"a.mtl", ".", {}}, files, heard.sink);
     EXPECT_EQ(all.size(), 3u);
     EXPECT_EQ(all.at("b c").diffuse, (Colour{1, 1, 1}));
     EXPECT_EQ(all.at("a").diffuse, (Colour{0.1f, 0.1f, 0.1f}));
@@ -193,13 +197,51 @@ TEST(Material, onlyThoseInUseAreReadAndWarnedOf) {
     const std::set<std::string> used = {"a", "not there"};
     Heard heard;
     const auto isUsed = [&used](const std::string& name) { return used.contains(name); };
-    const auto some = readMaterials(text, "a.mtl", ".", heard.sink, isUsed);
+    SceneFiles files(".", {});
+    const MtlSource source{"a.mtl", ".", {}};
+    const auto some = readMaterials(text, source, files, heard.sink, isUsed);
     EXPECT_EQ(some.size(), 1u);
     EXPECT_TRUE(heard.has(Warning::kMaterialValue, "material a: Kd 2 2 2"));
     EXPECT_FALSE(heard.has(Warning::kMaterialValue, "material b"));
     Heard all;
-    EXPECT_EQ(readMaterials(text, "a.mtl", ".", all.sink).size(), 2u);
+    EXPECT_EQ(readMaterials(text, source, files, all.sink).size(), 2u);
     EXPECT_TRUE(all.has(Warning::kMaterialValue, "material b: Kd 3 3 3"));
+}
+
+TEST(Material, whatMakesGlassBlackIsSaid) {
+    const Result water = read("Ni 1.33\nillum 7\nTf 0.1 0.1 0.1\n");
+    EXPECT_TRUE(water.heard.has(Warning::kMaterialValue,
+                                "a.mtl:4: material m: this glass lets 0.1 through at each boundary "
+                                "and 0.01 at two, so it looks black (Tf 1 1 1 is clear)"));
+    EXPECT_TRUE(read("Ni 1.5\nillum 4\nTf 0 0 0\n")
+                    .heard.has(Warning::kMaterialValue, "lets nothing through, so it is black"));
+    // Bottles may be green.
+    EXPECT_TRUE(read("Ni 1.5\nillum 4\nTf 0.05 0.5 0.05\n").heard.list.empty());
+    EXPECT_TRUE(read("Kd 200 10 0\n").heard.has(Warning::kMaterialValue, "divided by 255"));
+    EXPECT_FALSE(read("Kd 1.2 1 0\n").heard.has(Warning::kMaterialValue, "divided by 255"));
+}
+
+// Of a scene as a whole: one such material among others is as it was made.
+TEST(Material, thatShowNothingTogetherAreWarnedOf) {
+    const auto heardOf = [](const std::vector<std::string>& sections) {
+        std::vector<MaterialData> materials;
+        for (const std::string& section : sections) materials.push_back(read(section).material);
+        Heard heard;
+        warnOfUnlikelyMaterials(materials, "s.obj", heard.sink);
+        return heard.list.empty() ? "" : heard.list[0].second;
+    };
+    const std::string lamp = "Kd 0 0 0\nKe 1 1 1\n", red = "Kd 1 0 0\n";
+    EXPECT_EQ(heardOf({lamp, red, "Kd 0 0 0\n", "Kd 1 1 1\nTr 1\n", "illum 4\nNi 1\n"}), "");
+    EXPECT_EQ(heardOf({lamp}), "");
+    EXPECT_EQ(heardOf({}), "");
+    const std::string cut = heardOf({lamp, "Kd 1 1 1\nTr 1\n", "Kd 1 1 1\nd 0\n"});
+    EXPECT_TRUE(cut.starts_with("s.obj: all 2 materials that give no light: fully transparent"));
+    EXPECT_NE(cut.find("write d 1 into the MTL file"), cut.npos);
+    EXPECT_NE(heardOf({"illum 4\nNi 1.00\nTf 1 1 1\nKd 1 0 0\n"}).find("--mtl-dialect maya"),
+              std::string::npos);
+    EXPECT_NE(heardOf({lamp, "Kd 0 0 0\n", "Kd 0 0 0\nKs 0.5 0.5 0.5\n"}).find("black, so only"),
+              std::string::npos);
+    EXPECT_EQ(heardOf({"Kd 0 0 0\nKs 0.5 0.5 0.5\nNs 10\n"}), "");
 }
 
 }  // namespace
