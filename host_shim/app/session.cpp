@@ -174,6 +174,7 @@ void Session::buildScene(const ColourPipeline& colour, const PluginContext& cont
     });
     noteMaterialFiles(data);
     warnOfLampsWithoutArea(data, m_options.scene.string(), sink);
+    addBackSides(data);
     m_mayWriteStatistics = false;
     checkNotInputs(allOutputs(m_options), inputsOf(m_options, &data));
     m_mayWriteStatistics = true;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
+#include "host_shim/ingest/coat_albedo.h"
 #include "host_shim/ingest/mtl_dialect.h"
 
 #include <fmt/format.h>
@@ -18,16 +19,6 @@ Colour operator*(const Colour& colour, double factor) {
 
 double mean(const Colour& colour) {
     return (colour[0] + colour[1] + colour[2]) / 3;
-}
-
-// The exponent of a lobe about the mirror direction that is as wide as that of microfacets of this
-// roughness. GGX of alpha = roughness^2 has the half vectors of Blinn's exponent 2 / alpha^2 - 2
-// (Walter et al. 2007, for Beckmann, to which GGX is close at its peak); the mirror direction turns
-// by twice the angle of the half vector, which takes a quarter of the exponent.
-double exponentOfRoughness(double roughness) {
-    constexpr double kSmoothest = 2e-3;  // alpha; below, lobes are narrower than a pixel
-    const double alpha = std::max(roughness * roughness, kSmoothest);
-    return (2 / (alpha * alpha) - 2) / 4;
 }
 
 // Blender's Principled BSDF as its exporters write it.
@@ -139,15 +130,28 @@ class PrincipledSection {
             makeMetal(base, rough);
             return;
         }
-        Colour diffuse = base * (1 - metal), glossy{};
+        Colour diffuse{}, glossy{};
         for (std::size_t i = 0; i < 3; ++i) {
             glossy[i] = metal * base[i] + (1 - metal) * coat[i];
-            diffuse[i] = std::min(diffuse[i], std::max(0.0, 1 - glossy[i]));
+            diffuse[i] = std::min((1 - metal) * underCoat(base[i], coat[i], rough),
+                                  std::max(0.0, 1 - glossy[i]));
         }
         m_section.colours["Kd"] = diffuse;
         m_section.colours["Ks"] = glossy;
         if (metal >= 0.5 && m_section.hasMap("map_Kd"))
             m_section.maps["map_Ks"] = m_section.maps["map_Kd"];
+    }
+
+    // A channel's diffuse part. The lobe has what the coat reflects at normal incidence and nothing
+    // of the rise towards grazing angles; all that this brings in the mean is spread evenly, or
+    // rooms of plastic would be a quarter darker. Before Blender 4 the coat takes nothing from what
+    // is below it.
+    double underCoat(double base, double coat, double rough) const {
+        const double all = coat > 0 ? meanOfCoat(coat, rough) : 0;
+        const double below = m_dialect == MtlDialect::kBlender4 ? base * (1 - all) : base;
+        // A picture multiplies what is returned, so there nothing can be added.
+        if (m_section.hasMap("map_Kd")) return below;
+        return below + std::max(0.0, all - coat * meanOfLobe(rough));
     }
 
     void makeMetal(const Colour& base, double rough) {
@@ -216,6 +220,11 @@ void translateRhino(MtlSection& section) {
 }
 
 }  // namespace
+
+bool emitsFromBothSides(MtlDialect dialect) {
+    return dialect == MtlDialect::kBlender28 || dialect == MtlDialect::kBlender3 ||
+           dialect == MtlDialect::kBlender4;
+}
 
 std::vector<DialectNote> translateToGeneric(MtlDialect dialect, MtlSection& section) {
     switch (dialect) {

@@ -14,4 +14,9 @@ namespace pm::host {
 void warnOfLampsWithoutArea(const SceneData& scene, const std::string& sceneName,
                             const WarningSink& warn);
 
+// Gives faces that emit from both sides a back: a mesh of its own of the same faces turned round,
+// behind them by 2e-5 of the scene's diagonal. Not where the group is closed, as a bulb, whose
+// inside nobody sees, nor where it is a cage with tags.
+void addBackSides(SceneData& scene);
+
 }  // namespace pm::host

@@ -142,6 +142,7 @@ class MaterialReader {
         m_material.diffuse = reflectance("Kd", colour("Kd"));
         m_material.glossy = reflectance("Ks", colour("Ks"));
         m_material.emission = colour("Ke");
+        m_material.emitsFromBothSides = emitsFromBothSides(m_source.dialect);
         std::string faults;
         for (float& channel : m_material.emission) {
             if (channel >= 0 && std::isfinite(channel)) continue;

@@ -50,6 +50,9 @@ struct DialectChoice {
 // program that is known. fileName is for the reason.
 std::optional<DialectChoice> dialectOfHeader(std::string_view text, const std::string& fileName);
 
+// Whether what has Ke shines from both sides there, not from the front alone.
+bool emitsFromBothSides(MtlDialect dialect);
+
 // Something to tell about what was translated: the key whose line to show, and the text.
 struct DialectNote {
     std::string key;

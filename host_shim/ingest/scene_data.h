@@ -38,6 +38,7 @@ struct MaterialData {
     float ior{1.5f};
     std::array<float, 3> transmission{1.0f, 1.0f, 1.0f};
     std::array<float, 3> emission{};  // radiance, W m^-2 sr^-1
+    bool emitsFromBothSides{};        // see addBackSides
     float transparency{};
     std::optional<TextureUse> diffuseTexture, glossyTexture, glossyExponentTexture,
         transmissionTexture, emissionTexture, opacityTexture;
