@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/ingest/obj_text.h"
 
+#include "host_shim/ingest/obj_keys.h"
 #include "host_shim/ingest/text_lines.h"
 #include "host_shim/pictures/host_error.h"
 
@@ -20,13 +21,6 @@ namespace {
 constexpr double kLargestCoordinate = 1e18;
 constexpr std::array<const char*, 3> kKinds{"vertex", "texture coordinate", "normal"};
 
-// Statements that change no triangle: groups of smoothing and merging, weights of skins, hints to
-// other programs, and what belongs to curves.
-constexpr std::array<std::string_view, 30> kOfNoWeight{
-    "s",          "mg",        "vp",    "vw",    "lod",   "bevel", "c_interp", "d_interp",
-    "maplib",     "usemap",    "deg",   "bmat",  "step",  "parm",  "trim",     "hole",
-    "scrv",       "sp",        "end",   "con",   "bsp",   "bzp",   "cdc",      "cdp",
-    "shadow_obj", "trace_obj", "ctech", "stech", "curv2", "res"};
 const std::string kNotUnderstood = "statements that are not understood,";
 constexpr std::size_t kShownOfWord = 40;  // characters
 
@@ -79,29 +73,41 @@ class ObjScan {
     void statement() {
         std::string_view rest = m_lines.line();
         const std::string_view word = takeWord(rest);
-        if (word == "v") {
-            vertex(rest);
-        } else if (word == "vt") {
-            attribute(rest, 1, 1);
-        } else if (word == "vn") {
-            attribute(rest, 2, 3);
-        } else if (word == "f" || word == "fo") {
-            face(rest);
-        } else if (word == "g" || word == "o") {
-            ++m_group;
-            // One word is enough for the parser; both kinds of group end the one before.
-            emit("g", rest.empty() ? std::string_view("unnamed") : rest);
-        } else if (word == "usemtl") {
-            useMaterial(rest);
-        } else if (word == "mtllib") {
-            addLibrary(rest);
-        } else if (word == "t") {
-            tag(rest);
-        } else if (word == "l" || word == "p" || word == "curv" || word == "surf" ||
-                   word == "cstype") {
-            leaveOut("lines, points or curves");
-        } else if (std::ranges::find(kOfNoWeight, word) == kOfNoWeight.end()) {
-            leaveOutUnknown(word);
+        switch (statementOf(word)) {
+            case ObjStatement::kVertex:
+                vertex(rest);
+                break;
+            case ObjStatement::kTextureCoordinate:
+                attribute(rest, 1, 1);
+                break;
+            case ObjStatement::kNormal:
+                attribute(rest, 2, 3);
+                break;
+            case ObjStatement::kFace:
+                face(rest);
+                break;
+            case ObjStatement::kGroup:
+                ++m_group;
+                // One word is enough for the parser; both kinds of group end the one before.
+                emit("g", rest.empty() ? std::string_view("unnamed") : rest);
+                break;
+            case ObjStatement::kMaterial:
+                useMaterial(rest);
+                break;
+            case ObjStatement::kLibrary:
+                addLibrary(rest);
+                break;
+            case ObjStatement::kTag:
+                tag(rest);
+                break;
+            case ObjStatement::kLeftOut:
+                leaveOut("lines, points or curves");
+                break;
+            case ObjStatement::kNoWeight:
+                break;
+            case ObjStatement::kUnknown:
+                leaveOutUnknown(word);
+                break;
         }
     }
 

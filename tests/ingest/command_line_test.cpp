@@ -248,5 +248,22 @@ TEST(CommandLine, helpNamesEveryOptionAndAsksThePlugin) {
     EXPECT_FALSE(parseCommandLine({"-h"}).helpOfMerge);
 }
 
+TEST(CommandLine, whatAScenesMaterialsAre) {
+    const MaterialRules usual = parseCommandLine({"a.obj"}).materials;
+    EXPECT_FALSE(usual.dialect);
+    EXPECT_TRUE(usual.files.isTrusted);
+    EXPECT_TRUE(usual.files.searchPaths.empty());
+    const MaterialRules asked =
+        parseCommandLine({"a.obj", "--mtl-dialect", "Blender4", "--search-path", "a b",
+                          "--untrusted", "--search-path", "c"})
+            .materials;
+    EXPECT_EQ(asked.dialect, MtlDialect::kBlender4);
+    EXPECT_FALSE(asked.files.isTrusted);
+    EXPECT_EQ(asked.files.searchPaths, (std::vector<std::filesystem::path>{"a b", "c"}));
+    EXPECT_EQ(refusal({"--mtl-dialect", "blender"}),
+              "2 --mtl-dialect 'blender': allowed are generic, blender2.7, blender2.8, blender3, "
+              "blender4, 3dsmax, maya, rhino, sketchup, zbrush, mcguire");
+}
+
 }  // namespace
 }  // namespace pm::host::test

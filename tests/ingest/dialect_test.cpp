@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // What wrote an MTL file, by its header, and what its numbers mean then.
+#include "host_shim/ingest/coat_albedo.h"
 #include "host_shim/ingest/materials.h"
 #include "tests/ingest/heard.h"
 
@@ -88,8 +89,11 @@ TEST(MtlDialect, BlendersPlasticReflectsFourPercent) {
                           "Ns 250\nKa 1 1 1\nKd 0.8 0.1 0.1\nKs 0.5 0.5 0.5\nNi 1.45\nd 1\n"
                           "illum 2\n");
     EXPECT_EQ(r.material.kind, MaterialKind::kSurface);
-    expectNear(r.material.diffuse, {0.8f, 0.1f, 0.1f});
     expectNear(r.material.glossy, {0.04f, 0.04f, 0.04f});
+    // Lobe and diffuse part together reflect in the mean what the coat does over the colour.
+    const auto more = static_cast<float>(meanOfCoat(0.04, 0.5) - 0.04 * meanOfLobe(0.5));
+    EXPECT_NEAR(more, 0.032, 0.003);
+    expectNear(r.material.diffuse, {0.8f + more, 0.1f + more, 0.1f + more});
     // Roughness .5, so GGX of alpha .25.
     EXPECT_NEAR(r.material.glossyExponent, (2 / 0.0625 - 2) / 4, 1e-3);
     EXPECT_TRUE(r.heard.list.empty());
@@ -110,6 +114,8 @@ TEST(MtlDialect, BlenderFourGoesByTheIndexOfRefraction) {
     EXPECT_NEAR(glossy("Ni 1.5\n"), 0.04, 1e-6);
     EXPECT_NEAR(glossy("Ni 2\n"), 1.0 / 9, 1e-6);
     EXPECT_NEAR(glossy("Ni 1\n"), 0, 1e-6);
+    const Result plain = read(MtlDialect::kBlender4, "Ns 250\nKd 0.2 0.2 0.2\nNi 1\nillum 2\n");
+    expectNear(plain.material.diffuse, {0.2f, 0.2f, 0.2f});
     EXPECT_NEAR(glossy(""), 0.04, 1e-6);
 }
 
@@ -133,7 +139,8 @@ TEST(MtlDialect, BlendersMetalsKeepTheirColour) {
     EXPECT_EQ(mixed.material.kind, MaterialKind::kSurface);
     expectNear(mixed.material.glossy, half);
     // No more diffuse than the sum leaves.
-    expectNear(mixed.material.diffuse, {0.48f, 0.385f, 0.17f});
+    const auto more = static_cast<float>(meanOfCoat(0.04, 0.2) - 0.04 * meanOfLobe(0.2)) / 2;
+    expectNear(mixed.material.diffuse, {0.48f, 0.385f + more, 0.17f + more});
     expectNear(read(kBlender3, "Pr 0.2\nPm 0.5\nKd 1 0.77 0.34\nKs 0.5 0.5 0.5\nillum 2\n")
                    .material.glossy,
                half);
