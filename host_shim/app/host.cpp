@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/host.h"
 
+#include "host_shim/app/cache_command.h"
 #include "host_shim/app/guarded.h"
 #include "host_shim/app/listings.h"
 #include "host_shim/app/session.h"
@@ -35,6 +36,10 @@ Log::Settings logSettings(const Options& options) {
 int printHelp(const Options& options) {
     if (options.helpOfMerge) {
         print(mergeHelpText());
+        return 0;
+    }
+    if (options.helpOfCache) {
+        print(cacheHelpText());
         return 0;
     }
     try {
@@ -77,6 +82,8 @@ int runOptions(const Options& options, Log& log) {
     if (options.help) return printHelp(options);
     if (options.version) return printVersion(options);
     if (!options.list.empty()) return printList(options);
+    if (options.cacheList || options.cacheClear || options.cacheVerify)
+        return runCacheCommand(options);
     return Session(options, log).run();
 }
 

@@ -7,7 +7,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <utility>
 
 namespace pm::host {
 namespace {
@@ -28,36 +30,81 @@ void store(const Rgb3& colour, float largest, float (&target)[3]) {
     for (std::size_t i = 0; i < 3; ++i) target[i] = std::clamp(colour[i], 0.0f, largest);
 }
 
+using TextureOfKind = std::pair<const std::optional<TextureUse>*, TextureKind>;
+
+std::array<TextureOfKind, 6> usesOf(const MaterialData& material) {
+    return {{{&material.diffuseTexture, TextureKind::kColour},
+             {&material.glossyTexture, TextureKind::kColour},
+             {&material.glossyExponentTexture, TextureKind::kData},
+             {&material.transmissionTexture, TextureKind::kColour},
+             {&material.emissionTexture, TextureKind::kColour},
+             {&material.opacityTexture, TextureKind::kMask}}};
+}
+
+TextureRequest requestOf(const TextureUse& use, TextureKind kind) {
+    return {use.file, kind, use.colourSpace, use.channel};
+}
+
 }  // namespace
 
 MaterialBuilder::MaterialBuilder(const PluginContext& context, const ColourPipeline& colour,
-                                 TemporaryFolder& folder, const WarningSink& warn)
-    : m_context(context), m_colour(colour), m_folder(folder), m_warn(warn) {}
+                                 MakePreparer textures, const WarningSink& warn)
+    : m_context(context), m_colour(colour), m_makePreparer(std::move(textures)), m_warn(warn) {}
 
 MaterialBuilder::~MaterialBuilder() {
     for (PmrMaterial material : m_materials) m_context.api().releaseMaterial(material);
     for (PmrTexture texture : m_textures) m_context.api().releaseTexture(texture);
 }
 
-PmrTexture MaterialBuilder::texture(const std::optional<TextureUse>& use,
+TexturePreparer& MaterialBuilder::preparer() {
+    if (!m_preparer) m_preparer.emplace(m_makePreparer());
+    return *m_preparer;
+}
+
+TextureCounts MaterialBuilder::textureCounts() const {
+    return m_preparer ? m_preparer->counts() : TextureCounts{};
+}
+
+void MaterialBuilder::prepare(const std::vector<const MaterialData*>& materials) {
+    std::vector<TextureRequest> requests;
+    for (const MaterialData* material : materials)
+        for (const auto& [use, kind] : usesOf(*material))
+            if (*use) requests.push_back(requestOf(**use, kind));
+    if (!requests.empty()) preparer().prepare(requests);
+}
+
+// What a user should know of a picture, once.
+void MaterialBuilder::tell(const std::string& file, const BakedTexture& baked) {
+    const auto warn = [&](const std::string& text) {
+        if (m_told.insert(text).second) m_warn(Warning::kTexture, text);
+    };
+    const BadTexelCount& bad = baked.facts.bad;
+    if (bad.negative + bad.notFinite > 0)
+        warn(
+            fmt::format("{}: {} texels are below 0 and {} are infinite or not numbers; they are "
+                        "taken as 0",
+                        file, bad.negative, bad.notFinite));
+    if (!baked.facts.note.empty()) warn(fmt::format("{}: {}", file, baked.facts.note));
+    if (!baked.profile.empty() && baked.profile.find("sRGB") == std::string::npos)
+        warn(
+            fmt::format("{}: its colour profile '{}' is not obeyed; {} is taken (-colorspace, "
+                        "--texture-space)",
+                        file, baked.profile, baked.space.name));
+}
+
+PmrTexture MaterialBuilder::texture(const std::optional<TextureUse>& use, TextureKind kind,
                                     const std::string& material) {
     if (!use) return nullptr;
-    if (!m_baker) m_baker.emplace(m_colour, m_folder.path(), throwIfInterrupted);
-    std::string file;
+    BakedTexture baked;
     try {
-        const auto kind = use->isData ? TextureKind::kData : TextureKind::kColour;
-        const BakedTexture& baked = m_baker->bake({use->file, kind, use->colourSpace, use->clamp});
-        file = baked.file.string();
-        if (baked.badTexels > 0) {
-            m_warn(Warning::kTexture,
-                   fmt::format("{}: {} texels were not finite and are taken as 0", use->file,
-                               baked.badTexels));
-        }
+        baked = preparer().texture(requestOf(*use, kind));
+        tell(use->file, baked);
     } catch (const HostError& error) {
         m_warn(Warning::kTexture, fmt::format("{}: material {}: {}; its number is used alone",
                                               use->place, material, error.what()));
         return nullptr;
     }
+    const std::string file = baked.file.string();
     auto desc = PMR_INIT(PmrTextureDesc);
     desc.fileName = file.c_str();
     desc.wrapS = desc.wrapT = use->clamp ? PMR_WRAP_CLAMP : PMR_WRAP_REPEAT;
@@ -68,6 +115,7 @@ PmrTexture MaterialBuilder::texture(const std::optional<TextureUse>& use,
     // 0 would count as 1.
     desc.gain = use->gain != 0 ? use->gain : std::numeric_limits<float>::min();
     desc.base = use->base;
+    std::ranges::copy(baked.facts.texelHash, desc.texelHash);
     PmrTexture texture = nullptr;
     m_context.check(m_context.api().createTexture(m_context.handle(), &desc, &texture), use->file);
     m_textures.push_back(texture);
@@ -100,12 +148,14 @@ PmrMaterial MaterialBuilder::build(const MaterialData& material) {
     desc.ior = material.ior;
     desc.transparency = material.transparency;
     convertColours(material, desc);
-    desc.diffuseTexture = texture(material.diffuseTexture, material.name);
-    desc.glossyTexture = texture(material.glossyTexture, material.name);
-    desc.glossyExponentTexture = texture(material.glossyExponentTexture, material.name);
-    desc.transmissionTexture = texture(material.transmissionTexture, material.name);
-    desc.emissionTexture = texture(material.emissionTexture, material.name);
-    desc.opacityTexture = texture(material.opacityTexture, material.name);
+    desc.diffuseTexture = texture(material.diffuseTexture, TextureKind::kColour, material.name);
+    desc.glossyTexture = texture(material.glossyTexture, TextureKind::kColour, material.name);
+    desc.glossyExponentTexture =
+        texture(material.glossyExponentTexture, TextureKind::kData, material.name);
+    desc.transmissionTexture =
+        texture(material.transmissionTexture, TextureKind::kColour, material.name);
+    desc.emissionTexture = texture(material.emissionTexture, TextureKind::kColour, material.name);
+    desc.opacityTexture = texture(material.opacityTexture, TextureKind::kMask, material.name);
     PmrMaterial handle = nullptr;
     m_context.check(m_context.api().createMaterial(m_context.handle(), &desc, &handle),
                     fmt::format("material {}", material.name));

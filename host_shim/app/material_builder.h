@@ -3,39 +3,51 @@
 #pragma once
 
 #include "host_shim/app/plugin.h"
-#include "host_shim/app/temporary_folder.h"
 #include "host_shim/colour/colour_pipeline.h"
-#include "host_shim/colour/texture_bake.h"
 #include "host_shim/ingest/scene_data.h"
 #include "host_shim/ingest/warnings.h"
+#include "host_shim/textures/texture_preparation.h"
 
+#include <functional>
 #include <optional>
+#include <set>
+#include <string>
 #include <vector>
 
 namespace pm::host {
 
 // Materials of the plugin from those of a file: numbers converted to the rendering space, pictures
-// baked into it. Releases what it made when it ends; scenes keep what they use.
+// prepared in it. Releases what it made when it ends; scenes keep what they use.
 class MaterialBuilder {
   public:
+    // textures: makes what prepares them, called when a material has the first.
+    using MakePreparer = std::function<TexturePreparer()>;
     MaterialBuilder(const PluginContext& context, const ColourPipeline& colour,
-                    TemporaryFolder& folder, const WarningSink& warn);
+                    MakePreparer textures, const WarningSink& warn);
     ~MaterialBuilder();
     MaterialBuilder(const MaterialBuilder&) = delete;
     MaterialBuilder& operator=(const MaterialBuilder&) = delete;
 
+    // Prepares all textures of these materials, several at once.
+    void prepare(const std::vector<const MaterialData*>& materials);
+    // How many textures were found, made and opened; all 0 without any.
+    TextureCounts textureCounts() const;
     // A picture that can't be had is warned of and left out. Errors: those of the plugin.
     PmrMaterial build(const MaterialData& material);
 
   private:
-    PmrTexture texture(const std::optional<TextureUse>& use, const std::string& material);
+    PmrTexture texture(const std::optional<TextureUse>& use, TextureKind kind,
+                       const std::string& material);
+    void tell(const std::string& file, const BakedTexture& baked);
+    TexturePreparer& preparer();
     void convertColours(const MaterialData& material, PmrMaterialDesc& desc) const;
 
     const PluginContext& m_context;
     const ColourPipeline& m_colour;
-    TemporaryFolder& m_folder;
+    MakePreparer m_makePreparer;
     const WarningSink& m_warn;
-    std::optional<TextureBaker> m_baker;
+    std::optional<TexturePreparer> m_preparer;
+    std::set<std::string> m_told;  // texts about pictures
     std::vector<PmrTexture> m_textures;
     std::vector<PmrMaterial> m_materials;
 };

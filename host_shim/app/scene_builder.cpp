@@ -91,6 +91,13 @@ void PluginScene::build(const SceneData& data, const std::string& sceneName, Sub
     m_context.check(api.createScene(m_context.handle(), &desc, &m_handle), sceneName);
 
     // Only what faces use is built: libraries often hold more, with pictures that are not there.
+    std::vector<bool> isUsed(data.materials.size());
+    for (const MeshData& mesh : data.meshes)
+        for (const uint32_t material : mesh.slotMaterials) isUsed[material] = true;
+    std::vector<const MaterialData*> used;
+    for (std::size_t i = 0; i < isUsed.size(); ++i)
+        if (isUsed[i]) used.push_back(&data.materials[i]);
+    materials.prepare(used);
     std::vector<PmrMaterial> built(data.materials.size());
     for (const MeshData& mesh : data.meshes) {
         for (const uint32_t material : mesh.slotMaterials) {

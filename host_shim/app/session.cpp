@@ -9,6 +9,7 @@
 #include "host_shim/app/picture_assembly.h"
 #include "host_shim/app/scene_builder.h"
 #include "host_shim/app/session_files.h"
+#include "host_shim/app/texture_setup.h"
 #include "host_shim/colour/display_picture.h"
 #include "host_shim/ingest/lamps.h"
 #include "host_shim/ingest/obj_reader.h"
@@ -195,6 +196,11 @@ void Session::buildScene(const ColourPipeline& colour, const PluginContext& cont
         const InterruptWatch watch([&] { context.api().cancelBuilds(context.handle(), 1); });
         scene.build(data, m_options.scene.string(), m_options.subdivide, camera, colour, materials);
     });
+    const TextureCounts textures = materials.textureCounts();
+    if (textures.found + textures.converted > 0)
+        m_log.message(Level::kDebug,
+                      fmt::format("textures: {} found prepared, {} made, {} originals opened",
+                                  textures.found, textures.converted, textures.originalsOpened));
 }
 
 int Session::renderScene(const ColourPipeline& colour, const PluginContext& context) {
@@ -203,7 +209,13 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
     TemporaryFolder folder;
     // The builder keeps a reference to it.
     const WarningSink sink = [this](Warning code, const std::string& text) { warn(code, text); };
-    MaterialBuilder materials(context, colour, folder, sink);
+    MaterialBuilder materials(
+        context, colour,
+        [&] {
+            return TexturePreparer(colour, openTextureCache(m_options, folder, m_log),
+                                   textureSettings(m_options), throwIfInterrupted);
+        },
+        sink);
     PluginScene scene(context, m_log);
     buildScene(colour, context, materials, scene);
     Progress progress(m_options.progress, m_options.quiet, m_log);

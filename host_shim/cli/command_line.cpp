@@ -188,23 +188,42 @@ void readMaterialRules(const Typed& typed, Options& options) {
         rules.files.searchPaths.emplace_back(folder);
 }
 
+void readTextureCache(const Typed& typed, Options& options) {
+    constexpr double kMostGib = 1 << 20;
+    options.textureCache = typed.textureCache;
+    if (!typed.textureCacheSize.empty())
+        options.textureCacheGib =
+            numberValue("--texture-cache-size", typed.textureCacheSize, 0, kMostGib);
+}
+
 std::string oneLine(std::string text) {
     std::ranges::replace(text, '\n', ' ');
     return text;
 }
 
+enum class Command { kRender, kMerge, kCache };
+
+Command commandOf(const std::vector<std::string>& arguments) {
+    if (arguments.empty()) return Command::kRender;
+    return arguments.front() == "merge"   ? Command::kMerge
+           : arguments.front() == "cache" ? Command::kCache
+                                          : Command::kRender;
+}
+
 // Which words belong to which option; what they mean is read from typed.
-void readWords(const std::vector<std::string>& arguments, bool isMerge, Typed& typed,
+void readWords(const std::vector<std::string>& arguments, Command command, Typed& typed,
                Options& options) {
     CLI::App app("", "pm_host");
-    if (isMerge)
+    if (command == Command::kMerge)
         addAllOfMerge(app, typed, options);
+    else if (command == Command::kCache)
+        addAllOfCache(app, typed, options);
     else
         addAll(app, typed, options, nullptr);
     try {
         // CLI11 takes them from the end.
-        app.parse(
-            std::vector<std::string>(arguments.rbegin(), arguments.rend() - (isMerge ? 1 : 0)));
+        app.parse(std::vector<std::string>(
+            arguments.rbegin(), arguments.rend() - (command == Command::kRender ? 0 : 1)));
     } catch (const CLI::ExtrasError&) {
         throw HostError(ExitCode::kUsage,
                         aboutUnknownWords(app, app.remaining()) + " (see pm_host -h)");
@@ -217,12 +236,22 @@ void readWords(const std::vector<std::string>& arguments, bool isMerge, Typed& t
 
 Options parseCommandLine(const std::vector<std::string>& arguments) {
     refuseWhatIsNotAvailableYet(arguments);
-    const bool isMerge = !arguments.empty() && arguments.front() == "merge";
+    const Command command = commandOf(arguments);
+    const bool isMerge = command == Command::kMerge;
     Options options;
     Typed typed;
-    readWords(arguments, isMerge, typed, options);
+    readWords(arguments, command, typed, options);
     options.helpOfMerge = options.help && isMerge;
+    options.helpOfCache = options.help && command == Command::kCache;
     if (options.help || options.version) return options;
+    readTextureCache(typed, options);
+    if (command == Command::kCache) {
+        if (!options.cacheList && !options.cacheClear && !options.cacheVerify)
+            throw HostError(ExitCode::kUsage,
+                            "usage: pm_host cache --list|--verify|--clear [--texture-cache DIR], "
+                            "see pm_host cache -h");
+        return options;
+    }
     std::optional<std::int64_t> frame;
     if (!typed.frame.empty()) {
         frame = integerValue("--frame", typed.frame, 0, std::numeric_limits<std::int32_t>::max());
@@ -253,7 +282,7 @@ std::string helpText(const SettingHelp& settingHelp) {
     Typed typed;
     CLI::App app("pm: a photon-mapping bucket renderer", "pm_host");
     addAll(app, typed, options, settingHelp);
-    return app.help() + "\n" + mergeHelpText();
+    return app.help() + "\n" + mergeHelpText() + "\n" + cacheHelpText();
 }
 
 std::string mergeHelpText() {
@@ -262,6 +291,14 @@ std::string mergeHelpText() {
     CLI::App merge("pm_host merge: puts parts of one picture together", "pm_host merge");
     addAllOfMerge(merge, typed, options);
     return merge.help();
+}
+
+std::string cacheHelpText() {
+    Options options;
+    Typed typed;
+    CLI::App cache("pm_host cache: the folder of prepared textures", "pm_host cache");
+    addAllOfCache(cache, typed, options);
+    return cache.help();
 }
 
 }  // namespace pm::host

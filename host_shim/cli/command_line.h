@@ -22,5 +22,7 @@ using SettingHelp = std::function<std::string(const std::string& setting)>;
 std::string helpText(const SettingHelp& settingHelp);
 // That of `pm_host merge -h`, which is the end of the other.
 std::string mergeHelpText();
+// The same of pm_host cache.
+std::string cacheHelpText();
 
 }  // namespace pm::host

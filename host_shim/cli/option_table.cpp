@@ -160,6 +160,13 @@ void addColourOptions(CLI::App& app, Typed& typed, Options& options) {
         ->check(valueFault);
 }
 
+void addTextureOptions(CLI::App& app, Typed& typed) {
+    addText(app, "--texture-cache", typed.textureCache, "DIR",
+            "where prepared textures are kept ($XDG_CACHE_HOME/pm, else ~/.cache/pm)");
+    addText(app, "--texture-cache-size", typed.textureCacheSize, "GIB",
+            "the most that they may take there; those not used for long go first (20)");
+}
+
 void addReportOptions(CLI::App& app, Typed& typed, Options& options) {
     app.add_option("--reference", options.reference, "EXR to report relMSE against")
         ->type_name("FILE")
@@ -205,8 +212,20 @@ void addAll(CLI::App& app, Typed& typed, Options& options, const SettingHelp& he
     addRenderOptions(app, typed, options, help);
     addPieceOptions(app, typed, options);
     addColourOptions(app, typed, options);
+    addTextureOptions(app, typed);
     addReportOptions(app, typed, options);
     addPrintingOptions(app, typed, options);
+}
+
+void addAllOfCache(CLI::App& app, Typed& typed, Options& options) {
+    app.set_help_flag();
+    app.option_defaults()->always_capture_default(false);
+    app.add_flag("--list", options.cacheList, "print the textures, the longest unused first");
+    app.add_flag("--clear", options.cacheClear, "remove them, but for those in use");
+    app.add_flag("--verify", options.cacheVerify,
+                 "read them and their originals whole; remove what is damaged, exit 3 if any was");
+    addTextureOptions(app, typed);
+    app.add_flag("-h,--help", options.help, "print and stop");
 }
 
 void addAllOfMerge(CLI::App& app, Typed& typed, Options& options) {

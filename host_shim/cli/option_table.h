@@ -19,7 +19,7 @@ namespace pm::host {
 // reads numbers through the locale.
 struct Typed {
     std::string scene, frame, size, eye, lookAt, up, fov, crop, aa, seed, subdivide, onlyPixel,
-        errorLimit, progress, checkpoint, photonMap, mtlDialect;
+        errorLimit, progress, checkpoint, photonMap, mtlDialect, textureCache, textureCacheSize;
     std::vector<std::string> outputs, context, layers, parts, searchPaths;
     std::map<std::string, std::string> settings;  // option -> text
 };
@@ -37,5 +37,7 @@ std::span<const SettingOption> settingOptions();
 void addAll(CLI::App& app, Typed& typed, Options& options, const SettingHelp& help);
 // The same of `pm_host merge PART... -o FILE`.
 void addAllOfMerge(CLI::App& app, Typed& typed, Options& options);
+// The same of `pm_host cache`.
+void addAllOfCache(CLI::App& app, Typed& typed, Options& options);
 
 }  // namespace pm::host

@@ -65,6 +65,10 @@ struct Options {
     bool photonsOnly{};                // it is written, and no picture
     bool resume{};
     bool keepCheckpoint{};
+    std::filesystem::path textureCache;             // empty: the user's own
+    std::optional<double> textureCacheGib;          // the most that it may hold
+    bool cacheList{}, cacheClear{}, cacheVerify{};  // pm_host cache
+    bool helpOfCache{};
     std::vector<std::filesystem::path> merge;  // parts to put together, instead of a scene
 };
 

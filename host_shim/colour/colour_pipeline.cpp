@@ -88,37 +88,6 @@ Rgb3 ColourPipeline::materialToRendering(const Rgb3& colour) const {
     return result;
 }
 
-TextureSpace ColourPipeline::textureSpace(const std::filesystem::path& file, bool isFloatFile,
-                                          const std::string& colorspaceOfMapLine) const {
-    const State& state = *m_state;
-    if (!colorspaceOfMapLine.empty()) {
-        return resolveSpace(state, colorspaceOfMapLine, "-colorspace");
-    }
-    if (!state.options.textureSpace.empty()) {
-        return resolveSpace(state, state.options.textureSpace, "--texture-space");
-    }
-    const auto& config = state.config.config;
-    const std::string path = file.string();
-    // OpenColorIO: with strict parsing, an application decides where only the Default rule matches.
-    const bool ruled =
-        !state.config.isBuiltIn &&
-        !(config->isStrictParsingEnabled() && config->filepathOnlyMatchesDefaultRule(path.c_str()));
-    if (ruled) {
-        TextureSpace space =
-            resolveSpace(state, config->getColorSpaceFromFilepath(path.c_str()), "file rules");
-        return space;
-    }
-    TextureSpace space =
-        resolveSpace(state, isFloatFile ? kLinearRec709 : kSrgbTexture, "--texture-space");
-    space.decidedBy = "default";
-    return space;
-}
-
-SpaceConversion ColourPipeline::textureToRendering(const TextureSpace& space) const {
-    const bool isDefault = space.decidedBy == "default" || space.decidedBy.empty();
-    return convertToRendering(*m_state, space, isDefault ? "--texture-space" : space.decidedBy);
-}
-
 TextureSpace resolveSpace(const ColourPipeline::State& state, const std::string& name,
                           const std::string& option) {
     for (const ColourConfig* config : {&state.config, &state.builtIn}) {

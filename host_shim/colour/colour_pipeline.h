@@ -4,6 +4,7 @@
 
 #include "host_shim/colour/display_transform.h"
 #include "host_shim/colour/host_error.h"
+#include "host_shim/colour/picture_statement.h"
 #include "host_shim/colour/space_conversion.h"
 
 #include <array>
@@ -52,10 +53,14 @@ struct SpaceEntry {
 
 // The space a texture's texels are in.
 struct TextureSpace {
-    std::string name;       // canonical, empty for data that is never converted
-    bool isData{};          // texels are taken as they are
-    bool fromBuiltIn{};     // name belongs to pm's own config, not to the user's
-    std::string decidedBy;  // "-colorspace", "--texture-space", "file rules" or "default"
+    std::string name;    // canonical, empty for data that is never converted
+    bool isData{};       // texels are taken as they are
+    bool fromBuiltIn{};  // name belongs to pm's own config, not to the user's
+    // "-colorspace", "--texture-space", "file rules", "the file" or "default"
+    std::string decidedBy;
+    // Row-major, linear RGB to CIE XYZ (D65), where the file names primaries that no space has;
+    // name is then empty.
+    std::optional<Matrix3> toXyz{};
 };
 
 // The colour management of one render: a config, a rendering space in it, and what converts
@@ -100,12 +105,13 @@ class ColourPipeline {
     Rgb3 materialToRendering(const Rgb3& colour) const;
 
     // Decides the space of a colour texture: colorspaceOfMapLine (the -colorspace of its map line,
-    // may be empty), else --texture-space, else the file rules of a config the user gave, else
-    // linear Rec.709 for float files and sRGB for integer files. A file that only the Default rule
-    // matches is not decided by the rules when the config asks for strict parsing.
-    // Errors: kBadInput for an unknown name.
+    // may be empty), else --texture-space, else a file rule of a config the user gave, other than
+    // the Default rule, else what the file states of itself, else that Default rule unless the
+    // config asks for strict parsing, else linear Rec.709 for float files and sRGB for integer
+    // files. Errors: kBadInput for an unknown name in an option.
     TextureSpace textureSpace(const std::filesystem::path& file, bool isFloatFile,
-                              const std::string& colorspaceOfMapLine) const;
+                              const std::string& colorspaceOfMapLine,
+                              const PictureStatement& statement = {}) const;
     // Errors: kBadInput when the space can't be reached for want of the role aces_interchange.
     SpaceConversion textureToRendering(const TextureSpace& space) const;
 

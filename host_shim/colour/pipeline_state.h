@@ -28,6 +28,10 @@ TextureSpace resolveSpace(const ColourPipeline::State& state, const std::string&
 SpaceConversion convertToRendering(const ColourPipeline::State& state, const TextureSpace& space,
                                    const std::string& option);
 
+// What a file states of its colours, as a space; none where it says nothing that can be understood.
+std::optional<TextureSpace> statedSpace(const ColourPipeline::State& state, bool isFloatFile,
+                                        const PictureStatement& statement);
+
 // These check state.options against the config and fill in the fields they are named after.
 void chooseRenderingSpace(ColourPipeline::State& state);
 void chooseView(ColourPipeline::State& state);

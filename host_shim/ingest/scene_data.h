@@ -19,6 +19,7 @@ struct TextureUse {
     std::string colourSpace;  // of -colorspace; empty = decided by the rules for files
     bool isData{};            // never colour-converted
     bool clamp{};             // else repeated
+    char channel{};           // of -imfchan: r g b m l z, or 0 where nothing is asked for
     std::array<float, 2> scale{1.0f, 1.0f};
     std::array<float, 2> offset{};
     float base{0.0f};

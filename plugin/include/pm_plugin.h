@@ -227,6 +227,9 @@ typedef struct PmrTextureDesc {
     float uvOffset[2];
     float gain; /* 0 counts as 1 */
     float base;
+    /* A checksum of the texels that the host knows, so that the file need not be read whole for the
+     * hash of a render; equal texels must have equal ones. Both 0: the library makes its own. */
+    uint64_t texelHash[2];
 } PmrTextureDesc;
 
 #define PMR_MATERIAL_SURFACE 0    /* diffuse, plus a glossy lobe */

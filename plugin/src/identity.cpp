@@ -134,7 +134,9 @@ std::string checksumOf(Feed feed) {
 }
 
 void addTexture(Hasher& hasher, const TexturePicture& picture, const CancelCheck& cancel) {
-    hasher.addArray<std::uint64_t>(texelHash(picture.fileName, cancel));
+    const bool isKnown = picture.texelHash != std::array<std::uint64_t, 2>{};
+    hasher.addArray<std::uint64_t>(isKnown ? picture.texelHash
+                                           : texelHash(picture.fileName, cancel));
     hasher.add(static_cast<int>(picture.wrapS));
     hasher.add(static_cast<int>(picture.wrapT));
     for (const float v : {picture.uvScale.x, picture.uvScale.y, picture.uvOffset.x,

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <new>
 #include <vector>
 
 #include "plugin/src/call_error.h"
@@ -85,6 +86,10 @@ bool isLight(float value) {
     return value >= 0.0f && value <= std::numeric_limits<float>::max();
 }
 
+struct FreeHash {
+    void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
+};
+
 bool isFinite(const Texel& texel) {
     return std::isfinite(texel.r) && std::isfinite(texel.g) && std::isfinite(texel.b) &&
            std::isfinite(texel.a);
@@ -98,18 +103,27 @@ std::array<std::uint64_t, 2> texelHash(const std::string& fileName, const Cancel
     const OIIO::ImageSpec& spec = input->spec();
     const std::array<std::int64_t, 4> shape = {spec.width, spec.height, spec.nchannels,
                                                spec.format.basetype};
-    std::vector<std::byte> texels(spec.image_bytes(true));
-    CancelCheck check = cancel;
-    const auto isCancelled = [](void* user, float) {
-        return static_cast<const CancelCheck*>(user)->isSet();
-    };
-    const bool good = input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::UNKNOWN,
-                                        texels.data(), OIIO::AutoStride, OIIO::AutoStride,
-                                        OIIO::AutoStride, isCancelled, &check);
-    cancel.throwIfSet("reading texels");
-    if (!good) throwUnreadable(fileName, input->geterror());
     const XXH128_hash_t ofShape = XXH3_128bits(shape.data(), sizeof shape);
-    const XXH128_hash_t hash = XXH3_128bits_withSeed(texels.data(), texels.size(), ofShape.low64);
+    const std::unique_ptr<XXH3_state_t, FreeHash> state(XXH3_createState());
+    if (!state) throw std::bad_alloc();
+    XXH3_128bits_reset_withSeed(state.get(), ofShape.low64);
+    // A few rows at a time: the whole may not fit.
+    const int step = spec.tile_height > 0 ? spec.tile_height : kTilePixels;
+    std::vector<std::byte> texels;
+    for (int row = 0; row < spec.height; row += step) {
+        cancel.throwIfSet("reading texels");
+        const int y0 = spec.y + row, y1 = y0 + std::min(step, spec.height - row);
+        texels.resize(static_cast<std::size_t>(y1 - y0) * spec.scanline_bytes(true));
+        const bool good =
+            spec.tile_width > 0
+                ? input->read_tiles(0, 0, spec.x, spec.x + spec.width, y0, y1, 0, 1, 0,
+                                    spec.nchannels, OIIO::TypeDesc::UNKNOWN, texels.data())
+                : input->read_scanlines(0, 0, y0, y1, 0, 0, spec.nchannels, OIIO::TypeDesc::UNKNOWN,
+                                        texels.data());
+        if (!good) throwUnreadable(fileName, input->geterror());
+        XXH3_128bits_update(state.get(), texels.data(), texels.size());
+    }
+    const XXH128_hash_t hash = XXH3_128bits_digest(state.get());
     return {hash.low64, hash.high64};
 }
 
@@ -151,6 +165,7 @@ TexturePicture TextureSystem::open(const PmrTextureDesc& desc) {
                         checkedFinite(desc.uvOffset[1], "uvOffset[1]")};
     picture.gain = orOne(checkedFinite(desc.gain, "gain"));
     picture.base = checkedFinite(desc.base, "base");
+    picture.texelHash = {desc.texelHash[0], desc.texelHash[1]};
 
     OIIO::TextureSystem& textures = system();
     const OIIO::ustring name(picture.fileName);

@@ -29,6 +29,7 @@ struct TexturePicture {
     Vec2f uvOffset{};
     float gain = 1.0f;
     float base = 0.0f;
+    std::array<std::uint64_t, 2> texelHash{};  // that the host knows; 0, 0: none
 };
 
 // Checksum (XXH3, 128 bits) of a picture's size, channels and finest level, texel by texel: the

@@ -79,6 +79,8 @@ class HostProcess : public ::testing::Test {
                                      "PM_PLUGIN_PATH"}) {
                 unsetenv(name);
             }
+            // Textures of one test are no business of another's, nor of the user's.
+            setenv("XDG_CACHE_HOME", (m_folder / ".cache").c_str(), 1);
             for (const auto& [name, value] : variables) setenv(name.c_str(), value.c_str(), 1);
             arguments.insert(arguments.begin(), PM_HOST);
             std::vector<char*> raw;
@@ -108,7 +110,8 @@ class HostProcess : public ::testing::Test {
         std::vector<std::string> names;
         for (const auto& entry : fs::directory_iterator(m_folder)) {
             const std::string name = entry.path().filename().string();
-            if (name != ".out" && name != ".err" && name != "box.obj" && name != "box.mtl") {
+            if (name != ".out" && name != ".err" && name != ".cache" && name != "box.obj" &&
+                name != "box.mtl") {
                 names.push_back(name);
             }
         }
@@ -132,7 +135,7 @@ class HostProcess : public ::testing::Test {
         }
     }
 
-    // The folder for baked textures that the last run made; empty when none is there.
+    // A folder for textures that the last run made for itself alone; empty when none is there.
     std::string textureFolder() const {
         const std::string start = "pm_host." + std::to_string(m_lastChild) + ".";
         for (const auto& entry : fs::directory_iterator(P_tmpdir)) {
@@ -140,6 +143,17 @@ class HostProcess : public ::testing::Test {
             if (name.starts_with(start)) return entry.path().string();
         }
         return {};
+    }
+    // Files in the folder of prepared textures that have no final name.
+    std::vector<std::string> halfMadeTextures() const {
+        std::vector<std::string> names;
+        std::error_code none;
+        for (const auto& entry :
+             fs::directory_iterator(m_folder / ".cache" / "pm" / "textures", none)) {
+            const std::string name = entry.path().filename().string();
+            if (name.find("tmp") != std::string::npos) names.push_back(name);
+        }
+        return names;
     }
 
     // Gives the walls of the box a picture.

@@ -74,6 +74,7 @@ class Interrupt : public HostProcess {
         int terminated = 0;
         for (const double share : shares) {
             fs::remove(path("s.json"));
+            fs::remove_all(path(".cache"));
             std::chrono::steady_clock::time_point told;
             const Outcome outcome = run(arguments, [&](pid_t child) {
                 std::this_thread::sleep_for(share * whole);
@@ -102,8 +103,10 @@ TEST_F(Interrupt, termination) {
     expectPartial(interrupted({SIGTERM}), 143, "terminated");
 }
 
+// Where there is nowhere to keep them.
 TEST_F(Interrupt, bakedTexturesAreRemoved) {
     addTexture();
+    write("in_the_way", "");
     std::string during;
     const Outcome outcome = run({"box.obj", "--size", "64x64", "--passes", "1000000", "--photons",
                                  "1000", "-o", "a.exr", "--progress", "none"},
@@ -111,7 +114,8 @@ TEST_F(Interrupt, bakedTexturesAreRemoved) {
                                     waitForRender();
                                     during = textureFolder();
                                     kill(child, SIGINT);
-                                });
+                                },
+                                {{"XDG_CACHE_HOME", path("in_the_way").string()}});
     EXPECT_EQ(outcome.exitCode, 130) << outcome.err;
     EXPECT_NE(during, "");
     EXPECT_EQ(textureFolder(), "");
@@ -153,8 +157,10 @@ TEST_F(Interrupt, whileATextureIsBaked) {
     write("wall.ppm", texels);
     write("box.mtl", "newmtl light\nKd 0 0 0\nKe 5 5 5\nnewmtl wall\nmap_Kd wall.ppm\n");
     const std::vector<std::string> arguments{"box.obj", "--explain", "--stats", "s.json"};
-    const int interrupted = terminateAt(1, {0.4, 0.6, 0.8, 0.9}, arguments,
-                                        [&](const Outcome&) { EXPECT_EQ(textureFolder(), ""); });
+    const int interrupted = terminateAt(1, {0.4, 0.6, 0.8, 0.9}, arguments, [&](const Outcome&) {
+        EXPECT_EQ(textureFolder(), "");
+        EXPECT_TRUE(halfMadeTextures().empty());
+    });
     EXPECT_GE(interrupted, 1);
 }
 

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/colour/texture_bake.h"
-#include "tests/colour/bake_support.h"
-#include "tests/colour/scratch.h"
+#include "tests/textures/texture_support.h"
 
 namespace pm::host::test {
 namespace {
 
-class BakeRefusal : public ScratchTest {
+class BakeRefusal : public TextureTest {
   protected:
-    std::string refused(const TextureRequest& request, const std::string& into = ".") const {
-        return refusal([&] { TextureBaker(m_colour, file(into)).bake(request); });
+    std::string refused(const TextureRequest& request) const {
+        return refusal([&] { baked(request); });
     }
     void writeNoise(const std::string& name) const {
         std::vector<float> values;
@@ -21,15 +19,12 @@ class BakeRefusal : public ScratchTest {
         }
         writeTexture(file(name), 64, 64, 3, OIIO::TypeDesc::UINT8, values);
     }
-
-    ColourPipeline m_colour{ColourOptions{}};
 };
 
 TEST_F(BakeRefusal, MissingFilesAndFolders) {
     EXPECT_TRUE(refusesWith(refused({file("none.png")}), 4, {"none.png", "does not exist"}));
     EXPECT_TRUE(refusesWith(refused({folder()}), 4, {"is not a file"}));
     writeNoise("a.png");
-    EXPECT_TRUE(refusesWith(refused({file("a.png")}, "nowhere"), 4, {"nowhere", "a."}));
     EXPECT_TRUE(refusesWith(refused({file("a.png"), TextureKind::kColour, "xyz"}), 3,
                             {"-colorspace", "'xyz'"}));
 }
@@ -50,9 +45,33 @@ TEST_F(BakeRefusal, BrokenFiles) {
         writeBytes(file(name), bytes.substr(0, bytes.size() / 2));
         EXPECT_TRUE(refusesWith(refused({file(name)}), 3, {name})) << name;
     }
-    for (const auto& entry : std::filesystem::directory_iterator(folder())) {
-        EXPECT_NE(entry.path().extension(), ".tx");
-    }
+    for (const auto& entry : std::filesystem::directory_iterator(cacheFolder() / "textures"))
+        ADD_FAILURE() << entry.path();
+}
+
+// Every reader of OpenImageIO would be asked to look at it.
+TEST_F(BakeRefusal, WhatHasNoMarkOfAPicture) {
+    writeBytes(file("zeros.png"), std::string(1 << 20, '\0'));
+    EXPECT_TRUE(refusesWith(refused({file("zeros.png")}), 3, {"zeros.png", "no picture"}));
+    writeBytes(file("zeros.tga"), std::string(1 << 20, '\0'));
+    EXPECT_TRUE(refusesWith(refused({file("zeros.tga")}), 3, {"zeros.tga", "no picture"}));
+}
+
+// A header alone can ask for more memory than there is.
+TEST_F(BakeRefusal, WhatDoesNotFit) {
+    writeNoise("a.bmp");
+    const TextureRequest request{file("a.bmp")};
+    TexturePreparer small(m_colour, cache(), {1, 1000});
+    EXPECT_TRUE(refusesWith(refusal([&] { small.texture(request); }), 3,
+                            {"a.bmp", "64 x 64", "--memory-limit"}));
+    EXPECT_EQ(refused(request), "nothing thrown");
+}
+
+TEST_F(BakeRefusal, DisplayWindowsBeyondAllMeasure) {
+    OIIO::ImageSpec spec(1, 1, 3, OIIO::TypeDesc::FLOAT);
+    spec.full_width = 1 << 21;
+    writePicture(file("wide.exr"), spec, {1, 1, 1});
+    EXPECT_TRUE(refusesWith(refused({file("wide.exr")}), 3, {"wide.exr", "2097152"}));
 }
 
 }  // namespace

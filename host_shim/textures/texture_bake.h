@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/colour/space_conversion.h"
+#include "host_shim/pictures/checked_file.h"
+#include "host_shim/textures/picture_rows.h"
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <string>
+
+namespace pm::host {
+
+// A prepared texture: what is known of it without opening it.
+struct TextureFacts {
+    std::int32_t width{}, height{};
+    std::int32_t channels{};                   // 1 or 3
+    std::array<std::uint64_t, 2> texelHash{};  // as the library makes it of the file, never 0, 0
+    BadTexelCount bad;                         // texels that were replaced by 0
+    std::string note;                          // what was chosen of the picture; may be empty
+};
+
+// How a picture becomes a texture, known from its header and the conversion.
+class TextureBake {
+  public:
+    // rows: nothing of it has been read. kind as it was opened with.
+    TextureBake(PictureRows& rows, TextureKind kind, const SpaceConversion& conversion);
+
+    // Bytes that baking holds at most.
+    std::uint64_t memoryBytes() const;
+    // Whether the file itself can be the texture, unless some texel of it is bad.
+    bool needsNoConversion() const;
+    // Looks at all texels of such a file. False, with nothing in facts, where some are bad; then a
+    // new TextureBake of new rows bakes it.
+    bool inspect(const std::function<void()>& goOn, TextureFacts& facts);
+    // Writes the texture to `file`, whose name is `path`: tiled, mip-mapped, in the rendering
+    // space, converted before any filtering, in half (8-bit colour, and half where nothing is
+    // converted) or float, so that nothing is clipped. Grey that stays grey and numbers have one
+    // channel, colours three. goOn: called every few rows; may throw. Errors: HostError kBadInput
+    // when the picture is broken, kFile when the texture can't be written; the text names `rows`'
+    // file or shownName.
+    TextureFacts bake(CheckedFile& file, const std::filesystem::path& path,
+                      const std::filesystem::path& shownName, const std::function<void()>& goOn);
+
+  private:
+    bool isHalf(float largest) const;
+
+    PictureRows& m_rows;
+    bool m_isColour;
+    SpaceConversion m_conversion;
+};
+
+}  // namespace pm::host

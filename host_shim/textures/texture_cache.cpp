@@ -1,0 +1,297 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/textures/texture_cache.h"
+
+#include "host_shim/pictures/host_error.h"
+
+#include <fmt/format.h>
+
+#include <fcntl.h>
+#include <pwd.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <unordered_set>
+
+namespace pm::host {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kSecondsOfADay = 24 * 60 * 60;
+// Records of originals that nobody asked for that long are removed.
+constexpr std::int64_t kOldIndex = 90 * kSecondsOfADay;
+// Nobody writes one file for that long.
+constexpr std::int64_t kOldTemporary = kSecondsOfADay;
+// Between finding a texture and telling so in the lease nobody else may remove it.
+constexpr std::int64_t kJustUsed = 60;
+
+std::int64_t now() {
+    return std::chrono::duration_cast<std::chrono::seconds>(
+               std::chrono::system_clock::now().time_since_epoch())
+        .count();
+}
+
+std::int64_t lastModified(const fs::path& file) {
+    struct stat status {};
+    return ::stat(file.c_str(), &status) == 0 ? std::int64_t{status.st_mtim.tv_sec} : 0;
+}
+
+void touch(const fs::path& file) {
+    ::utimensat(AT_FDCWD, file.c_str(), nullptr, 0);
+}
+
+void removeFile(const fs::path& file) {
+    ::unlink(file.c_str());
+}
+
+std::vector<fs::path> filesOf(const fs::path& folder) {
+    std::vector<fs::path> files;
+    std::error_code failed;
+    fs::directory_iterator entry(folder, failed);
+    for (; !failed && entry != fs::directory_iterator(); entry.increment(failed))
+        files.push_back(entry->path());
+    return files;
+}
+
+bool isTemporary(const fs::path& file) {
+    const std::string name = file.filename().string();
+    return name.starts_with("tmp-") || name.find(".tx.tmp.") != std::string::npos;
+}
+
+[[noreturn]] void failWriting(const fs::path& file) {
+    throw HostError(ExitCode::kFile,
+                    fmt::format("{}: can't be written: {}", file.string(), std::strerror(errno)));
+}
+
+}  // namespace
+
+fs::path usualCacheFolder() {
+    // By the XDG base directory specification others than absolute paths don't count.
+    if (const char* base = std::getenv("XDG_CACHE_HOME"); base != nullptr && *base == '/')
+        return fs::path(base) / "pm";
+    if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
+        return fs::path(home) / ".cache" / "pm";
+    return {};
+}
+
+TextureCache::TextureCache(fs::path folder, std::uint64_t limitBytes)
+    : m_folder(std::move(folder)), m_limitBytes(limitBytes) {
+    std::error_code failed;
+    for (const char* part : {"textures", "index", "leases"})
+        fs::create_directories(m_folder / part, failed);
+    const fs::path probe = makeTemporaryBeside(m_folder / "textures" / "x.tx");
+    if (probe.empty()) return;
+    removeFile(probe);
+    m_leaseFile = makeTemporaryBeside(m_folder / "leases" / "x.lease");
+    if (m_leaseFile.empty()) return;
+    m_lease = ::open(m_leaseFile.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW);
+    // Where files can't be locked, others go by the time of the last use alone.
+    if (m_lease >= 0) ::flock(m_lease, LOCK_EX | LOCK_NB);
+}
+
+TextureCache::~TextureCache() {
+    if (m_lease < 0) return;
+    removeFile(m_leaseFile);
+    ::close(m_lease);
+}
+
+fs::path TextureCache::textureFile(const std::string& name) const {
+    return m_folder / "textures" / (name + ".tx");
+}
+
+fs::path TextureCache::recordFile(const std::string& name) const {
+    return m_folder / "textures" / (name + ".rec");
+}
+
+std::optional<Record> TextureCache::original(const std::string& key) const {
+    const fs::path file = m_folder / "index" / (key + ".rec");
+    auto record = Record::read(file);
+    if (record && now() - lastModified(file) > kSecondsOfADay) touch(file);
+    return record;
+}
+
+void TextureCache::putOriginal(const std::string& key, const Record& record) const {
+    if (isWritable()) record.write(m_folder / "index" / (key + ".rec"));
+}
+
+// Whoever changed the file changed its stamp; then all its bytes are looked at.
+bool TextureCache::isWhole(const std::string& name, Record& record) const {
+    const fs::path file = textureFile(name);
+    const auto stamp = stampOf(file);
+    if (!stamp) return false;
+    if (stamp->text() == record.get("stamp")) return true;
+    if (static_cast<std::int64_t>(stamp->size) != record.number("bytes")) return false;
+    try {
+        if (hashFile(file, {}) != record.get("checksum")) return false;
+    } catch (const HostError&) {
+        return false;
+    }
+    record.set("stamp", stamp->text());
+    record.write(recordFile(name));
+    return true;
+}
+
+std::optional<Record> TextureCache::find(const std::string& name) {
+    auto record = Record::read(recordFile(name));
+    if (!record) return std::nullopt;
+    if (record->get("asItIs") == "1") {
+        touch(recordFile(name));
+        return record;
+    }
+    lease(name);
+    touch(recordFile(name));
+    if (!isWhole(name, *record)) return std::nullopt;
+    return record;
+}
+
+void TextureCache::lease(const std::string& name) {
+    if (!isWritable()) return;
+    const std::lock_guard lock(m_mutex);
+    const std::string line = name + "\n";
+    // At worst another process makes room by it, and it is made again.
+    [[maybe_unused]] const ssize_t written = ::write(m_lease, line.data(), line.size());
+}
+
+fs::path TextureCache::nameForNew() const {
+    return m_folder / "textures" / (uniqueName() + ".tx");
+}
+
+void TextureCache::commitAsItIs(const std::string& name, Record record) const {
+    record.set("asItIs", "1");
+    record.write(recordFile(name));
+}
+
+void TextureCache::commit(const std::string& name, FinishedFile& texture, Record record) {
+    lease(name);
+    record.set("checksum", hashFile(texture.temporaryPath(), {}));
+    texture.commitAs(textureFile(name));
+    const auto stamp = stampOf(textureFile(name));
+    if (!stamp) failWriting(textureFile(name));
+    record.setNumber("bytes", static_cast<std::int64_t>(stamp->size));
+    record.set("stamp", stamp->text());
+    if (!record.write(recordFile(name))) failWriting(recordFile(name));
+}
+
+// A lease that can be locked belongs to nobody any more.
+std::vector<std::string> TextureCache::leasedNames() const {
+    std::vector<std::string> names;
+    for (const fs::path& file : filesOf(m_folder / "leases")) {
+        const int lease = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
+        if (lease < 0) continue;
+        const bool isLeft = file != m_leaseFile && ::flock(lease, LOCK_EX | LOCK_NB) == 0 &&
+                            now() - lastModified(file) > kJustUsed;
+        if (isLeft) {
+            removeFile(file);
+        } else {
+            std::ifstream lines(file);
+            for (std::string name; std::getline(lines, name);) names.push_back(name);
+        }
+        ::close(lease);
+    }
+    return names;
+}
+
+std::vector<TextureCache::Entry> TextureCache::list() const {
+    std::vector<Entry> entries;
+    for (const fs::path& file : filesOf(m_folder / "textures")) {
+        if (file.extension() != ".tx" || isTemporary(file)) continue;
+        Entry entry;
+        entry.name = file.stem().string();
+        entry.file = file;
+        entry.lastUsed = std::max(lastModified(file), lastModified(recordFile(entry.name)));
+        if (const auto stamp = stampOf(file)) entry.bytes = stamp->size;
+        if (const auto record = Record::read(recordFile(entry.name)))
+            entry.source = record->get("source");
+        entries.push_back(std::move(entry));
+    }
+    std::ranges::stable_sort(entries, {}, &Entry::lastUsed);
+    return entries;
+}
+
+void TextureCache::removeTexture(const std::string& name) const {
+    removeFile(recordFile(name));
+    removeFile(textureFile(name));
+}
+
+void TextureCache::removeLeftovers() const {
+    const std::int64_t time = now();
+    for (const char* part : {"textures", "index"})
+        for (const fs::path& file : filesOf(m_folder / part))
+            if (isTemporary(file) && time - lastModified(file) > kOldTemporary) removeFile(file);
+    for (const fs::path& file : filesOf(m_folder / "index"))
+        if (time - lastModified(file) > kOldIndex) removeFile(file);
+    for (const fs::path& file : filesOf(m_folder / "textures"))
+        if (file.extension() == ".rec" && time - lastModified(file) > kOldIndex &&
+            !fs::exists(textureFile(file.stem().string())))
+            removeFile(file);
+}
+
+void TextureCache::makeRoom() {
+    if (!isWritable()) return;
+    removeLeftovers();
+    const std::vector<Entry> entries = list();
+    std::uint64_t bytes = 0;
+    for (const Entry& entry : entries) bytes += entry.bytes;
+    if (bytes <= m_limitBytes) return;
+    const std::vector<std::string> leased = leasedNames();
+    const std::unordered_set<std::string> used(leased.begin(), leased.end());
+    for (const Entry& entry : entries) {
+        if (bytes <= m_limitBytes) return;
+        if (used.contains(entry.name)) continue;
+        // Someone may have come to use it since.
+        if (now() - lastModified(recordFile(entry.name)) < kJustUsed) continue;
+        removeTexture(entry.name);
+        bytes -= entry.bytes;
+    }
+}
+
+std::size_t TextureCache::clear() {
+    const std::vector<std::string> leased = leasedNames();
+    const std::unordered_set<std::string> used(leased.begin(), leased.end());
+    std::size_t count = 0;
+    for (const fs::path& file : filesOf(m_folder / "textures")) {
+        const bool isOurs = file.extension() == ".tx" || file.extension() == ".rec";
+        if (!isOurs || used.contains(file.stem().string())) continue;
+        if (isTemporary(file) && now() - lastModified(file) < kOldTemporary) continue;
+        count += file.extension() == ".tx" ? 1 : 0;
+        removeFile(file);
+    }
+    for (const fs::path& file : filesOf(m_folder / "index"))
+        if (file.extension() == ".rec") removeFile(file);
+    return count;
+}
+
+std::vector<std::string> TextureCache::verify() {
+    std::vector<std::string> faults;
+    for (const Entry& entry : list()) {
+        const auto record = Record::read(recordFile(entry.name));
+        if (record && hashFile(entry.file, {}) == record->get("checksum")) continue;
+        faults.push_back(fmt::format("{}: damaged, removed", entry.file.string()));
+        removeTexture(entry.name);
+    }
+    for (const fs::path& file : filesOf(m_folder / "index")) {
+        const auto record = Record::read(file);
+        if (!record) {
+            removeFile(file);
+            continue;
+        }
+        const fs::path source = record->get("source");
+        const auto stamp = stampOf(source);
+        if (!stamp || stamp->text() != record->get("stamp")) continue;  // it is looked at anew
+        if (hashFile(source, {}) == record->get("content")) continue;
+        faults.push_back(
+            fmt::format("{}: its bytes are others than its dates say; forgotten", source.string()));
+        removeFile(file);
+    }
+    return faults;
+}
+
+}  // namespace pm::host

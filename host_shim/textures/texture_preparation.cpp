@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/textures/texture_preparation.h"
+
+#include "host_shim/colour/asked_work.h"
+#include "host_shim/pictures/host_error.h"
+#include "host_shim/textures/memory_budget.h"
+#include "host_shim/textures/picture_kind.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <charconv>
+#include <chrono>
+#include <new>
+#include <thread>
+
+namespace pm::host {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Of what textures are made and how; another number makes all of them anew.
+constexpr int kBakeVersion = 1;
+
+struct Stopped {};
+
+std::string asked(const TextureRequest& request) {
+    return fmt::format("{}\n{}\n{}\n{}", fs::absolute(request.file).lexically_normal().string(),
+                       static_cast<int>(request.kind),
+                       request.kind == TextureKind::kColour ? request.colorspace : "",
+                       static_cast<int>(request.channel));
+}
+
+// What an original's header says, kept so that it need not be opened again.
+struct Original {
+    std::string content;  // hash of its bytes
+    bool isFloatFile{};
+    PictureStatement statement;
+};
+
+Record toRecord(const Original& original, const FileStamp& stamp, const fs::path& file) {
+    Record record;
+    record.set("content", original.content);
+    record.set("source", fs::absolute(file).string());
+    record.set("stamp", stamp.text());
+    record.setNumber("float", original.isFloatFile ? 1 : 0);
+    record.setNumber("xyz", original.statement.isXyz ? 1 : 0);
+    record.set("profile", original.statement.profile);
+    for (std::size_t i = 0; i < original.statement.spaces.size(); ++i)
+        record.set(fmt::format("space{}", i), original.statement.spaces[i]);
+    if (original.statement.chromaticities)
+        record.set("chromaticities",
+                   fmt::format("{}", fmt::join(*original.statement.chromaticities, " ")));
+    return record;
+}
+
+Original toOriginal(const Record& record) {
+    Original original;
+    original.content = record.get("content");
+    original.isFloatFile = record.number("float") != 0;
+    original.statement.isXyz = record.number("xyz") != 0;
+    original.statement.profile = record.get("profile");
+    for (std::size_t i = 0; !record.get(fmt::format("space{}", i)).empty(); ++i)
+        original.statement.spaces.push_back(record.get(fmt::format("space{}", i)));
+    const std::string figures = record.get("chromaticities");
+    std::array<float, 8> values{};
+    std::size_t count = 0;
+    for (const char* at = figures.data(); count < 8 && at < figures.data() + figures.size();) {
+        const auto [end, error] =
+            std::from_chars(at, figures.data() + figures.size(), values[count]);
+        if (error != std::errc()) break;
+        ++count;
+        at = end + 1;
+    }
+    if (count == 8) original.statement.chromaticities = values;
+    return original;
+}
+
+Record toRecord(const TextureFacts& facts, const fs::path& file) {
+    Record record;
+    record.set("source", fs::absolute(file).string());
+    record.setNumber("width", facts.width);
+    record.setNumber("height", facts.height);
+    record.setNumber("channels", facts.channels);
+    record.set("texels", fmt::format("{:016x}{:016x}", facts.texelHash[1], facts.texelHash[0]));
+    record.setNumber("negative", facts.bad.negative);
+    record.setNumber("notFinite", facts.bad.notFinite);
+    record.set("note", facts.note);
+    return record;
+}
+
+TextureFacts toFacts(const Record& record) {
+    TextureFacts facts;
+    facts.width = static_cast<std::int32_t>(record.number("width"));
+    facts.height = static_cast<std::int32_t>(record.number("height"));
+    facts.channels = static_cast<std::int32_t>(record.number("channels"));
+    const std::string texels = record.get("texels");
+    if (texels.size() == 32) {
+        std::from_chars(texels.data(), texels.data() + 16, facts.texelHash[1], 16);
+        std::from_chars(texels.data() + 16, texels.data() + 32, facts.texelHash[0], 16);
+    }
+    facts.bad = {record.number("negative"), record.number("notFinite")};
+    facts.note = record.get("note");
+    return facts;
+}
+
+// A file that is written to again within the same tick of the system's clock keeps its stamp, so
+// one as young as that is no ground to go by yet.
+void waitUntilStampTells(const FileStamp& stamp) {
+    constexpr std::int64_t kTicks = 50'000'000;  // ns
+    const auto now = std::chrono::duration_cast<std::chrono::nanoseconds>(
+                         std::chrono::system_clock::now().time_since_epoch())
+                         .count();
+    const std::int64_t age = now - std::max(stamp.modified, stamp.changed);
+    if (age < kTicks)
+        std::this_thread::sleep_for(
+            std::chrono::nanoseconds(std::min(kTicks, kTicks - std::max<std::int64_t>(age, 0))));
+}
+
+}  // namespace
+
+// One texture on its way.
+struct TexturePreparer::Work {
+    TextureRequest request;
+    std::string key;
+    Original original;
+    SpaceConversion conversion;
+    Result result;
+    bool wasOpened{}, wasFound{};
+
+    void findOriginal(TextureCache& cache, const std::function<void()>& goOn);
+    void makeTexture(TextureCache& cache, MemoryBudget& budget, const std::function<void()>& goOn);
+    TextureFacts bake(TextureCache& cache, const std::string& name, MemoryBudget& budget,
+                      const std::function<void()>& goOn);
+};
+
+// What the threads have in common; outlives this preparer where one is left behind.
+struct TexturePreparer::Shared {
+    Shared(std::vector<Work> given, std::shared_ptr<TextureCache> from, std::uint64_t bytes)
+        : works(std::move(given)), cache(std::move(from)), budget(bytes) {}
+
+    std::vector<Work> works;
+    std::shared_ptr<TextureCache> cache;
+    MemoryBudget budget;
+    std::atomic<bool> stops{false};
+
+    // step: done for each work that has not failed, by several threads.
+    template <typename Step>
+    void doAll(std::uint32_t threads, const Step& step) {
+        std::atomic<std::size_t> next{0};
+        const auto run = [&] {
+            for (std::size_t i = next++; i < works.size() && !stops; i = next++) {
+                Work& work = works[i];
+                if (work.result.error) continue;
+                try {
+                    step(work);
+                } catch (const Stopped&) {
+                    return;
+                } catch (const std::bad_alloc&) {
+                    work.result.error = std::make_exception_ptr(HostError(
+                        ExitCode::kBadInput,
+                        fmt::format("texture {}: out of memory", work.request.file.string())));
+                } catch (...) {
+                    work.result.error = std::current_exception();
+                }
+            }
+        };
+        std::vector<std::jthread> helpers;
+        try {
+            while (helpers.size() + 1 < std::min<std::size_t>(threads, works.size()))
+                helpers.emplace_back(run);
+        } catch (const std::system_error&) {
+            // Those that there are do it.
+        }
+        run();
+    }
+};
+
+void TexturePreparer::Work::findOriginal(TextureCache& cache, const std::function<void()>& goOn) {
+    for (int tries = 0;; ++tries) {
+        const auto stamp = stampOf(request.file);
+        if (!stamp) {
+            pictureReader(request.file);  // throws what is wrong
+            throw HostError(ExitCode::kFile,
+                            fmt::format("texture {} can't be read", request.file.string()));
+        }
+        const std::string at = hashText(fmt::format("{}\n{}\n{}\n{}", kBakeVersion, stamp->text(),
+                                                    static_cast<int>(request.kind),
+                                                    static_cast<int>(request.channel)));
+        if (const auto record = cache.original(at); record && !record->get("content").empty()) {
+            original = toOriginal(*record);
+            return;
+        }
+        wasOpened = true;
+        waitUntilStampTells(*stamp);
+        const PictureRows rows(request.file, request.kind, request.channel);
+        original = {hashFile(request.file, goOn), rows.isFloatFile(), rows.statement()};
+        // One that is being written to is taken as it is now, and not remembered.
+        constexpr int kMostTries = 3;
+        const bool isSteady = stampOf(request.file) == stamp;
+        if (isSteady) cache.putOriginal(at, toRecord(original, *stamp, request.file));
+        if (isSteady || tries == kMostTries) return;
+    }
+}
+
+TextureFacts TexturePreparer::Work::bake(TextureCache& cache, const std::string& name,
+                                         MemoryBudget& budget, const std::function<void()>& goOn) {
+    wasOpened = true;
+    auto rows = std::make_unique<PictureRows>(request.file, request.kind, request.channel);
+    auto baking = std::make_unique<TextureBake>(*rows, request.kind, conversion);
+    const std::uint64_t need = baking->memoryBytes();
+    if (need > budget.total()) {
+        constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
+        throw HostError(
+            ExitCode::kBadInput,
+            fmt::format("texture {} of {} x {} texels needs {:.2f} GiB to be read; {:.2f} GiB are "
+                        "left (--memory-limit)",
+                        request.file.string(), rows->width(), rows->height(),
+                        static_cast<double>(need) / kGib,
+                        static_cast<double>(budget.total()) / kGib));
+    }
+    const auto share = budget.take(need, goOn);
+    TextureFacts facts;
+    if (baking->needsNoConversion()) {
+        if (baking->inspect(goOn, facts)) {
+            result.texture.file = fs::absolute(request.file);
+            cache.commitAsItIs(name, toRecord(facts, request.file));
+            return facts;
+        }
+        rows = std::make_unique<PictureRows>(request.file, request.kind, request.channel);
+        baking = std::make_unique<TextureBake>(*rows, request.kind, conversion);
+    }
+    const fs::path path = cache.textureFile(name);
+    FinishedFile finished(cache.nameForNew());
+    CheckedFile file(finished.temporaryPath(), path);
+    facts = baking->bake(file, finished.temporaryPath(), path, goOn);
+    cache.commit(name, finished, toRecord(facts, request.file));
+    result.texture.file = cache.textureFile(name);
+    return facts;
+}
+
+void TexturePreparer::Work::makeTexture(TextureCache& cache, MemoryBudget& budget,
+                                        const std::function<void()>& goOn) {
+    const std::string hash =
+        hashText(fmt::format("{}\n{}\n{}\n{}\n{}", kBakeVersion, original.content,
+                             static_cast<int>(request.kind), static_cast<int>(request.channel),
+                             request.kind == TextureKind::kColour ? conversion.cacheId() : ""));
+    constexpr std::size_t kLongestStem = 100;
+    const std::string name = request.file.stem().string().substr(0, kLongestStem) + "." + hash;
+    BakedTexture& texture = result.texture;
+    if (const auto record = cache.find(name)) {
+        wasFound = true;
+        texture.facts = toFacts(*record);
+        texture.file =
+            record->get("asItIs") == "1" ? fs::absolute(request.file) : cache.textureFile(name);
+        return;
+    }
+    texture.facts = bake(cache, name, budget, goOn);
+}
+
+TexturePreparer::TexturePreparer(const ColourPipeline& colour, std::shared_ptr<TextureCache> cache,
+                                 const TextureSettings& settings, std::function<void()> goOn)
+    : m_colour(colour), m_cache(std::move(cache)), m_settings(settings), m_goOn(std::move(goOn)) {}
+
+void TexturePreparer::decideSpaces(std::vector<Work>& works) const {
+    for (Work& work : works) {
+        BakedTexture& texture = work.result.texture;
+        texture.space.isData = work.request.kind != TextureKind::kColour;
+        if (work.result.error || texture.space.isData) continue;
+        try {
+            texture.space = m_colour.textureSpace(work.request.file, work.original.isFloatFile,
+                                                  work.request.colorspace, work.original.statement);
+            work.conversion = m_colour.textureToRendering(texture.space);
+            if (texture.space.decidedBy == "default")
+                texture.profile = work.original.statement.profile;
+        } catch (const HostError&) {
+            work.result.error = std::current_exception();
+        }
+    }
+}
+
+void TexturePreparer::prepare(const std::vector<TextureRequest>& requests) {
+    std::vector<Work> works;
+    for (const TextureRequest& request : requests) {
+        std::string key = asked(request);
+        if (m_results.contains(key) ||
+            std::ranges::any_of(works, [&](const Work& work) { return work.key == key; }))
+            continue;
+        Work work;
+        work.request = request;
+        work.key = std::move(key);
+        works.push_back(std::move(work));
+    }
+    if (works.empty()) return;
+    const auto shared = std::make_shared<Shared>(std::move(works), m_cache, m_settings.memoryBytes);
+    const std::uint32_t threads = std::max(1u, m_settings.threads);
+    const auto each = [&](auto step) {
+        try {
+            callAsking(m_goOn, [shared, threads, step] {
+                const std::function<void()> goOn = [shared] {
+                    if (shared->stops) throw Stopped();
+                };
+                shared->doAll(threads, [&](Work& work) { step(*shared, work, goOn); });
+            });
+        } catch (...) {
+            shared->stops = true;
+            throw;
+        }
+    };
+    each([](Shared& all, Work& work, const std::function<void()>& goOn) {
+        work.findOriginal(*all.cache, goOn);
+    });
+    decideSpaces(shared->works);
+    each([](Shared& all, Work& work, const std::function<void()>& goOn) {
+        work.makeTexture(*all.cache, all.budget, goOn);
+    });
+    bool hasNew = false;
+    for (Work& work : shared->works) {
+        m_counts.originalsOpened += work.wasOpened ? 1 : 0;
+        m_counts.found += work.wasFound ? 1 : 0;
+        const bool isNew = !work.wasFound && !work.result.error;
+        m_counts.converted += isNew ? 1 : 0;
+        hasNew = hasNew || isNew;
+        m_results.emplace(work.key, std::move(work.result));
+    }
+    if (hasNew) m_cache->makeRoom();
+}
+
+const BakedTexture& TexturePreparer::texture(const TextureRequest& request) {
+    prepare({request});
+    const Result& result = m_results.at(asked(request));
+    if (result.error) std::rethrow_exception(result.error);
+    return result.texture;
+}
+
+}  // namespace pm::host

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/colour/colour_pipeline.h"
+#include "host_shim/textures/texture_bake.h"
+#include "host_shim/textures/texture_cache.h"
+
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace pm::host {
+
+struct TextureRequest {
+    std::filesystem::path file{};
+    TextureKind kind{TextureKind::kColour};
+    std::string colorspace{};  // -colorspace of the map line; empty when it has none
+    char channel{};            // of -imfchan: r g b m l z, or 0
+};
+
+struct BakedTexture {
+    std::filesystem::path file;  // to be looked up: in the cache, or the picture itself
+    TextureSpace space;          // what the picture was taken to be in
+    TextureFacts facts;
+    std::string profile;  // an embedded ICC profile that nobody obeyed; empty: none
+};
+
+// Where textures are kept, and what making them may take.
+struct TextureSettings {
+    std::uint32_t threads{1};
+    std::uint64_t memoryBytes{};  // that may be held while they are made
+};
+
+// How many files were opened for it.
+struct TextureCounts {
+    std::uint64_t originalsOpened{};  // to be hashed, looked at or converted
+    std::uint64_t converted{};
+    std::uint64_t found{};  // in the cache
+};
+
+// Textures of pictures, from the cache where they are there, else made, several at once.
+class TexturePreparer {
+  public:
+    // cache: also owned by threads that were left behind. goOn: called again and again while
+    // textures are prepared; what it throws ends that soon. colour must outlive the preparer.
+    TexturePreparer(const ColourPipeline& colour, std::shared_ptr<TextureCache> cache,
+                    const TextureSettings& settings, std::function<void()> goOn = {});
+
+    // Prepares all that are not there yet. What fails is thrown by texture(). Threads: one at a
+    // time.
+    void prepare(const std::vector<TextureRequest>& requests);
+    // One of them; prepares it now where that has not been done. Errors: HostError kFile when the
+    // picture is missing or the texture can't be written; kBadInput when it is broken, no picture,
+    // too large for the memory, or its colour space is unknown. The text names the file.
+    const BakedTexture& texture(const TextureRequest& request);
+    const TextureCounts& counts() const { return m_counts; }
+
+  private:
+    struct Work;
+    struct Shared;
+    void decideSpaces(std::vector<Work>& works) const;
+
+    const ColourPipeline& m_colour;
+    std::shared_ptr<TextureCache> m_cache;
+    TextureSettings m_settings;
+    std::function<void()> m_goOn;
+    struct Result {
+        BakedTexture texture;
+        std::exception_ptr error;
+    };
+    std::map<std::string, Result> m_results;
+    TextureCounts m_counts;
+};
+
+}  // namespace pm::host

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Pictures that are hard to read, and the folder of prepared ones, as a user sees them.
+#include "tests/robust/host_process.h"
+
+#include <fmt/format.h>
+
+namespace pm::host::test {
+namespace {
+
+class Textures : public HostProcess {
+  protected:
+    void useForWalls(const std::string& picture) const {
+        write("box.mtl", "newmtl light\nKd 0 0 0\nKe 5 5 5\nnewmtl wall\nmap_Kd " + picture + "\n");
+    }
+    Outcome look(const std::vector<std::string>& more) const {
+        std::vector<std::string> arguments{"box.obj", "--explain"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return run(arguments);
+    }
+};
+
+TEST_F(Textures, ASecondRunOpensNoOriginal) {
+    addTexture();
+    const std::string first = look({"-v"}).err, second = look({"-v"}).err;
+    EXPECT_NE(first.find("textures: 0 found prepared, 1 made, 1 originals opened"),
+              std::string::npos)
+        << first;
+    EXPECT_NE(second.find("textures: 1 found prepared, 0 made, 0 originals opened"),
+              std::string::npos)
+        << second;
+}
+
+TEST_F(Textures, TheCacheIsListedCheckedAndCleared) {
+    addTexture();
+    ASSERT_EQ(look({"--texture-cache", "made here"}).exitCode, 0);
+    const Outcome list = run({"cache", "--list", "--texture-cache", "made here"});
+    EXPECT_EQ(list.exitCode, 0) << list.err;
+    EXPECT_NE(list.out.find("wall.png"), std::string::npos) << list.out;
+    EXPECT_NE(list.out.find("1 textures"), std::string::npos) << list.out;
+    for (const auto& entry : fs::directory_iterator(path("made here") / "textures"))
+        if (entry.path().extension() == ".tx")
+            std::ofstream(entry.path(), std::ios::binary) << "damage";
+    const Outcome verify = run({"cache", "--verify", "--texture-cache", "made here"});
+    EXPECT_EQ(verify.exitCode, 3);
+    EXPECT_NE(verify.out.find("damaged"), std::string::npos) << verify.out;
+    ASSERT_EQ(look({"--texture-cache", "made here"}).exitCode, 0);
+    const Outcome clear = run({"cache", "--clear", "--texture-cache", "made here"});
+    EXPECT_NE(clear.out.find("1 textures removed"), std::string::npos) << clear.out;
+    EXPECT_EQ(run({"cache"}).exitCode, 2);
+    EXPECT_EQ(run({"cache", "--list", "--texture-cache", "nowhere"}).exitCode, 4);
+}
+
+TEST_F(Textures, WhereNothingCanBeKept) {
+    addTexture();
+    write("in_the_way", "");
+    const Outcome quiet =
+        run({"box.obj", "--explain"}, nullptr, {{"XDG_CACHE_HOME", path("in_the_way").string()}});
+    EXPECT_EQ(quiet.exitCode, 0) << quiet.err;
+    EXPECT_EQ(quiet.err.find("textures"), std::string::npos) << quiet.err;
+    EXPECT_EQ(textureFolder(), "");
+    const Outcome told = look({"--texture-cache", "in_the_way"});
+    EXPECT_EQ(told.exitCode, 0) << told.err;
+    EXPECT_NE(told.err.find("in_the_way"), std::string::npos) << told.err;
+}
+
+}  // namespace
+}  // namespace pm::host::test
