@@ -19,7 +19,7 @@ namespace pm::host {
 // reads numbers through the locale.
 struct Typed {
     std::string scene, frame, size, eye, lookAt, up, fov, crop, aa, seed, subdivide, onlyPixel,
-        errorLimit, progress, checkpoint, photonMap;
+        errorLimit, progress, checkpoint, photonMap, exposure, cameraLight;
     std::vector<std::string> outputs, context, layers, parts;
     std::map<std::string, std::string> settings;  // option -> text
 };
