@@ -81,9 +81,11 @@ PluginScene::~PluginScene() {
     if (m_handle != nullptr) m_context.api().releaseScene(m_handle);
 }
 
-void PluginScene::build(const SceneData& data, const std::string& sceneName, Subdivide subdivide,
-                        const CameraPose& camera, const ColourPipeline& colour,
+void PluginScene::build(const Request& request, const ColourPipeline& colour,
                         MaterialBuilder& materials) {
+    const SceneData& data = request.data;
+    const std::string& sceneName = request.sceneName;
+    const CameraPose& camera = request.camera;
     const PmrApi& api = m_context.api();
     auto desc = PMR_INIT(PmrSceneDesc);
     desc.renderingSpace = colour.renderingSpace().c_str();
@@ -108,15 +110,9 @@ void PluginScene::build(const SceneData& data, const std::string& sceneName, Sub
     }
     for (const MeshData& mesh : data.meshes) {
         throwIfInterrupted();
-        addMesh(mesh, data, sceneName, subdivide, built);
+        addMesh(mesh, data, sceneName, request.subdivide, built);
     }
-    if (!data.hasLight()) {
-        addDefaultLight(camera, data.bounds);
-        m_log.warning(
-            static_cast<int>(Warning::kDefaultLight),
-            fmt::format("{}: no light (no material with Ke); a point light at the camera is added",
-                        sceneName));
-    }
+    if (request.cameraLight) addCameraLight(camera, data.bounds);
     auto view = PMR_INIT(PmrCameraDesc);
     view.kind = PMR_CAMERA_PERSPECTIVE;
     view.transforms = camera.transform.data();
@@ -175,7 +171,7 @@ void PluginScene::addMesh(const MeshData& mesh, const SceneData& data, const std
 
 // Irradiance 2 on what faces the camera at the middle of the scene: a white wall there reflects a
 // radiance of 2/pi, and light from wall to wall adds to that.
-void PluginScene::addDefaultLight(const CameraPose& camera, const Bounds& bounds) {
+void PluginScene::addCameraLight(const CameraPose& camera, const Bounds& bounds) {
     double squaredDistance = 0;
     const auto centre = bounds.centre();
     for (std::size_t i = 0; i < 3; ++i) {
@@ -188,8 +184,8 @@ void PluginScene::addDefaultLight(const CameraPose& camera, const Bounds& bounds
     light.transformCount = 1;
     const double intensity = 2 * (squaredDistance > 0 ? squaredDistance : 1.0);  // W/sr
     std::ranges::fill(light.emission, static_cast<float>(intensity));
-    light.name = "default light";
-    m_context.check(m_context.api().addLight(m_handle, &light), "default light");
+    light.name = "camera light";
+    m_context.check(m_context.api().addLight(m_handle, &light), "camera light");
 }
 
 }  // namespace pm::host

@@ -19,10 +19,15 @@ class PluginScene {
     PluginScene(const PluginScene&) = delete;
     PluginScene& operator=(const PluginScene&) = delete;
 
-    // Hands everything over and commits it. sceneName is for messages. A scene without any light
-    // gets one at the camera, with a warning. Errors: those of the plugin, as exitCodeOf.
-    void build(const SceneData& data, const std::string& sceneName, Subdivide subdivide,
-               const CameraPose& camera, const ColourPipeline& colour, MaterialBuilder& materials);
+    struct Request {
+        const SceneData& data;
+        const std::string& sceneName;  // for messages
+        Subdivide subdivide{};
+        const CameraPose& camera;
+        bool cameraLight{};  // with a point light at the camera, besides the scene's own
+    };
+    // Hands everything over and commits it. Errors: those of the plugin, as exitCodeOf.
+    void build(const Request& request, const ColourPipeline& colour, MaterialBuilder& materials);
 
     PmrScene handle() const { return m_handle; }
     const PluginContext& context() const { return m_context; }
@@ -31,7 +36,7 @@ class PluginScene {
     void addMesh(const MeshData& mesh, const SceneData& data, const std::string& sceneName,
                  Subdivide subdivide, const std::vector<PmrMaterial>& materials);
     PmrMesh createMesh(const MeshData& mesh, Subdivide subdivide, const std::string& where);
-    void addDefaultLight(const CameraPose& camera, const Bounds& bounds);
+    void addCameraLight(const CameraPose& camera, const Bounds& bounds);
 
     const PluginContext& m_context;
     Log& m_log;

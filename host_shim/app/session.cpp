@@ -165,8 +165,8 @@ void Session::noteMaterialFiles(const SceneData& data) {
 }
 
 // Reads the scene's file and builds what is rendered; what was read is free again at the end.
-void Session::buildScene(const ColourPipeline& colour, const PluginContext& context,
-                         MaterialBuilder& materials, PluginScene& scene) {
+void Session::buildScene(const ColourPipeline& colour, MaterialBuilder& materials,
+                         std::optional<PluginScene>& scene) {
     const WarningSink sink = [this](Warning code, const std::string& text) { warn(code, text); };
     SceneData data;
     phase("readSceneSeconds", [&] {
@@ -179,10 +179,7 @@ void Session::buildScene(const ColourPipeline& colour, const PluginContext& cont
     m_mayWriteStatistics = false;
     checkNotInputs(allOutputs(m_options), inputsOf(m_options, &data));
     m_mayWriteStatistics = true;
-    CameraOptions cameraOptions = m_options.camera;
-    cameraOptions.fromNegativeZ = opensTowardsNegativeZ(data);
-    const CameraPose camera = frameCamera(cameraOptions, data.bounds,
-                                          static_cast<double>(m_options.width) / m_options.height);
+    const CameraPose camera = frameScene(data);
     if (camera.upWasReplaced) {
         warn(Warning::kCamera, "--up is parallel to the view; another direction is taken");
     }
@@ -192,10 +189,7 @@ void Session::buildScene(const ColourPipeline& colour, const PluginContext& cont
                               data.meshes.size(), data.faceCount, data.materials.size(),
                               data.materialFiles.size(), camera.eye[0], camera.eye[1],
                               camera.eye[2], camera.lookAt[0], camera.lookAt[1], camera.lookAt[2]));
-    phase("buildSceneSeconds", [&] {
-        const InterruptWatch watch([&] { context.api().cancelBuilds(context.handle(), 1); });
-        scene.build(data, m_options.scene.string(), m_options.subdivide, camera, colour, materials);
-    });
+    buildLit(data, camera, colour, materials, scene);
     const TextureCounts textures = materials.textureCounts();
     if (textures.found + textures.converted > 0)
         m_log.message(Level::kDebug,
@@ -216,10 +210,12 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
                                    textureSettings(m_options), throwIfInterrupted);
         },
         sink);
-    PluginScene scene(context, m_log);
-    buildScene(colour, context, materials, scene);
+    std::optional<PluginScene> scene;
+    scene.emplace(context, m_log);
+    buildScene(colour, materials, scene);
+    if (!m_options.explain && !m_options.photonsOnly) expose(*scene, colour, display);
     Progress progress(m_options.progress, m_options.quiet, m_log);
-    RenderRun run(scene, m_options, colourIdentity(colour), m_log, progress,
+    RenderRun run(*scene, m_options, colourIdentity(colour), m_log, progress,
                   m_options.report.empty() ? nullptr : &m_report.bucketTimes());
     std::optional<TiledOutput> tiles;
     if (run.deliversBuckets()) {

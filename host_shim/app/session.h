@@ -9,6 +9,7 @@
 #include "host_shim/app/tiled_output.h"
 #include "host_shim/cli/options.h"
 #include "host_shim/colour/colour_pipeline.h"
+#include "host_shim/colour/exposure.h"
 #include "host_shim/pictures/picture.h"
 
 #include <functional>
@@ -31,13 +32,24 @@ class Session {
     int render();
     void checkBeforeReading();
     void readReference(const ColourPipeline& colour);
-    void buildScene(const ColourPipeline& colour, const PluginContext& context,
-                    MaterialBuilder& materials, PluginScene& scene);
+    void buildScene(const ColourPipeline& colour, MaterialBuilder& materials,
+                    std::optional<PluginScene>& scene);
     void noteMaterialFiles(const SceneData& data);
     int renderScene(const ColourPipeline& colour, const PluginContext& context);
     int merge();
     void checkBeforeMerging();
     PmrContextDesc contextDesc(const Plugin& plugin);
+    // Camera, light and exposure (session_look.cpp).
+    CameraPose frameScene(const SceneData& data);
+    void buildLit(const SceneData& data, const CameraPose& camera, const ColourPipeline& colour,
+                  MaterialBuilder& materials, std::optional<PluginScene>& scene);
+    const Picture& pilot(const PluginScene& scene, const ColourPipeline& colour);
+    bool measuresExposure(const ColourPipeline& colour) const;
+    void expose(const PluginScene& scene, const ColourPipeline& colour,
+                std::optional<DisplayTransform>& display);
+    void exposeAsParts(const std::string& notes, const ColourPipeline& colour,
+                       DisplayTransform& display);
+    void tellExposure();
     // What comes after the render (session_pictures.cpp).
     [[noreturn]] static void throwStopped(PmrStatus status);
     int finishPhotons(PmrStatus status);
@@ -68,6 +80,8 @@ class Session {
     Statistics m_statistics;
     Report m_report;  // gathers only where one is wanted
     std::optional<Picture> m_reference;
+    std::optional<Picture> m_pilot;  // of the scene as it is rendered; see pilot()
+    Exposure m_exposure;             // of display pictures
     // Statistics and report; not before it is known that they overwrite no input.
     bool m_mayWriteStatistics{};
 };

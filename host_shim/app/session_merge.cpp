@@ -70,7 +70,10 @@ int Session::merge() {
     m_statistics.renderingSpace = colour.renderingSpace();
     if (!m_options.reference.empty()) readReference(colour);
     std::optional<DisplayTransform> display;
-    if (wantsDisplay(m_options)) display = colour.displayTransform();
+    if (wantsDisplay(m_options)) {
+        display = colour.displayTransform();
+        exposeAsParts(run.settingText("hostNote"), colour, *display);
+    }
     m_statistics.library = run.statistics();
     return finish(run, PMR_OK, colour, display);
 }

@@ -139,7 +139,9 @@ void Session::writeOutput(const fs::path& file, const Picture& picture,
     if (bad > 0) {
         warn(Warning::kOutput, fmt::format("{}: {} values were not finite", file.string(), bad));
     }
-    writeDisplayPicture(file, result.picture);
+    DisplayWriteOptions how;
+    how.exposure = exposureText(m_exposure);
+    writeDisplayPicture(file, result.picture, how);
 }
 
 int Session::compareWithReference(const Picture& picture) {

@@ -102,6 +102,7 @@ std::string Statistics::toJson(const Log& log) const {
     mine["versions"] = {{"pm_host", PM_VERSION}, {"plugin", pluginVersion}};
     mine["pluginFile"] = pluginFile;
     mine["colour"] = {{"config", colourConfig}, {"renderingSpace", renderingSpace}};
+    if (exposureStops) mine["colour"]["exposureStops"] = *exposureStops;
     mine["scene"] = scene;
     mine["materialFiles"] = Json::array();
     for (const MaterialFile& library : materialFiles)

@@ -25,6 +25,7 @@ struct Statistics {
     std::string pluginVersion;
     std::string colourConfig;
     std::string renderingSpace;
+    std::optional<double> exposureStops;         // of display pictures, where there are any
     std::vector<std::string> outputs;            // that were written
     std::map<std::string, double> phaseSeconds;  // readSceneSeconds, ...
     // passes done, error target, time limit, finished (without a render), error limit, interrupted,

@@ -7,6 +7,7 @@
 #include "host_shim/cli/option_values.h"
 #include "host_shim/cli/piece_options.h"
 #include "host_shim/cli/unknown_words.h"
+#include "host_shim/colour/exposure.h"
 #include "host_shim/ingest/text_lines.h"
 #include "host_shim/pictures/picture_io.h"
 
@@ -141,6 +142,20 @@ void readFiles(const Typed& typed, std::optional<std::int64_t> frame, Options& o
     }
 }
 
+ExposureOption exposureValue(const Typed& typed) {
+    ExposureOption exposure;
+    exposure.kind = typed.exposure.empty()     ? ExposureOption::Kind::kNotGiven
+                    : typed.exposure == "auto" ? ExposureOption::Kind::kAuto
+                                               : ExposureOption::Kind::kStops;
+    if (exposure.kind == ExposureOption::Kind::kStops)
+        exposure.stops = numberValue("--exposure", typed.exposure, -kMostExposureStops,
+                                     kMostExposureStops, " or auto");
+    const auto buckets = typed.settings.find("--buckets");
+    exposure.mayBeMeasured = typed.frame.empty() && typed.crop.empty() &&
+                             (buckets == typed.settings.end() || buckets->second.empty());
+    return exposure;
+}
+
 void addDefaultOutput(Options& options) {
     if (options.outputs.empty() && !options.onlyPixel && !options.photonsOnly &&
         !options.scene.empty()) {
@@ -161,6 +176,9 @@ void readChoices(const Typed& typed, Options& options) {
                                               {"none", ProgressStyle::kNone}});
     chosen<int>("--list", options.list, 0,
                 {{"views", 0}, {"spaces", 0}, {"aovs", 0}, {"orders", 0}, {"settings", 0}});
+    options.cameraLight = chosen<CameraLight>(
+        "--camera-light", typed.cameraLight, CameraLight::kAuto,
+        {{"auto", CameraLight::kAuto}, {"on", CameraLight::kOn}, {"off", CameraLight::kOff}});
     for (const std::string& layers : typed.layers) {
         options.layers += (options.layers.empty() ? "" : ",") + layers;
     }
@@ -257,6 +275,7 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
         frame = integerValue("--frame", typed.frame, 0, std::numeric_limits<std::int32_t>::max());
     }
     readFiles(typed, frame, options);
+    options.exposure = exposureValue(typed);
     readChoices(typed, options);
     if (isMerge) {
         checkMerge(options);

@@ -94,6 +94,9 @@ void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
         ->check(valueFault);
     addUntrusted(app, options);
+    addText(app, "--camera-light", typed.cameraLight, "auto|on|off",
+            "a point light at the camera; auto: where the scene has no light, or where no --eye is "
+            "given and its own light reaches nothing that is seen (auto)");
     app.add_option("--aov", typed.layers, "extra channels in the EXR, see --list aovs")
         ->type_name("NAME[,NAME]")
         ->expected(1)
@@ -152,6 +155,10 @@ void addColourOptions(CLI::App& app, Typed& typed, Options& options) {
             "space of colour textures (by their files: float linear Rec.709, integer sRGB)");
     addText(app, "--display", colour.display, "NAME", "see --list views (the config's own)");
     addText(app, "--view", colour.view, "NAME", "see --list views (the display's own)");
+    addText(
+        app, "--exposure", typed.exposure, "STOPS|auto",
+        "of display pictures, from -20 to 20; auto: measured on a small picture of the whole "
+        "frame (auto; 0 with --view, --ocio, $OCIO, --crop, --buckets, --frame or --reference)");
     addText(app, "--look", colour.look, "NAME", "look to apply before the view (none)");
     app.add_option("--context", typed.context, "variable of the config, may be repeated")
         ->type_name("KEY=VALUE")

@@ -19,7 +19,8 @@ namespace pm::host {
 // reads numbers through the locale.
 struct Typed {
     std::string scene, frame, size, eye, lookAt, up, fov, crop, aa, seed, subdivide, onlyPixel,
-        errorLimit, progress, checkpoint, photonMap, mtlDialect, textureCache, textureCacheSize;
+        errorLimit, progress, checkpoint, photonMap, mtlDialect, textureCache, textureCacheSize,
+        exposure, cameraLight;
     std::vector<std::string> outputs, context, layers, parts, searchPaths;
     std::map<std::string, std::string> settings;  // option -> text
 };

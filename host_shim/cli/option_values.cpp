@@ -81,10 +81,11 @@ Pattern findPattern(const std::string& name) {
 
 }  // namespace
 
-double numberValue(const std::string& option, std::string_view text, double low, double high) {
+double numberValue(const std::string& option, std::string_view text, double low, double high,
+                   const std::string& orElse) {
     double value = 0;
     if (!parseNumber(text, value) || !(value >= low && value <= high)) {
-        refuse(option, text, fmt::format("a number in [{}, {}] is wanted", low, high));
+        refuse(option, text, fmt::format("a number in [{}, {}]{} is wanted", low, high, orElse));
     }
     return value;
 }

@@ -15,7 +15,9 @@ namespace pm::host {
 // Values of options. Every error is kUsage and says option, value and what is allowed. Numbers have
 // a dot in any locale.
 
-double numberValue(const std::string& option, std::string_view text, double low, double high);
+// orElse: what is allowed besides, as " or auto".
+double numberValue(const std::string& option, std::string_view text, double low, double high,
+                   const std::string& orElse = {});
 std::int64_t integerValue(const std::string& option, std::string_view text, std::int64_t low,
                           std::int64_t high);
 std::array<double, 3> pointValue(const std::string& option, std::string_view text);        // x,y,z

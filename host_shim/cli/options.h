@@ -17,6 +17,14 @@
 namespace pm::host {
 
 enum class Subdivide { kAll, kTagged, kNone };
+// --exposure, and whether its default may be measured: not where several pictures are to match.
+struct ExposureOption {
+    enum class Kind { kNotGiven, kStops, kAuto };
+    Kind kind{Kind::kNotGiven};
+    double stops{};
+    bool mayBeMeasured{};
+};
+enum class CameraLight { kAuto, kOn, kOff };
 enum class ProgressStyle { kAuto, kBar, kPlain, kJson, kAlf, kNone };
 
 // A setting of the library that the command line gave a value to.
@@ -42,6 +50,8 @@ struct Options {
     MaterialRules materials;
     std::string layers;  // separated by commas
     ColourOptions colour;
+    ExposureOption exposure;
+    CameraLight cameraLight{CameraLight::kAuto};
     std::filesystem::path reference;
     std::optional<double> errorLimit;
     std::string statistics;  // file, "-" = standard output, empty = none

@@ -34,6 +34,10 @@ ColourPipeline::~ColourPipeline() = default;
 ColourPipeline::ColourPipeline(ColourPipeline&&) noexcept = default;
 ColourPipeline& ColourPipeline::operator=(ColourPipeline&&) noexcept = default;
 
+bool ColourPipeline::hasBuiltInConfig() const {
+    return m_state->config.isBuiltIn;
+}
+
 const std::string& ColourPipeline::configName() const {
     return m_state->config.name;
 }

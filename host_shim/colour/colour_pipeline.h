@@ -83,6 +83,7 @@ class ColourPipeline {
 
     // Path of the config, or "built-in".
     const std::string& configName() const;
+    bool hasBuiltInConfig() const;  // neither --ocio nor $OCIO gave one
     // Identifies config and context variables; part of the hash of a render.
     std::string cacheId() const;
     // Canonical name in the config.

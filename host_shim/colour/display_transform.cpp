@@ -23,7 +23,9 @@ DisplayCleaning DisplayTransform::apply(std::span<float> values, int channelsPer
     DisplayCleaning report;
     const auto channels = static_cast<std::size_t>(channelsPerPixel);
     for (std::size_t i = 0; i + 2 < values.size(); i += channels) {
-        for (std::size_t c = 0; c < 3; ++c) values[i + c] = cleaned(values[i + c], report);
+        for (std::size_t c = 0; c < 3; ++c)
+            values[i + c] = std::clamp(m_gain * cleaned(values[i + c], report),
+                                       -kLargestDisplayInput, kLargestDisplayInput);
     }
     m_conversion.apply(values, channelsPerPixel);
     for (std::size_t i = 0; i + 2 < values.size(); i += channels) {

@@ -4,6 +4,7 @@
 
 #include "host_shim/colour/space_conversion.h"
 
+#include <cmath>
 #include <cstdint>
 #include <span>
 
@@ -24,12 +25,16 @@ class DisplayTransform {
   public:
     explicit DisplayTransform(SpaceConversion conversion) : m_conversion(std::move(conversion)) {}
 
-    // In place, layout as in SpaceConversion::apply. Cleans, applies the view, clamps to [0,1].
-    // Threads: may be called at once on different pixels.
+    // In place, layout as in SpaceConversion::apply. Exposes, cleans, applies the view, clamps to
+    // [0,1]. Threads: may be called at once on different pixels.
     DisplayCleaning apply(std::span<float> values, int channelsPerPixel) const;
+
+    // What values are multiplied by first, as a power of two.
+    void setExposureStops(double stops) { m_gain = static_cast<float>(std::exp2(stops)); }
 
   private:
     SpaceConversion m_conversion;
+    float m_gain{1.0f};
 };
 
 }  // namespace pm::host

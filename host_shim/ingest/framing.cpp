@@ -93,6 +93,25 @@ bool opensTowardsNegativeZ(const SceneData& scene) {
     return towardsZ < -kNoticeable * area;
 }
 
+std::array<double, 3> eyeFrom(const std::array<double, 3>& direction, const Bounds& bounds,
+                              double verticalFov, double aspect) {
+    const Point centre = bounds.centre();
+    const Point z = unit(direction);
+    const Point x = unit(cross({0, 1, 0}, z));
+    const Point y = cross(z, x);
+    const double tangent = std::tan(verticalFov / 2) / kMargin;
+    double distance = 0;
+    for (unsigned corner = 0; corner < 8; ++corner) {
+        Point at{};
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            at[axis] = ((corner >> axis & 1) != 0 ? bounds.high : bounds.low)[axis] - centre[axis];
+        distance = std::max({distance, dot(at, z) + std::abs(dot(at, x)) / (tangent * aspect),
+                             dot(at, z) + std::abs(dot(at, y)) / tangent});
+    }
+    if (!(distance > 0)) distance = 1;
+    return {centre[0] + distance * z[0], centre[1] + distance * z[1], centre[2] + distance * z[2]};
+}
+
 CameraPose frameCamera(const CameraOptions& options, const Bounds& bounds, double aspect) {
     CameraPose pose;
     pose.verticalFov =

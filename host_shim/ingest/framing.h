@@ -36,4 +36,9 @@ bool opensTowardsNegativeZ(const SceneData& scene);
 // aspect is width / height, > 0. Errors: kUsage when eye and look-at are the same point.
 CameraPose frameCamera(const CameraOptions& options, const Bounds& bounds, double aspect);
 
+// Where a camera that looks at the bounds' middle from this direction (not along y; any length) has
+// all of their corners in the picture, with the same margin.
+std::array<double, 3> eyeFrom(const std::array<double, 3>& direction, const Bounds& bounds,
+                              double verticalFov, double aspect);
+
 }  // namespace pm::host

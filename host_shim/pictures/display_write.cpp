@@ -66,6 +66,11 @@ OIIO::ImageSpec makeSpec(const DisplayPicture& picture, const DisplayWriteOption
     OIIO::ImageSpec spec(picture.width, picture.height, picture.channels, type);
     // Else the writer takes the colours for premultiplied and divides them by alpha.
     if (picture.channels == 4) spec.attribute("oiio:UnassociatedAlpha", 1);
+    if (!options.exposure.empty()) {
+        // Of names of our own only PNG has room.
+        if (format == PictureFormat::kPng) spec.attribute("pm:exposure", options.exposure);
+        spec.attribute("ImageDescription", "pm:exposure " + options.exposure);
+    }
     if (format == PictureFormat::kTiff) {
         spec.attribute("compression", "zip");
         spec.attribute("DateTime", kFixedDateTime);

@@ -48,6 +48,8 @@ ExrReport writeExr(const std::filesystem::path& path, const Picture& picture,
 struct DisplayWriteOptions {
     int bitDepth{8};      // 8 or 16; 16 for .png and .tif
     int jpegQuality{95};  // 1..100
+    // Into the metadata, as pm:exposure in a .png and as the description in all; empty: none.
+    std::string exposure{};
 };
 
 // .png, .jpg or .tif. Code = floor(value * (2^bitDepth - 1) + 0.5), values clamped to [0,1] and NaN

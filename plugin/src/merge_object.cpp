@@ -65,6 +65,16 @@ void MergeObject::checkPhotons(const std::string& file, const PieceHead& head) {
                         m_picture->firstFile));
 }
 
+// Of the settings that a part keeps, the one in which parts of one picture may differ.
+void MergeObject::keepNote(const PieceHead& head) {
+    SettingValues theirs;
+    for (const auto& [name, value] : head.settings) theirs.setText(name, value);
+    const std::string& note = theirs.word(Setting::kHostNote);
+    std::vector<std::string>& notes = m_picture->notes;
+    if (std::ranges::find(notes, note) == notes.end()) notes.push_back(note);
+    m_picture->settings.setText("hostNote", fmt::format("{}", fmt::join(notes, "\n")));
+}
+
 void MergeObject::addPart(const std::string& file) {
     const std::lock_guard lock(m_mutex);
     std::uint32_t index = 0;
@@ -82,6 +92,7 @@ void MergeObject::addPart(const std::string& file) {
             else
                 m_picture = std::make_unique<Picture>(head, file);
             checkPhotons(file, head);
+            keepNote(head);
         },
         [&](const Rect& rect, std::span<const std::byte> sums) {
             addBucket(file, index++, rect, sums);

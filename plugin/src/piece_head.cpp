@@ -33,8 +33,10 @@ PieceKind kindOf(const std::string& text) {
     throw CallError(PMR_ERROR_FILE, "of a kind that is not known here");
 }
 
-bool isKept(const SettingSpec& spec) {
+bool isKept(const SettingSpec& spec, PieceKind kind) {
     switch (spec.id) {
+        case Setting::kHostNote:
+            return kind == PieceKind::kPart;
         case Setting::kCrop:
         case Setting::kLayers:
         case Setting::kHostIdentity:
@@ -114,7 +116,7 @@ PieceHead makePieceHead(PieceKind kind, const Identity& scene, const SettingValu
     for (const IdentityPart& part : scene)
         if (part.name == "instruction set") head.isa = part.value;
     for (const SettingSpec& spec : settingSpecs())
-        if (isKept(spec)) head.settings.emplace_back(spec.name, values.text(spec.id));
+        if (isKept(spec, kind)) head.settings.emplace_back(spec.name, values.text(spec.id));
     return head;
 }
 

@@ -127,6 +127,10 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
     {Setting::kPhotonsOnly, "photonsOnly", PMR_SETTING_INTEGER, "", "0", 0, 1, 1, "", false,
      "1: traces the photons of all passes into the file photonMap and ends; there are no pixels.",
      "On disk 28 bytes a photon that landed."},
+    {Setting::kHostNote, "hostNote", PMR_SETTING_TEXT, "", "", 0, 0, 1, "", false,
+     "A line that a part keeps for the host that merges it, as how the picture is to be shown: "
+     "nothing is refused for it. Of a merge, the lines of all its parts, each once.",
+     "None."},
 }};
 
 static_assert(isInOrderOfIds(kSettings));

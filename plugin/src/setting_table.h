@@ -46,6 +46,7 @@ enum class Setting : std::size_t {
     kDelivery,
     kPhotonMap,
     kPhotonsOnly,
+    kHostNote,
     kCount
 };
 inline constexpr std::size_t kSettingCount = static_cast<std::size_t>(Setting::kCount);

@@ -47,7 +47,7 @@ TEST(Settings, EnumerationIsWhole) {
           "gatherRays",  "passes",           "seed",         "layers",      "memoryLimitGib",
           "errorTarget", "timeLimitSeconds", "plan",         "buckets",     "part",
           "checkpoint",  "resume",           "hostIdentity", "aaLevelMost", "aaThreshold",
-          "filter"})
+          "filter",      "hostNote"})
         EXPECT_EQ(1u, names.count(name)) << name;
     EXPECT_EQ(PMR_OK, api().destroyRender(render));
 }

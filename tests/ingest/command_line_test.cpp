@@ -55,6 +55,28 @@ TEST(CommandLine, values) {
     EXPECT_EQ(options.colour.context[0].second, "b=c");
 }
 
+TEST(CommandLine, exposure) {
+    using Kind = ExposureOption::Kind;
+    EXPECT_EQ(parseCommandLine({"s.obj"}).exposure.kind, Kind::kNotGiven);
+    EXPECT_TRUE(parseCommandLine({"s.obj"}).exposure.mayBeMeasured);
+    EXPECT_EQ(parseCommandLine({"s.obj", "--exposure", "auto"}).exposure.kind, Kind::kAuto);
+    const Options given = parseCommandLine({"s.obj", "--exposure", "-2.5"});
+    EXPECT_EQ(given.exposure.kind, Kind::kStops);
+    EXPECT_EQ(given.exposure.stops, -2.5);
+    for (const Arguments& fixed :
+         {Arguments{"s.obj", "--crop", "0,0,8,8"}, Arguments{"s.obj", "--frame", "3"},
+          Arguments{"s.obj", "--buckets", "1/2", "-o", "p.pmpart"}})
+        EXPECT_FALSE(parseCommandLine(fixed).exposure.mayBeMeasured) << fixed[1];
+    EXPECT_EQ(
+        parseCommandLine({"merge", "p.pmpart", "-o", "m.png", "--exposure", "1"}).exposure.stops,
+        1);
+    for (const char* wrong : {"20.5", "-21", "nan", "Auto", "1,5"})
+        EXPECT_EQ(refusal({"--exposure", wrong}), "2 --exposure '" + std::string(wrong) +
+                                                      "': a number in [-20, 20] or auto is wanted");
+    EXPECT_EQ(parseCommandLine({"s.obj", "--camera-light", "off"}).cameraLight, CameraLight::kOff);
+    EXPECT_TRUE(refusal({"--camera-light", "no"}).starts_with("2 --camera-light 'no': allowed"));
+}
+
 TEST(CommandLine, refusesWhatIsUnknownOrToCome) {
     EXPECT_TRUE(refusal({"--bogus"}).starts_with("2 "));
     EXPECT_TRUE(refusal({"another.obj"}).starts_with("2 "));

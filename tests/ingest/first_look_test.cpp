@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Where a camera stands that nobody placed: in rooms, and where much is seen of what is no room.
+#include "host_shim/ingest/framing.h"
+#include "host_shim/ingest/outside_view.h"
+#include "host_shim/ingest/room_view.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+
+namespace pm::host::test {
+namespace {
+
+using Point = std::array<double, 3>;
+
+// Builds scenes of quads.
+class Maker {
+  public:
+    Maker() {
+        m_scene.materials.resize(2);
+        m_scene.materials[1].emission = {1, 1, 1};
+        m_mesh.slotMaterials = {0, 1};
+        m_scene.bounds = {{1e30, 1e30, 1e30}, {-1e30, -1e30, -1e30}};
+    }
+    void quad(std::initializer_list<Point> corners, std::uint32_t slot = 0) {
+        for (const Point& corner : corners) {
+            m_mesh.indices.push_back(static_cast<std::uint32_t>(m_mesh.positions.size() / 3));
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                m_mesh.positions.push_back(static_cast<float>(corner[axis]));
+                m_scene.bounds.low[axis] = std::min(m_scene.bounds.low[axis], corner[axis]);
+                m_scene.bounds.high[axis] = std::max(m_scene.bounds.high[axis], corner[axis]);
+            }
+        }
+        m_mesh.faceSizes.push_back(static_cast<std::uint32_t>(corners.size()));
+        m_mesh.faceSlots.push_back(slot);
+    }
+    // Sides -x, +x, -y, +y, -z, +z of a box; fronts are outside, or inside.
+    void box(const Point& a, const Point& b, bool inward = false, int without = -1) {
+        const auto [x0, y0, z0] = a;
+        const auto [x1, y1, z1] = b;
+        const std::array<std::array<Point, 4>, 6> sides{{
+            {{{x0, y0, z0}, {x0, y0, z1}, {x0, y1, z1}, {x0, y1, z0}}},
+            {{{x1, y0, z1}, {x1, y0, z0}, {x1, y1, z0}, {x1, y1, z1}}},
+            {{{x0, y0, z0}, {x1, y0, z0}, {x1, y0, z1}, {x0, y0, z1}}},
+            {{{x0, y1, z1}, {x1, y1, z1}, {x1, y1, z0}, {x0, y1, z0}}},
+            {{{x1, y0, z0}, {x0, y0, z0}, {x0, y1, z0}, {x1, y1, z0}}},
+            {{{x0, y0, z1}, {x1, y0, z1}, {x1, y1, z1}, {x0, y1, z1}}},
+        }};
+        for (int side = 0; side < 6; ++side) {
+            if (side == without) continue;
+            const auto& s = sides[static_cast<std::size_t>(side)];
+            if (inward)
+                quad({s[3], s[2], s[1], s[0]});
+            else
+                quad({s[0], s[1], s[2], s[3]});
+        }
+    }
+    void lampBelow(const Point& at, double half) {
+        quad({{at[0] - half, at[1], at[2] - half},
+              {at[0] + half, at[1], at[2] - half},
+              {at[0] + half, at[1], at[2] + half},
+              {at[0] - half, at[1], at[2] + half}},
+             1);
+    }
+    OccupancyGrid grid() const { return OccupancyGrid(scene()); }
+    SceneData scene() const {
+        SceneData made = m_scene;
+        made.meshes = {m_mesh};
+        return made;
+    }
+
+  private:
+    SceneData m_scene;
+    MeshData m_mesh;
+};
+
+void expectInside(const std::optional<RoomView>& view, const Point& low, const Point& high) {
+    ASSERT_TRUE(view.has_value());
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        EXPECT_GT(view->eye[axis], low[axis]) << axis;
+        EXPECT_LT(view->eye[axis], high[axis]) << axis;
+    }
+    EXPECT_DOUBLE_EQ(view->eye[1], view->lookAt[1]) << "level";
+}
+
+// Cosine between the view and a direction.
+double along(const RoomView& view, const Point& direction) {
+    double dot = 0, squared = 0;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double d = view.lookAt[axis] - view.eye[axis];
+        dot += d * direction[axis];
+        squared += d * d;
+    }
+    return std::abs(dot) / std::sqrt(squared);
+}
+
+TEST(RoomView, standsInAClosedRoomAndLooksAlongIt) {
+    Maker maker;
+    maker.box({-6, 0, -1}, {6, 2.5, 1}, true);
+    const auto view = viewOfRoom(maker.grid());
+    expectInside(view, {-6, 0, -1}, {6, 2.5, 1});
+    EXPECT_GT(along(*view, {1, 0, 0}), 0.95);
+    // From one end: what is looked at lies at the other.
+    EXPECT_GT(std::abs(view->eye[0]), 4);
+    EXPECT_LT(view->eye[0] * view->lookAt[0], 0);
+}
+
+// Walls of one sheet whose fronts are outside, a lamp in it: from outside all would be black.
+TEST(RoomView, goesWhereTheLampsShine) {
+    Maker maker;
+    maker.box({0, 0, 0}, {4, 3, 4});
+    EXPECT_FALSE(viewOfRoom(maker.grid())) << "a box";
+    maker.lampBelow({2, 2.99, 2}, 0.5);
+    expectInside(viewOfRoom(maker.grid()), {0, 0, 0}, {4, 3, 4});
+}
+
+TEST(RoomView, takesTheLargestOfTheRoomsOfAHouse) {
+    Maker maker;
+    constexpr double t = 0.3;
+    maker.box({0, 0, 0}, {10, t, 6});
+    maker.box({0, 3, 0}, {10, 3 + t, 6});
+    maker.box({0, t, 0}, {t, 3, 6});
+    maker.box({10 - t, t, 0}, {10, 3, 6});
+    maker.box({t, t, 0}, {10 - t, 3, t});
+    maker.box({t, t, 6 - t}, {10 - t, 3, 6});
+    maker.box({3, t, t}, {3 + t, 3, 4});
+    maker.box({3, 2.2, 4}, {3 + t, 3, 6 - t});
+    expectInside(viewOfRoom(maker.grid()), {3, t, t}, {10 - t, 3, 6 - t});
+}
+
+TEST(RoomView, aWindowDoesntMakeItAnOpenBox) {
+    Maker maker;
+    maker.box({0, 0, 0}, {5, 3, 4}, true, 1);
+    maker.quad({{5, 0, 0}, {5, 0, 4}, {5, 1, 4}, {5, 1, 0}});
+    maker.quad({{5, 2, 0}, {5, 2, 4}, {5, 3, 4}, {5, 3, 0}});
+    maker.quad({{5, 1, 0}, {5, 1, 1}, {5, 2, 1}, {5, 2, 0}});
+    maker.quad({{5, 1, 3}, {5, 1, 4}, {5, 2, 4}, {5, 2, 3}});
+    expectInside(viewOfRoom(maker.grid()), {0, 0, 0}, {5, 3, 4});
+}
+
+TEST(RoomView, whatIsNoRoomIsSeenFromOutside) {
+    for (int side = 0; side < 6; ++side) {
+        Maker open;
+        open.box({0, 0, 0}, {4, 3, 4}, true, side);
+        open.lampBelow({2, 2.99, 2}, 0.5);
+        EXPECT_FALSE(viewOfRoom(open.grid())) << "open at side " << side;
+    }
+    Maker blocks;
+    blocks.box({0, 0, 0}, {1, 1, 1});
+    blocks.box({3, 0, 0}, {4, 2, 1});
+    EXPECT_FALSE(viewOfRoom(blocks.grid()));
+    Maker house;  // on a ground that is wider
+    house.box({0, 0, 0}, {4, 3, 4});
+    house.quad({{-9, 0, 9}, {9, 0, 9}, {9, 0, -9}, {-9, 0, -9}});
+    EXPECT_FALSE(viewOfRoom(house.grid()));
+    EXPECT_FALSE(viewOfRoom(OccupancyGrid(SceneData{})));
+}
+
+// What the grid says of a large scene that is far from the origin is the same.
+TEST(RoomView, isTheSameAtAnyScaleAndPlace) {
+    for (const double scale : {1e-6, 1.0, 4096.0}) {
+        Maker maker;
+        maker.box({0, 0, 0}, {6 * scale, 2 * scale, 2 * scale}, true);
+        SceneData scene = maker.scene();
+        const Point offset{1e6 * scale, -2e6 * scale, 3e5 * scale};
+        scene.centre = offset;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            scene.bounds.low[axis] += offset[axis];
+            scene.bounds.high[axis] += offset[axis];
+        }
+        const auto view = viewOfRoom(OccupancyGrid(scene));
+        ASSERT_TRUE(view);
+        EXPECT_NEAR((view->eye[1] - offset[1]) / scale, 1, 0.2) << scale;
+        EXPECT_GT(along(*view, {1, 0, 0}), 0.9) << scale;
+    }
+}
+
+std::optional<Point> better(const Maker& maker) {
+    const SceneData scene = maker.scene();
+    const double fov = frameCamera({}, scene.bounds, 4.0 / 3).verticalFov;
+    const Point front = frameCamera({}, scene.bounds, 4.0 / 3).eye;
+    return betterEye(maker.grid(), {front, scene.bounds, fov, 4.0 / 3});
+}
+
+TEST(OutsideView, theFrontIsKeptWhereItShowsTheScene) {
+    Maker quad;
+    quad.quad({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
+    EXPECT_FALSE(better(quad));
+    Maker open;
+    open.box({0, 0, 0}, {4, 3, 4}, true, 5);
+    EXPECT_FALSE(better(open)) << "a box that is open to the front";
+    EXPECT_FALSE(better(Maker{}));
+}
+
+TEST(OutsideView, aGroundABlockAndAnOpenTopAreSeenFromAbove) {
+    Maker hills;
+    for (int i = 0; i < 20; ++i)
+        for (int j = 0; j < 20; ++j) {
+            const auto at = [](int x, int z) { return Point{0.0 + x, (x + z) % 3 * 0.2, 0.0 + z}; };
+            hills.quad({at(i, j), at(i, j + 1), at(i + 1, j + 1), at(i + 1, j)});
+        }
+    Maker block, open;
+    block.box({0, 0, 0}, {1, 1, 1});
+    open.box({0, 0, 0}, {4, 3, 4}, true, 3);
+    for (const Maker* maker : {&hills, &block, &open}) {
+        const auto eye = better(*maker);
+        ASSERT_TRUE(eye);
+        EXPECT_GT((*eye)[1], maker->scene().bounds.high[1]);
+    }
+}
+
+TEST(OutsideView, anOpenSideIsLookedInto) {
+    Maker right, left;
+    right.box({0, 0, 0}, {4, 3, 4}, true, 1);
+    left.box({0, 0, 0}, {4, 3, 4}, true, 0);
+    ASSERT_TRUE(better(right) && better(left));
+    EXPECT_GT((*better(right))[0], 4);
+    EXPECT_LT((*better(left))[0], 0);
+}
+
+TEST(OutsideView, allCornersAreInThePicture) {
+    const Bounds bounds{{-1, 0, -3}, {2, 5, 1}};
+    for (const double aspect : {0.5, 1.0, 3.0}) {
+        CameraOptions options;
+        options.eye = eyeFrom({0.7, 0.5, -1}, bounds, 0.7, aspect);
+        const CameraPose pose = frameCamera(options, bounds, aspect);
+        double most = 0;
+        for (unsigned corner = 0; corner < 8; ++corner) {
+            Point local{};
+            for (std::size_t row = 0; row < 3; ++row) {
+                const double off =
+                    ((corner >> row & 1) != 0 ? bounds.high : bounds.low)[row] - pose.eye[row];
+                for (std::size_t column = 0; column < 3; ++column)
+                    local[column] += pose.transform[row * 4 + column] * off;
+            }
+            ASSERT_LT(local[2], 0);
+            const double tangent = std::tan(0.35) * -local[2];
+            most = std::max(
+                {most, std::abs(local[0]) / tangent / aspect, std::abs(local[1]) / tangent});
+        }
+        EXPECT_NEAR(most, 1 / 1.05, 1e-9);
+    }
+}
+
+}  // namespace
+}  // namespace pm::host::test
