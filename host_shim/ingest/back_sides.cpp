@@ -31,15 +31,21 @@ Point areaNormal(const MeshData& mesh, std::size_t first, std::size_t size) {
     return normal;
 }
 
+// Whether every edge has two faces.
 bool isClosed(const MeshData& mesh) {
-    std::map<std::pair<std::uint32_t, std::uint32_t>, int> faces;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+    edges.reserve(mesh.indices.size());
     std::size_t first = 0;
     for (const std::uint32_t size : mesh.faceSizes) {
         for (std::size_t i = 0; i < size; ++i)
-            ++faces[std::minmax(mesh.indices[first + i], mesh.indices[first + (i + 1) % size])];
+            edges.push_back(
+                std::minmax(mesh.indices[first + i], mesh.indices[first + (i + 1) % size]));
         first += size;
     }
-    return std::ranges::all_of(faces, [](const auto& edge) { return edge.second == 2; });
+    std::ranges::sort(edges);
+    for (std::size_t i = 0; i < edges.size(); i += 2)
+        if (i + 1 == edges.size() || edges[i] != edges[i + 1]) return false;
+    return true;
 }
 
 // The faces of a mesh that emit from both sides, turned round and set back.

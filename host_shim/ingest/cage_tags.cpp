@@ -7,6 +7,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <string_view>
 
 namespace pm::host {
 namespace {
@@ -18,20 +20,19 @@ class TagReader {
         : m_assembly(assembly), m_faces(faces), m_file(fileName), m_warn(warn) {}
 
     void read(const SubdivisionTag& tag) {
-        if (tag.name == "crease") {
-            crease(tag);
-        } else if (tag.name == "corner") {
-            corner(tag);
-        } else if (tag.name == "hole") {
-            hole(tag);
-        } else if (tag.name == "interpolateboundary") {
-            boundary(tag);
-        } else if (tag.name == "facevaryinginterpolateboundary") {
-            faceVarying(tag);
+        const auto known = std::ranges::find(kTags, tag.name, &Tag::name);
+        if (known != kTags.end()) {
+            (this->*known->read)(tag);
         } else {
             m_warn(Warning::kSubdivision, fmt::format("{}:{}: subdivision tag '{}' is not obeyed",
                                                       m_file, tag.line, tag.name));
         }
+    }
+
+    static std::vector<std::string> names() {
+        std::vector<std::string> all;
+        for (const Tag& tag : kTags) all.emplace_back(tag.name);
+        return all;
     }
 
     CageTags take() { return std::move(m_tags); }
@@ -104,6 +105,12 @@ class TagReader {
         m_tags.faceVarying = static_cast<int>(tag.integers[0]);
     }
 
+    struct Tag {
+        std::string_view name;
+        void (TagReader::*read)(const SubdivisionTag&);
+    };
+    static const std::array<Tag, 5> kTags;
+
     const MeshAssembly& m_assembly;
     FaceRange m_faces;
     const std::string& m_file;
@@ -111,7 +118,19 @@ class TagReader {
     CageTags m_tags;
 };
 
+const std::array<TagReader::Tag, 5> TagReader::kTags{{
+    {"crease", &TagReader::crease},
+    {"corner", &TagReader::corner},
+    {"hole", &TagReader::hole},
+    {"interpolateboundary", &TagReader::boundary},
+    {"facevaryinginterpolateboundary", &TagReader::faceVarying},
+}};
+
 }  // namespace
+
+std::vector<std::string> cageTagNames() {
+    return TagReader::names();
+}
 
 CageTags readCageTags(std::span<const SubdivisionTag> tags, const MeshAssembly& assembly,
                       FaceRange faces, const std::string& fileName, const WarningSink& warn) {

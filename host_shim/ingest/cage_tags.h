@@ -9,6 +9,7 @@
 
 #include <span>
 #include <string>
+#include <vector>
 
 namespace pm::host {
 
@@ -17,6 +18,9 @@ struct FaceRange {
     std::uint64_t first{};
     std::uint64_t count{};
 };
+
+// Tags that are obeyed; docs/obj_mtl.md has a row for each.
+std::vector<std::string> cageTagNames();
 
 // Turns the t statements of a group into tags of its mesh; assembly has just assembled it.
 // Errors: kBadInput, with file and line, for a vertex that the group does not have, a face outside

@@ -27,7 +27,7 @@ class PrincipledSection {
     PrincipledSection(MtlDialect dialect, MtlSection& section)
         : m_dialect(dialect), m_section(section) {}
 
-    std::vector<DialectNote> translate() {
+    Translation translate() {
         const double illum = m_section.number("illum").value_or(2);
         // Never written by Blender: somebody made glass or a mirror of it, and means what it says.
         if (illum == 4 || illum == 5 || illum == 7) return {};
@@ -37,11 +37,13 @@ class PrincipledSection {
             makeGlass();
         else
             makeSurface();
-        return std::move(m_notes);
+        return std::move(m_translation);
     }
 
   private:
-    void note(const char* key, std::string text) { m_notes.push_back({key, std::move(text)}); }
+    void note(const char* key, std::string text) {
+        m_translation.notes.push_back({key, std::move(text)});
+    }
 
     double number(const char* key, double otherwise) const {
         return m_section.number(key).value_or(otherwise);
@@ -130,28 +132,34 @@ class PrincipledSection {
             makeMetal(base, rough);
             return;
         }
-        Colour diffuse{}, glossy{};
+        const bool hasMap = m_section.hasMap("map_Kd");
+        Colour diffuse{}, glossy{}, added{};
         for (std::size_t i = 0; i < 3; ++i) {
             glossy[i] = metal * base[i] + (1 - metal) * coat[i];
-            diffuse[i] = std::min((1 - metal) * underCoat(base[i], coat[i], rough),
-                                  std::max(0.0, 1 - glossy[i]));
+            added[i] = (1 - metal) * addedByCoat(coat[i], rough);
+            diffuse[i] = (1 - metal) * underCoat(base[i], coat[i], rough) + (hasMap ? 0 : added[i]);
+            diffuse[i] = std::min(diffuse[i], std::max(0.0, 1 - glossy[i]));
         }
+        // Texels are multiplied by the number.
+        if (hasMap && mean(diffuse) > 0)
+            m_translation.addedToDiffuseMap = mean(added) / mean(diffuse);
         m_section.colours["Kd"] = diffuse;
         m_section.colours["Ks"] = glossy;
         if (metal >= 0.5 && m_section.hasMap("map_Kd"))
             m_section.maps["map_Ks"] = m_section.maps["map_Kd"];
     }
 
-    // A channel's diffuse part. The lobe has what the coat reflects at normal incidence and nothing
-    // of the rise towards grazing angles; all that this brings in the mean is spread evenly, or
-    // rooms of plastic would be a quarter darker. Before Blender 4 the coat takes nothing from what
-    // is below it.
+    // Before Blender 4 the coat takes nothing from what is below it.
     double underCoat(double base, double coat, double rough) const {
-        const double all = coat > 0 ? meanOfCoat(coat, rough) : 0;
-        const double below = m_dialect == MtlDialect::kBlender4 ? base * (1 - all) : base;
-        // A picture multiplies what is returned, so there nothing can be added.
-        if (m_section.hasMap("map_Kd")) return below;
-        return below + std::max(0.0, all - coat * meanOfLobe(rough));
+        return m_dialect == MtlDialect::kBlender4 && coat > 0 ? base * (1 - meanOfCoat(coat, rough))
+                                                              : base;
+    }
+
+    // The lobe has what the coat reflects at normal incidence and nothing of the rise towards
+    // grazing angles. What all that brings in the mean is spread evenly, or rooms of plastic would
+    // be a quarter darker.
+    static double addedByCoat(double coat, double rough) {
+        return coat > 0 ? std::max(0.0, meanOfCoat(coat, rough) - coat * meanOfLobe(rough)) : 0;
     }
 
     void makeMetal(const Colour& base, double rough) {
@@ -165,7 +173,7 @@ class PrincipledSection {
 
     MtlDialect m_dialect;
     MtlSection& m_section;
-    std::vector<DialectNote> m_notes;
+    Translation m_translation;
     bool m_isMetalOn{};
 };
 
@@ -226,7 +234,7 @@ bool emitsFromBothSides(MtlDialect dialect) {
            dialect == MtlDialect::kBlender4;
 }
 
-std::vector<DialectNote> translateToGeneric(MtlDialect dialect, MtlSection& section) {
+Translation translateToGeneric(MtlDialect dialect, MtlSection& section) {
     switch (dialect) {
         case MtlDialect::kBlender28:
         case MtlDialect::kBlender3:

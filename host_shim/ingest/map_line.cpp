@@ -103,7 +103,10 @@ MapLine parseMapLine(std::string_view text, const std::function<bool(std::string
     line.name = rest;
     MapLine shortest = line;
     bool isSplit = false;
-    for (auto at = rest.find('-', 1); at < rest.size(); at = rest.find('-', at + 1)) {
+    // Nobody writes more, and what is tried grows by the square of it.
+    constexpr std::size_t kLongestOptions = 1024;
+    const std::size_t first = rest.size() > kLongestOptions ? rest.size() - kLongestOptions : 1;
+    for (auto at = rest.find('-', first); at < rest.size(); at = rest.find('-', at + 1)) {
         if (rest[at - 1] != ' ' && rest[at - 1] != '\t') continue;
         MapLine split = line;
         split.name = trimmed(rest.substr(0, at));

@@ -37,18 +37,23 @@ struct LibraryFile {
 };
 
 // The files that one mtllib line means: the whole of it when there is such a file (names may hold
-// blanks), else each of its words.
+// blanks), else each of its words, and where one of them is none, the tail of the whole.
 std::vector<LibraryFile> libraryFiles(std::string_view argument, const fs::path& folder,
                                       SceneFiles& files) {
-    if (const auto whole = files.find(folder, argument)) return {{*whole, ""}};
+    if (const auto whole = files.findWhole(folder, argument)) return {{*whole, ""}};
     std::vector<LibraryFile> found;
+    bool isComplete = true;
     for (std::string_view rest = withoutComment(argument); !rest.empty();) {
         const std::string word = takeEscapedWord(rest);
-        if (const auto file = files.find(folder, word))
+        const auto file = files.find(folder, word);
+        isComplete = isComplete && file;
+        if (file)
             found.push_back({*file, ""});
         else
             found.push_back({folder / word, files.whyNone(folder, word)});
     }
+    if (isComplete) return found;
+    if (const auto tail = files.find(folder, argument)) return {{*tail, ""}};
     return found;
 }
 

@@ -39,10 +39,13 @@ class MaterialReader {
         for (const auto& [key, text] : m_section.notUnderstood)
             note(Warning::kMaterialValue, key,
                  fmt::format("'{}' is not understood and left out", text));
-        for (const DialectNote& told : translateToGeneric(m_source.dialect, m_section))
+        const Translation translation = translateToGeneric(m_source.dialect, m_section);
+        for (const DialectNote& told : translation.notes)
             note(Warning::kMaterialPart, told.key, told.text);
         noteLeftOut();
         readMaps();
+        if (m_material.diffuseTexture)
+            m_material.diffuseTexture->base += static_cast<float>(translation.addedToDiffuseMap);
         readColours();
         decideKind();
         readKind();

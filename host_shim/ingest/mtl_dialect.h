@@ -59,8 +59,13 @@ struct DialectNote {
     std::string text;
 };
 
+struct Translation {
+    std::vector<DialectNote> notes;
+    double addedToDiffuseMap{};  // to the texels of map_Kd
+};
+
 // Turns what a section says in its dialect into what the keys mean in the generic one. Nothing is
 // changed for kGeneric.
-std::vector<DialectNote> translateToGeneric(MtlDialect dialect, MtlSection& section);
+Translation translateToGeneric(MtlDialect dialect, MtlSection& section);
 
 }  // namespace pm::host

@@ -13,6 +13,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kLongestName = 4096;  // longer ones no file system has
+
 fs::path absoluteFolder(const fs::path& folder) {
     const fs::path full = fs::absolute(folder.empty() ? "." : folder).lexically_normal();
     return full.has_filename() ? full : full.parent_path();
@@ -67,26 +69,32 @@ std::optional<fs::path> SceneFiles::findIn(const fs::path& folder, const std::st
     return real;
 }
 
-std::optional<fs::path> SceneFiles::find(const fs::path& folder, std::string_view name) {
-    // Longer ones no file system has.
-    constexpr std::size_t kLongestName = 4096;
-    if (name.empty() || name.size() > kLongestName) return std::nullopt;
+std::optional<fs::path> SceneFiles::findAnywhere(const fs::path& folder,
+                                                 const std::vector<std::string>& names) {
     std::vector<fs::path> folders{folder};
     if (m_sceneFolder != folder) folders.push_back(m_sceneFolder);
     folders.insert(folders.end(), m_rules.searchPaths.begin(), m_rules.searchPaths.end());
-    const std::vector<std::string> readings = readingsOf(name);
-    std::vector<std::string> tails;
-    for (const std::string& reading : readings)
+    for (const fs::path& at : folders)
+        for (const std::string& name : names)
+            if (auto file = findIn(at, name)) return file;
+    return std::nullopt;
+}
+
+std::optional<fs::path> SceneFiles::findWhole(const fs::path& folder, std::string_view name) {
+    if (name.empty() || name.size() > kLongestName) return std::nullopt;
+    return findAnywhere(folder, readingsOf(name));
+}
+
+std::optional<fs::path> SceneFiles::find(const fs::path& folder, std::string_view name) {
+    if (name.empty() || name.size() > kLongestName) return std::nullopt;
+    std::vector<std::string> names = readingsOf(name), tails;
+    for (const std::string& reading : names)
         for (std::string& tail : tailsOf(reading))
             if (std::ranges::find(tails, tail) == tails.end()) tails.push_back(std::move(tail));
     std::ranges::stable_sort(tails, std::ranges::greater{},
                              [](const std::string& tail) { return std::ranges::count(tail, '/'); });
-    std::vector<std::string> names = readings;
-    names.insert(names.end(), tails.begin(), tails.end());
-    for (const fs::path& at : folders)
-        for (const std::string& text : names)
-            if (auto file = findIn(at, text)) return file;
-    return std::nullopt;
+    std::ranges::move(tails, std::back_inserter(names));
+    return findAnywhere(folder, names);
 }
 
 std::string SceneFiles::whyNone(const fs::path& folder, std::string_view name) const {

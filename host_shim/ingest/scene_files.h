@@ -33,6 +33,9 @@ class SceneFiles {
     // been followed before that is asked, and the answer has none.
     std::optional<std::filesystem::path> find(const std::filesystem::path& folder,
                                               std::string_view name);
+    // The same without tails, for texts that may be more than one name.
+    std::optional<std::filesystem::path> findWhole(const std::filesystem::path& folder,
+                                                   std::string_view name);
 
     bool isTrusted() const { return m_rules.isTrusted; }
 
@@ -40,6 +43,9 @@ class SceneFiles {
     std::string whyNone(const std::filesystem::path& folder, std::string_view name) const;
 
   private:
+    // Below folder, the scene's folder and the search paths.
+    std::optional<std::filesystem::path> findAnywhere(const std::filesystem::path& folder,
+                                                      const std::vector<std::string>& names);
     std::optional<std::filesystem::path> findIn(const std::filesystem::path& folder,
                                                 const std::string& name);
     bool isAllowedByName(const std::filesystem::path& file) const;

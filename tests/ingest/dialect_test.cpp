@@ -97,6 +97,10 @@ TEST(MtlDialect, BlendersPlasticReflectsFourPercent) {
     // Roughness .5, so GGX of alpha .25.
     EXPECT_NEAR(r.material.glossyExponent, (2 / 0.0625 - 2) / 4, 1e-3);
     EXPECT_TRUE(r.heard.list.empty());
+    const Result textured = read(kBlender3, "Ns 250\nmap_Kd -mm 0.1 0.5 a.png\nKs 0.5 0.5 0.5\n");
+    expectNear(textured.material.diffuse, {0.96f, 0.96f, 0.96f});
+    EXPECT_NEAR(textured.material.diffuseTexture->base, 0.1f + more / 0.96f, 1e-5);
+    EXPECT_EQ(textured.material.diffuseTexture->gain, 0.5f);
     EXPECT_NEAR(
         read(kBlender3, "Ks 0.25 0.25 0.25\nNs 250\nKd 0.5 0.5 0.5\nillum 2\n").material.glossy[0],
         0.02, 1e-6);

@@ -146,6 +146,25 @@ TEST_F(SceneFilesTest, EveryNameOfASceneIsAsked) {
     EXPECT_TRUE(heard.has(Warning::kTexture, "; --untrusted allows no other folder"));
 }
 
+// A line of mtllib may be one name or several, each of another machine.
+TEST_F(SceneFilesTest, LibrariesOfOtherMachines) {
+    write("scene/a.mtl", "newmtl a\nKd 0.25 0 0\n");
+    write("scene/lib/b c.mtl", "newmtl b\nKd 0.5 0 0\n");
+    const auto read = [this](const std::string& line) {
+        write("scene/m.obj", "mtllib " + line +
+                                 "\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\n"
+                                 "f 1 2 3\n");
+        Heard heard;
+        const SceneData scene = readObjFile(m_scene / "m.obj", heard.sink);
+        return std::array{scene.materials[0].diffuse[0], scene.materials[1].diffuse[0]};
+    };
+    using Pair = std::array<float, 2>;
+    EXPECT_EQ(read("C:\\x\\a.mtl D:\\lib\\b\\ c.mtl"), (Pair{0.25f, 0.5f}));
+    EXPECT_EQ(read("C:\\x\\a.mtl"), (Pair{0.25f, 0.8f}));
+    EXPECT_EQ(read("C:\\my things\\lib\\b c.mtl"), (Pair{0.8f, 0.5f}));
+    EXPECT_EQ(read("x/a.mtl none.mtl"), (Pair{0.25f, 0.8f}));
+}
+
 TEST_F(SceneFilesTest, DevicesAreNoLibraries) {
     write("scene/d.obj", "mtllib /dev/zero\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
     Heard heard;
