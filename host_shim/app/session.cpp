@@ -180,6 +180,9 @@ void Session::buildScene(const ColourPipeline& colour, MaterialBuilder& material
     checkNotInputs(allOutputs(m_options), inputsOf(m_options, &data));
     m_mayWriteStatistics = true;
     const CameraPose camera = frameScene(data);
+    m_camera = camera;
+    m_bounds = data.bounds;
+    m_hasLight = data.hasLight();
     if (camera.upWasReplaced) {
         warn(Warning::kCamera, "--up is parallel to the view; another direction is taken");
     }

@@ -58,8 +58,12 @@ class Session {
     // The same for a render whose buckets went to files as they came (session_tiles.cpp).
     int finishTiles(PmrStatus status, TiledOutput& output);
     void noteEnd();
+    // No picture is black without a word (session_dark.cpp).
     void lookForLight(const Picture& picture);
     void warnOfBlack();
+    bool standsInClosedSpace() const;
+    void lookForDarkness(const std::filesystem::path& file, const Picture& picture,
+                         const DisplayPicture& shown);
     void warnOfClamped(const std::filesystem::path& file, const ExrReport& report);
     // " estimated relMSE ..." for lines that tell what was written.
     std::string errorText() const;
@@ -80,8 +84,12 @@ class Session {
     Statistics m_statistics;
     Report m_report;  // gathers only where one is wanted
     std::optional<Picture> m_reference;
-    std::optional<Picture> m_pilot;  // of the scene as it is rendered; see pilot()
-    Exposure m_exposure;             // of display pictures
+    std::optional<Picture> m_pilot;      // of the scene as it is rendered; see pilot()
+    Exposure m_exposure;                 // of display pictures
+    std::optional<CameraPose> m_camera;  // nothing before the scene is read, and of merges
+    Bounds m_bounds;                     // of the scene
+    bool m_hasLight{};                   // of its own
+    bool m_hasCameraLight{};
     // Statistics and report; not before it is known that they overwrite no input.
     bool m_mayWriteStatistics{};
 };

@@ -56,9 +56,16 @@ CameraPose Session::frameScene(const SceneData& data) {
     CameraOptions camera = m_options.camera;
     camera.fromNegativeZ = opensTowardsNegativeZ(data);
     const double aspect = static_cast<double>(m_options.width) / m_options.height;
-    const CameraPose front = frameCamera(camera, data.bounds, aspect);
-    if (camera.eye) return front;
-    const OccupancyGrid grid(data);
+    if (camera.eye) return frameCamera(camera, data.bounds, aspect);
+    OccupancyGrid grid(data);
+    const bool upIsZ = !camera.up && !camera.lookAt && standsOnZ(grid, data.bounds);
+    if (upIsZ) {
+        m_log.info("the scene stands on z = 0: z is up (--up 0,1,0 --eye x,y,z would have y up)");
+        grid = OccupancyGrid(data, true);
+        camera.fromNegativeZ = false;
+    }
+    const Bounds bounds = upIsZ ? asIfYWereUp(data.bounds) : data.bounds;
+    const CameraPose front = frameCamera(camera, bounds, aspect);
     if (const auto room = viewOfRoom(grid)) {
         camera.eye = room->eye;
         if (!camera.lookAt) camera.lookAt = room->lookAt;
@@ -67,7 +74,12 @@ CameraPose Session::frameScene(const SceneData& data) {
             "the scene is closed all round and seen from inside (--eye puts the camera "
             "elsewhere)");
     } else if (!camera.lookAt) {
-        camera.eye = betterEye(grid, {front.eye, data.bounds, front.verticalFov, aspect});
+        camera.eye = betterEye(grid, {front.eye, bounds, front.verticalFov, aspect});
+    }
+    if (upIsZ) {
+        camera.eye = backToZUp(camera.eye.value_or(front.eye));
+        if (camera.lookAt) camera.lookAt = backToZUp(*camera.lookAt);
+        camera.up = {0, 0, 1};
     }
     return frameCamera(camera, data.bounds, aspect);
 }
@@ -79,6 +91,7 @@ void Session::buildLit(const SceneData& data, const CameraPose& camera,
     const PluginContext& context = scene->context();
     const std::string name = m_options.scene.string();
     const auto build = [&](bool cameraLight) {
+        m_hasCameraLight = cameraLight;
         phase("buildSceneSeconds", [&] {
             const InterruptWatch watch([&] { context.api().cancelBuilds(context.handle(), 1); });
             scene->build({data, name, m_options.subdivide, camera, cameraLight}, colour, materials);

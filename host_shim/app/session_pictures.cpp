@@ -78,23 +78,6 @@ void Session::noteEnd() {
         m_log.info("stopped by the " + m_statistics.stopReason);
 }
 
-void Session::lookForLight(const Picture& picture) {
-    if (isBlackThoughHit(picture)) warnOfBlack();
-    // A crop may well be of the background.
-    if (!m_options.crop && m_options.merge.empty() && showsNothing(picture))
-        warn(Warning::kBlackPicture,
-             "nothing of the scene is in the picture: the camera looks past it; see --eye and "
-             "--look-at");
-}
-
-void Session::warnOfBlack() {
-    warn(Warning::kBlackPicture,
-         "the picture is black though it shows surfaces: no light reaches their seen side, or they "
-         "reflect none; lamps shine from the front of their faces, where the corners go round "
-         "counter-clockwise; a "
-         "room that is closed all round is seen from inside with --eye and --look-at only");
-}
-
 void Session::warnOfClamped(const fs::path& file, const ExrReport& report) {
     if (report.clampedToHalf > 0)
         warn(Warning::kOutput, fmt::format("{}: {} values are beyond half's 65504 and clamped",
@@ -142,6 +125,7 @@ void Session::writeOutput(const fs::path& file, const Picture& picture,
     DisplayWriteOptions how;
     how.exposure = exposureText(m_exposure);
     writeDisplayPicture(file, result.picture, how);
+    lookForDarkness(file, picture, result.picture);
 }
 
 int Session::compareWithReference(const Picture& picture) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace pm::host {
 namespace {
@@ -41,19 +42,34 @@ struct OccupancyGrid::Splat {
     bool emits;
 };
 
-OccupancyGrid::OccupancyGrid(const SceneData& scene) {
+Point asIfYWereUp(const Point& place) {
+    return {place[0], place[2], -place[1]};
+}
+
+Point backToZUp(const Point& place) {
+    return {place[0], -place[2], place[1]};
+}
+
+Bounds asIfYWereUp(const Bounds& bounds) {
+    Bounds turned{asIfYWereUp(bounds.low), asIfYWereUp(bounds.high)};
+    std::swap(turned.low[2], turned.high[2]);
+    return turned;
+}
+
+OccupancyGrid::OccupancyGrid(const SceneData& scene, bool upIsZ) : m_upIsZ(upIsZ) {
+    const Bounds bounds = upIsZ ? asIfYWereUp(scene.bounds) : scene.bounds;
     double longest = 0;
     for (std::size_t axis = 0; axis < 3; ++axis)
-        longest = std::max(longest, scene.bounds.high[axis] - scene.bounds.low[axis]);
+        longest = std::max(longest, bounds.high[axis] - bounds.low[axis]);
     if (longest > 0 && std::isfinite(longest)) {
         m_cellSize = longest / kCells;
         for (std::size_t axis = 0; axis < 3; ++axis) {
-            const double width = scene.bounds.high[axis] - scene.bounds.low[axis];
+            const double width = bounds.high[axis] - bounds.low[axis];
             const int inner =
                 std::clamp(static_cast<int>(std::ceil(width / m_cellSize - 1e-6)), 1, kCells);
             m_size[axis] = inner + 2 * kMargin;
             // Centred: what lies on the bounds then lies in a cell of theirs, on both sides.
-            m_origin[axis] = scene.bounds.low[axis] + width / 2 - m_cellSize * m_size[axis] / 2;
+            m_origin[axis] = bounds.low[axis] + width / 2 - m_cellSize * m_size[axis] / 2;
         }
     }
     const std::size_t cells = static_cast<std::size_t>(m_size[0]) *
@@ -90,9 +106,10 @@ Point OccupancyGrid::middleOf(const Cell& cell) const {
 void OccupancyGrid::add(const MeshData& mesh, const SceneData& scene, std::int64_t& budget) {
     const auto place = [&](std::size_t corner) {
         const std::size_t at = 3 * std::size_t{mesh.indices[corner]};
-        return Point{scene.centre[0] + static_cast<double>(mesh.positions[at]),
-                     scene.centre[1] + static_cast<double>(mesh.positions[at + 1]),
-                     scene.centre[2] + static_cast<double>(mesh.positions[at + 2])};
+        const Point world{scene.centre[0] + static_cast<double>(mesh.positions[at]),
+                          scene.centre[1] + static_cast<double>(mesh.positions[at + 1]),
+                          scene.centre[2] + static_cast<double>(mesh.positions[at + 2])};
+        return m_upIsZ ? asIfYWereUp(world) : world;
     };
     std::size_t first = 0;
     for (std::size_t face = 0; face < mesh.faceSizes.size(); ++face) {

@@ -11,6 +11,11 @@
 
 namespace pm::host {
 
+// Turns a place or direction of a scene whose z is up to where y is, and back.
+std::array<double, 3> asIfYWereUp(const std::array<double, 3>& place);
+std::array<double, 3> backToZUp(const std::array<double, 3>& place);
+Bounds asIfYWereUp(const Bounds& bounds);
+
 // A cell of an OccupancyGrid.
 using Cell = std::array<int, 3>;
 
@@ -25,7 +30,8 @@ class OccupancyGrid {
     // -x, +x, -y, +y, -z, +z.
     static constexpr std::size_t kSides = 6;
 
-    explicit OccupancyGrid(const SceneData& scene);
+    // upIsZ: the scene is turned before, by asIfYWereUp.
+    explicit OccupancyGrid(const SceneData& scene, bool upIsZ = false);
 
     const Cell& size() const { return m_size; }
     double cellSize() const { return m_cellSize; }  // scene units; 0 for a scene without extent
@@ -56,6 +62,7 @@ class OccupancyGrid {
     void add(const MeshData& mesh, const SceneData& scene, std::int64_t& budget);
     void splat(const Splat& triangle, std::int64_t& budget);
 
+    bool m_upIsZ{};
     std::array<double, 3> m_origin{};
     double m_cellSize{};
     Cell m_size{1, 1, 1};

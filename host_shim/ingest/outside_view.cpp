@@ -109,4 +109,30 @@ std::optional<Point> betterEye(const OccupancyGrid& grid, const OutsideView& vie
     return best;
 }
 
+namespace {
+
+// Of the lowest layer of cells along an axis the surface that lies across it.
+double levelArea(const OccupancyGrid& grid, std::size_t axis) {
+    double sum = 0;
+    const Cell& size = grid.size();
+    const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+    Cell cell{};
+    cell[axis] = OccupancyGrid::kMargin;
+    for (cell[u] = 0; cell[u] < size[u]; ++cell[u])
+        for (cell[v] = 0; cell[v] < size[v]; ++cell[v])
+            sum += static_cast<double>(grid.areaSeenFrom(2 * axis, cell)) +
+                   static_cast<double>(grid.areaSeenFrom(2 * axis + 1, cell));
+    return sum;
+}
+
+}  // namespace
+
+bool standsOnZ(const OccupancyGrid& grid, const Bounds& bounds) {
+    constexpr double kTimes = 4, kRises = 0.15, kOnPlane = 1e-3;
+    const double longest = grid.cellSize() * OccupancyGrid::kCells;
+    if (!(longest > 0) || std::abs(bounds.low[2]) > kOnPlane * longest) return false;
+    if (bounds.high[2] - bounds.low[2] < kRises * longest) return false;
+    return levelArea(grid, 2) > kTimes * levelArea(grid, 1);
+}
+
 }  // namespace pm::host

@@ -23,4 +23,9 @@ struct OutsideView {
 // much as the best of them.
 std::optional<std::array<double, 3>> betterEye(const OccupancyGrid& grid, const OutsideView& view);
 
+// Whether the scene stands on the plane z = 0 as on a ground: of its lowest layers of cells the one
+// along z has several times as much level surface as the one along y, and much rises above it.
+// Exporters of modelling programs whose z is up don't say so.
+bool standsOnZ(const OccupancyGrid& grid, const Bounds& bounds);
+
 }  // namespace pm::host

@@ -304,6 +304,23 @@ Point levelDirection(int view) {
 
 }  // namespace
 
+bool isClosedAround(const OccupancyGrid& grid, const std::array<double, 3>& place) {
+    if (!(grid.cellSize() > 0)) return false;
+    const auto isEmpty = [&](const Cell& cell) { return !grid.holds(cell); };
+    int open = 0;
+    for (int code = 0; code < 27; ++code) {
+        const Cell by{code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1};
+        if (by == Cell{}) continue;
+        Cell cell = grid.cellOf(place);
+        if (!grid.contains(cell)) return false;
+        do {
+            cell = moved(cell, by);
+        } while (grid.contains(cell) && isEmpty(cell));
+        if (!grid.contains(cell)) ++open;
+    }
+    return open <= 1;
+}
+
 std::optional<RoomView> viewOfRoom(const OccupancyGrid& grid) {
     const Space space = largestSpaceWithin(grid);
     if (space.cells == 0 || !isRoom(grid, space)) return std::nullopt;

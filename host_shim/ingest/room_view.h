@@ -25,4 +25,7 @@ struct RoomView {
 // view, from as far back as it is half as wide. Nothing where the scene is no room.
 std::optional<RoomView> viewOfRoom(const OccupancyGrid& grid);
 
+// Whether from a place surface is met in all of 26 directions, or all but one.
+bool isClosedAround(const OccupancyGrid& grid, const std::array<double, 3>& place);
+
 }  // namespace pm::host

@@ -212,6 +212,35 @@ TEST(OutsideView, aGroundABlockAndAnOpenTopAreSeenFromAbove) {
     }
 }
 
+// A chair's seat and legs on a ground, z up and y up; a relief on a wall; a box in a corner.
+TEST(OutsideView, zIsUpWhereTheSceneStandsOnIt) {
+    const auto stands = [](const Maker& maker) {
+        return standsOnZ(maker.grid(), maker.scene().bounds);
+    };
+    Maker zUp, yUp, above, relief, corner, tower;
+    zUp.box({-0.5, -0.5, 0}, {0.5, 0.5, 1.2});
+    zUp.quad({{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
+    EXPECT_TRUE(stands(zUp));
+    tower.box({-5, -5, 0}, {5, 5, 1});
+    tower.box({-2, -2, 1}, {2, 2, 80});
+    EXPECT_TRUE(stands(tower));
+    yUp.box({-0.5, 0, -0.5}, {0.5, 1.2, 0.5});
+    yUp.quad({{-2, 0, 2}, {2, 0, 2}, {2, 0, -2}, {-2, 0, -2}});
+    EXPECT_FALSE(stands(yUp));
+    above.box({-0.5, -0.5, 1}, {0.5, 0.5, 2.2});
+    above.quad({{-2, -2, 1}, {2, -2, 1}, {2, 2, 1}, {-2, 2, 1}});
+    EXPECT_FALSE(stands(above)) << "not on z = 0";
+    relief.box({-0.5, -0.5, 0}, {0.5, 0.5, 0.1});
+    relief.quad({{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}});
+    EXPECT_FALSE(stands(relief));
+    corner.quad({{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}});
+    corner.quad({{0, 0, 0}, {0, 0, 2}, {2, 0, 2}, {2, 0, 0}});
+    EXPECT_FALSE(stands(corner));
+    const Point place{1, 2, 3};
+    EXPECT_EQ(backToZUp(asIfYWereUp(place)), place);
+    EXPECT_EQ(asIfYWereUp(Point{0, 0, 1}), (Point{0, 1, 0}));
+}
+
 TEST(OutsideView, anOpenSideIsLookedInto) {
     Maker right, left;
     right.box({0, 0, 0}, {4, 3, 4}, true, 1);

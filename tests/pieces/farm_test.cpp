@@ -44,7 +44,7 @@ class Farm : public HostProcess {
 };
 
 TEST_F(Farm, MergedPartsAreTheBytesOfALocalRender) {
-    makeParts();
+    makeParts({"--exposure", "auto"});
     EXPECT_EQ(leftFiles(), (std::vector<std::string>{"p1.pmpart", "p2.pmpart", "p3.pmpart"}));
     ASSERT_EQ(run(command({"-o", "a.exr", "-o", "a.png"})).exitCode, 0);
     const Outcome merged =
@@ -57,6 +57,25 @@ TEST_F(Farm, MergedPartsAreTheBytesOfALocalRender) {
     EXPECT_EQ(json.at("passesDone"), 2);
     EXPECT_EQ(json.at("stopReason"), "passes done");
     EXPECT_EQ(json.at("exitCode"), 0);
+}
+
+// Parts keep how bright they are to be shown; a merge may be told otherwise.
+TEST_F(Farm, ExposureIsOfThePartsOrOfTheMerge) {
+    makeParts();
+    ASSERT_EQ(run(command({"-o", "zero.png", "--exposure", "0"})).exitCode, 0);
+    ASSERT_EQ(run(command({"-o", "two.png", "--exposure", "2"})).exitCode, 0);
+    ASSERT_EQ(merge({"-o", "m.png"}).exitCode, 0);
+    EXPECT_TRUE(readText(path("m.png")) == readText(path("zero.png")));
+    ASSERT_EQ(merge({"-o", "m.png", "--exposure", "2"}).exitCode, 0);
+    EXPECT_TRUE(readText(path("m.png")) == readText(path("two.png")));
+    fs::remove(path("m.exr"));
+    expectNoPicture(merge({"-o", "m.png", "--exposure", "auto"}), {"hold no measured exposure"});
+    ASSERT_EQ(run(command({"--buckets", "2/3", "-o", "p2.pmpart", "--exposure", "2"})).exitCode, 0);
+    expectNoPicture(merge({"-o", "m.png"}), {"not of one exposure", "--exposure STOPS"});
+    ASSERT_EQ(merge().exitCode, 0) << "no display picture, no exposure";
+    makeParts({"--exposure", "2"});
+    ASSERT_EQ(merge({"-o", "m.png"}).exitCode, 0);
+    EXPECT_TRUE(readText(path("m.png")) == readText(path("two.png")));
 }
 
 TEST_F(Farm, DisplayAndViewAreOfTheMerge) {

@@ -78,7 +78,9 @@ TEST_F(BadInput, aBlackPictureIsAWarning) {
           "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
           "f 1 2 3 4\nf 5 8 7 6\nf 1 5 6 2\nf 4 3 7 8\nf 1 4 8 5\nf 2 6 7 3\n");
     const std::vector<std::string> small = {"room.obj", "--size", "16x16", "--passes", "1"};
-    const Outcome outside = run(small);
+    std::vector<std::string> without = small;
+    without.insert(without.end(), {"--eye", ".5,.5,3", "--look-at", ".5,.5,0"});
+    const Outcome outside = run(without);
     EXPECT_EQ(outside.exitCode, 0) << outside.err;
     EXPECT_NE(outside.err.find("the picture is black"), std::string::npos) << outside.err;
     std::vector<std::string> within = small;
