@@ -82,9 +82,9 @@ Vec2f Environment::toPicture(const Vec3f& local) const {
 }
 
 Rgb Environment::texel(Vec2f uv) const {
-    const Texel t = m_hasBadTexels ? m_textures->lookUpOfLight(m_texture, uv)
-                                   : m_textures->lookUp(m_texture, uv, 0.0f);
-    return m_scale * Rgb(std::max(0.0f, t.r), std::max(0.0f, t.g), std::max(0.0f, t.b));
+    const Texel t = asLight(m_hasBadTexels ? m_textures->lookUpOfLight(m_texture, uv)
+                                           : m_textures->lookUp(m_texture, uv, 0.0f));
+    return m_scale * Rgb(t.r, t.g, t.b);
 }
 
 Rgb Environment::radiance(const Vec3f& direction) const {

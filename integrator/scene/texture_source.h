@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -20,7 +21,17 @@ struct Texel {
     float r{}, g{}, b{}, a{1.0f};
 };
 
-// Texels of which no light can be: with a colour channel below 0, or one that is infinite or NaN.
+// A texel as light: channels that are infinite or NaN count as 0, and where the rest adds up to no
+// more than 0 there is none. Single channels may be below 0: so are saturated colours of a wider
+// space than the rendering space.
+inline Texel asLight(Texel texel) {
+    for (float* const channel : {&texel.r, &texel.g, &texel.b, &texel.a})
+        if (!(std::abs(*channel) <= std::numeric_limits<float>::max())) *channel = 0.0f;
+    return texel.r + texel.g + texel.b > 0.0f ? texel : Texel{0.0f, 0.0f, 0.0f, texel.a};
+}
+
+// Texels of which no light can be: adding up to less than 0, or with a channel that is infinite or
+// NaN.
 struct BadTexels {
     std::uint64_t negative = 0, notFinite = 0;
 
@@ -38,14 +49,10 @@ class TextureSource {
     // failed look-up returns 0 and counts; it never throws.
     virtual Texel lookUp(std::int32_t index, Vec2f uv, float width) const = 0;
 
-    // The finest level at uv, of a light: texels below 0, infinite ones and NaN count as 0 before
-    // anything is interpolated. Threads and errors as above.
+    // The finest level at uv, of a light: every texel as asLight() has it before anything is
+    // interpolated. Threads and errors as above.
     virtual Texel lookUpOfLight(std::int32_t index, Vec2f uv) const {
-        Texel texel = lookUp(index, uv, 0.0f);
-        for (float* const channel : {&texel.r, &texel.g, &texel.b})
-            if (!(*channel >= 0.0f && *channel <= std::numeric_limits<float>::max()))
-                *channel = 0.0f;
-        return texel;
+        return asLight(lookUp(index, uv, 0.0f));
     }
 
     // How many texels of the finest level such a light has. Throws Error(kCancelled) soon after

@@ -44,9 +44,9 @@ Rgb Scene::emission(std::uint32_t index, Vec2f uv) const {
     if (material.emissionTexture == kNoTexture) return material.emission;
     const auto texture = static_cast<std::size_t>(material.emissionTexture);
     const bool isBad = texture < m_hasBadTexels.size() && m_hasBadTexels[texture];
-    const Texel t = isBad ? textures()->lookUpOfLight(material.emissionTexture, uv)
-                          : textures()->lookUp(material.emissionTexture, uv, 0.0f);
-    return material.emission * Rgb(std::max(0.0f, t.r), std::max(0.0f, t.g), std::max(0.0f, t.b));
+    const Texel t = asLight(isBad ? textures()->lookUpOfLight(material.emissionTexture, uv)
+                                  : textures()->lookUp(material.emissionTexture, uv, 0.0f));
+    return material.emission * Rgb(t.r, t.g, t.b);
 }
 
 bool Scene::findBadTexels(std::int32_t texture, const CancelCheck& cancel) {

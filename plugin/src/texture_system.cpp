@@ -81,11 +81,6 @@ Texel withGain(const TexturePicture& picture, Texel texel) {
     return texel;
 }
 
-// Not below 0, infinite or NaN.
-bool isLight(float value) {
-    return value >= 0.0f && value <= std::numeric_limits<float>::max();
-}
-
 struct FreeHash {
     void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
 };
@@ -238,10 +233,11 @@ bool TextureSystem::lookUpOfLight(const TexturePicture& picture, Vec2f uv, Texel
             const Texel found = withGain(picture, toTexel(values, channelCount));
             const float weight =
                 (i > 0 ? x - x0 : 1.0f - (x - x0)) * (j > 0 ? y - y0 : 1.0f - (y - y0));
-            texel.r += weight * (isLight(found.r) ? found.r : 0.0f);
-            texel.g += weight * (isLight(found.g) ? found.g : 0.0f);
-            texel.b += weight * (isLight(found.b) ? found.b : 0.0f);
-            texel.a += weight * (isLight(found.a) ? found.a : 0.0f);
+            const Texel light = asLight(found);
+            texel.r += weight * light.r;
+            texel.g += weight * light.g;
+            texel.b += weight * light.b;
+            texel.a += weight * light.a;
         }
     return true;
 }
@@ -268,7 +264,7 @@ BadTexels TextureSystem::badTexels(const TexturePicture& picture, const CancelCh
             const Texel texel = withGain(picture, toTexel(values, channelCount));
             if (!std::isfinite(texel.r) || !std::isfinite(texel.g) || !std::isfinite(texel.b))
                 ++bad.notFinite;
-            else if (texel.r < 0.0f || texel.g < 0.0f || texel.b < 0.0f)
+            else if (texel.r + texel.g + texel.b < 0.0f)
                 ++bad.negative;
         }
     }
