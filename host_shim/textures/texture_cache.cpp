@@ -164,6 +164,20 @@ fs::path TextureCache::nameForNew() const {
     return m_folder / "textures" / (uniqueName() + ".tx");
 }
 
+void TextureCache::noteUnderway(const fs::path& temporary) {
+    const std::lock_guard lock(m_mutex);
+    if (m_isAbandoned)
+        throw HostError(ExitCode::kFile, fmt::format("{}: given up", temporary.string()));
+    m_underway.push_back(temporary);
+}
+
+void TextureCache::abandon() {
+    const std::lock_guard lock(m_mutex);
+    m_isAbandoned = true;
+    for (const fs::path& file : m_underway) removeFile(file);
+    if (!m_leaseFile.empty()) removeFile(m_leaseFile);
+}
+
 void TextureCache::commitAsItIs(const std::string& name, Record record) const {
     record.set("asItIs", "1");
     record.write(recordFile(name));

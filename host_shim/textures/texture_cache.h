@@ -48,6 +48,10 @@ class TextureCache {
     std::filesystem::path textureFile(const std::string& name) const;
     // A name for a texture that is being made, which no other has.
     std::filesystem::path nameForNew() const;
+    // A file that is being written, to be removed by abandon(). Errors: HostError kFile after that.
+    void noteUnderway(const std::filesystem::path& temporary);
+    // This process ends while threads may still write: what they write is removed, and the lease.
+    void abandon();
     // Gives a texture its name, and writes its record. Errors: HostError kFile.
     void commit(const std::string& name, FinishedFile& texture, Record record);
     // The record of a picture that is used as it is.
@@ -78,6 +82,8 @@ class TextureCache {
     std::mutex m_mutex;
     int m_lease{-1};  // descriptor of the lease's file
     std::filesystem::path m_leaseFile;
+    std::vector<std::filesystem::path> m_underway;
+    bool m_isAbandoned{};
 };
 
 // $XDG_CACHE_HOME/pm, else ~/.cache/pm; empty where neither is known.

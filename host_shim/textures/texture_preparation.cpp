@@ -234,6 +234,7 @@ TextureFacts TexturePreparer::Work::bake(TextureCache& cache, const std::string&
     }
     const fs::path path = cache.textureFile(name);
     FinishedFile finished(cache.nameForNew());
+    cache.noteUnderway(finished.temporaryPath());
     CheckedFile file(finished.temporaryPath(), path);
     facts = baking->bake(file, finished.temporaryPath(), path, goOn);
     cache.commit(name, finished, toRecord(facts, request.file));
@@ -306,6 +307,7 @@ void TexturePreparer::prepare(const std::vector<TextureRequest>& requests) {
             });
         } catch (...) {
             shared->stops = true;
+            m_cache->abandon();
             throw;
         }
     };

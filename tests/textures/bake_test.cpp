@@ -53,7 +53,7 @@ TEST_F(Bake, IsGivenUpBetweenSteps) {
         left = at;
         EXPECT_THROW(stopping.texture({file("other.png")}), Stopped);
         left = 0;
-        EXPECT_TRUE(std::filesystem::exists(stopping.texture({file("other.png")}).file));
+        EXPECT_TRUE(std::filesystem::exists(baked({file("other.png")}).file));
         std::filesystem::remove_all(cacheFolder());
     }
 }
