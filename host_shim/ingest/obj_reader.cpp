@@ -146,13 +146,18 @@ std::vector<SubdivisionTag> tagsOfGroup(const ObjText& text, std::size_t group) 
     return tags;
 }
 
-// Opening one would wait, deaf to Ctrl-C, for somebody to write into it.
-void refusePipe(const fs::path& file) {
+// What is no file may never end; opening a pipe would wait, deaf to Ctrl-C, for somebody to write
+// into it.
+void refuseWhatIsNoFile(const fs::path& file) {
     std::error_code ignored;
-    if (fs::is_fifo(file, ignored))
-        throw HostError(
-            ExitCode::kFile,
-            fmt::format("{}: can't be read: it is a pipe; a file is wanted", file.string()));
+    const fs::file_status status = fs::status(file, ignored);
+    if (!fs::exists(status) || fs::is_regular_file(status)) return;
+    throw HostError(ExitCode::kFile,
+                    fmt::format("{}: can't be read: it is a {}; a file is wanted", file.string(),
+                                fs::is_directory(status) ? "folder"
+                                : fs::is_fifo(status)    ? "pipe"
+                                : fs::is_socket(status)  ? "socket"
+                                                         : "device"));
 }
 
 std::ifstream openFile(const fs::path& file) {
@@ -245,17 +250,12 @@ void checkSceneFile(const fs::path& file) {
             ExitCode::kBadInput,
             fmt::format("{}: no geometry: this is a folder; an OBJ file is wanted", file.string()));
     }
-    refusePipe(file);
+    refuseWhatIsNoFile(file);
     openFile(file);
 }
 
 std::string readWholeFile(const fs::path& file) {
-    // Streams open folders, and find nothing in them.
-    std::error_code ignored;
-    if (fs::is_directory(file, ignored))
-        throw HostError(ExitCode::kFile,
-                        fmt::format("{}: can't be read: it is a folder", file.string()));
-    refusePipe(file);
+    refuseWhatIsNoFile(file);
     std::ifstream stream = openFile(file);
     std::ostringstream text;
     text << stream.rdbuf();
