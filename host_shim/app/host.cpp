@@ -5,6 +5,7 @@
 #include "host_shim/app/guarded.h"
 #include "host_shim/app/interrupt.h"
 #include "host_shim/app/listings.h"
+#include "host_shim/app/plain_text.h"
 #include "host_shim/app/session.h"
 #include "host_shim/cli/command_line.h"
 #include "host_shim/pictures/host_error.h"
@@ -20,7 +21,10 @@
 namespace pm::host {
 namespace {
 
-void print(const std::string& text) {
+constexpr const char* kSceneLinearRole = "scene_linear";  // OpenColorIO's
+
+void print(const std::string& given) {
+    const std::string text = plainLines(given);
     std::fwrite(text.data(), 1, text.size(), stdout);
     std::fflush(stdout);
 }
@@ -61,11 +65,21 @@ int printVersion(const Options& options) {
     return 0;
 }
 
+// No colour is converted for a listing: so the space that materials are in unless the user says
+// otherwise, which may be out of the config's reach, isn't asked for.
+ColourOptions listedColour(const Options& options) {
+    ColourOptions colour = options.colour;
+    if (colour.materialSpace.empty())
+        colour.materialSpace =
+            colour.renderingSpace.empty() ? std::string(kSceneLinearRole) : colour.renderingSpace;
+    return colour;
+}
+
 int printList(const Options& options) {
     if (options.list == "views") {
-        print(listViews(ColourPipeline(options.colour)));
+        print(listViews(ColourPipeline(listedColour(options))));
     } else if (options.list == "spaces") {
-        print(listSpaces(ColourPipeline(options.colour)));
+        print(listSpaces(ColourPipeline(listedColour(options))));
     } else {
         const Plugin plugin(options.plugin);
         print(options.list == "aovs"     ? listLayers(plugin.api())

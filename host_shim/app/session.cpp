@@ -6,7 +6,9 @@
 #include "host_shim/app/interrupt.h"
 #include "host_shim/app/outputs.h"
 #include "host_shim/app/picture_assembly.h"
+#include "host_shim/app/plain_text.h"
 #include "host_shim/app/scene_builder.h"
+#include "host_shim/app/scene_memory.h"
 #include "host_shim/app/session_files.h"
 #include "host_shim/colour/display_picture.h"
 #include "host_shim/ingest/lamps.h"
@@ -73,6 +75,7 @@ int Session::run() {
     if (!m_options.statistics.empty() && (!toFile || m_mayWriteStatistics))
         write(&Session::writeStatistics);
     if (!m_options.report.empty() && m_mayWriteStatistics) write(&Session::writeReport);
+    if (written == 0 && m_log.fileFailed()) written = static_cast<int>(ExitCode::kFile);
     return m_statistics.exitCode != 0 ? m_statistics.exitCode : written;
 }
 
@@ -160,6 +163,7 @@ void Session::buildScene(const ColourPipeline& colour, const PluginContext& cont
                          MaterialBuilder& materials, PluginScene& scene) {
     const WarningSink sink = [this](Warning code, const std::string& text) { warn(code, text); };
     SceneData data;
+    checkFileFits(m_options);
     phase("readSceneSeconds", [&] {
         data = readObjFile(m_options.scene, sink, throwIfInterrupted, m_options.camera.eye);
     });
@@ -180,6 +184,7 @@ void Session::buildScene(const ColourPipeline& colour, const PluginContext& cont
                               data.meshes.size(), data.faceCount, data.materials.size(),
                               data.materialFiles.size(), camera.eye[0], camera.eye[1],
                               camera.eye[2], camera.lookAt[0], camera.lookAt[1], camera.lookAt[2]));
+    checkSceneFits(m_options, data);
     phase("buildSceneSeconds", [&] {
         const InterruptWatch watch([&] { context.api().cancelBuilds(context.handle(), 1); });
         scene.build(data, m_options.scene.string(), m_options.subdivide, camera, colour, materials);
@@ -207,7 +212,7 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
             run.keepFrame(whole + " needs the whole picture at once");
     }
     if (m_options.explain) {
-        std::fputs(run.explain().c_str(), stdout);
+        std::fputs(plainLines(run.explain()).c_str(), stdout);
         m_statistics.stopReason = "finished";
         return 0;
     }

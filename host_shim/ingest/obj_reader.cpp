@@ -20,6 +20,7 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <span>
 #include <sstream>
 #include <streambuf>
 #include <utility>
@@ -139,11 +140,11 @@ void checkParsed(const Parsed& parsed, const ObjText& text, const std::string& f
     }
 }
 
-std::vector<SubdivisionTag> tagsOfGroup(const ObjText& text, std::size_t group) {
-    std::vector<SubdivisionTag> tags;
-    std::ranges::copy_if(text.tags, std::back_inserter(tags),
-                         [group](const SubdivisionTag& tag) { return tag.group == group; });
-    return tags;
+// Groups of tags only grow through the file.
+std::span<const SubdivisionTag> tagsOfGroup(const ObjText& text, std::size_t group) {
+    const auto [first, last] =
+        std::ranges::equal_range(text.tags, group, {}, &SubdivisionTag::group);
+    return {first, last};
 }
 
 // What is no file may never end; opening a pipe would wait, deaf to Ctrl-C, for somebody to write
@@ -228,7 +229,7 @@ SceneData readObj(std::string_view text, const std::string& fileName, const fs::
         ask();
         MeshData& mesh = scene.meshes.emplace_back(assembly.assemble(
             shape, objText.faceSizes.data() + scene.faceCount, faces, defaultMaterial));
-        const auto tags = tagsOfGroup(objText, scene.meshes.size() - 1);
+        const std::span<const SubdivisionTag> tags = tagsOfGroup(objText, scene.meshes.size() - 1);
         if (!tags.empty()) {
             mesh.tags = readCageTags(tags, assembly, {scene.faceCount, faces}, fileName, warn);
         }
