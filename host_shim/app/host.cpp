@@ -4,21 +4,28 @@
 
 #include "host_shim/app/cache_command.h"
 #include "host_shim/app/guarded.h"
+#include "host_shim/app/interrupt.h"
 #include "host_shim/app/listings.h"
+#include "host_shim/app/plain_text.h"
 #include "host_shim/app/session.h"
 #include "host_shim/cli/command_line.h"
 #include "host_shim/pictures/host_error.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <csignal>
 #include <cstdio>
 #include <cstdlib>
 
 namespace pm::host {
 namespace {
 
-void print(const std::string& text) {
+constexpr const char* kSceneLinearRole = "scene_linear";  // OpenColorIO's
+
+void print(const std::string& given) {
+    const std::string text = plainLines(given);
     std::fwrite(text.data(), 1, text.size(), stdout);
     std::fflush(stdout);
 }
@@ -63,11 +70,21 @@ int printVersion(const Options& options) {
     return 0;
 }
 
+// No colour is converted for a listing: so the space that materials are in unless the user says
+// otherwise, which may be out of the config's reach, isn't asked for.
+ColourOptions listedColour(const Options& options) {
+    ColourOptions colour = options.colour;
+    if (colour.materialSpace.empty())
+        colour.materialSpace =
+            colour.renderingSpace.empty() ? std::string(kSceneLinearRole) : colour.renderingSpace;
+    return colour;
+}
+
 int printList(const Options& options) {
     if (options.list == "views") {
-        print(listViews(ColourPipeline(options.colour)));
+        print(listViews(ColourPipeline(listedColour(options))));
     } else if (options.list == "spaces") {
-        print(listSpaces(ColourPipeline(options.colour)));
+        print(listSpaces(ColourPipeline(listedColour(options))));
     } else {
         const Plugin plugin(options.plugin);
         print(options.list == "aovs"     ? listLayers(plugin.api())
@@ -87,7 +104,39 @@ int runOptions(const Options& options, Log& log) {
     return Session(options, log).run();
 }
 
+// Of the environment pm_host reads $OCIO and what its config names, and a few of its own. Its
+// libraries would read more, and the same command line would then give another picture.
+void forgetForeignVariables() {
+    for (const char* name :
+         {"OCIO_ACTIVE_DISPLAYS", "OCIO_ACTIVE_VIEWS", "OCIO_INACTIVE_COLORSPACES",
+          "OCIO_OPTIMIZATION_FLAGS", "OPENIMAGEIO_OPTIONS", "OPENIMAGEIO_IMAGECACHE_OPTIONS",
+          "OPENIMAGEIO_TEXTURE_OPTIONS"})
+        unsetenv(name);
+}
+
+// A file that is opened while one of these is closed would take its number, and what is printed
+// would go into it. Standard output is opened the wrong way, so that results that go nowhere are
+// an error; messages may go nowhere.
+void fillStandardDescriptors() {
+    for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (fcntl(descriptor, F_GETFD) < 0)
+            static_cast<void>(open("/dev/null", descriptor == STDERR_FILENO ? O_WRONLY : O_RDONLY));
+}
+
 }  // namespace
+
+int runProcess(int argc, char** argv) {
+    fillStandardDescriptors();
+    forgetForeignVariables();
+    std::signal(SIGPIPE, SIG_IGN);
+    std::signal(SIGXFSZ, SIG_IGN);  // a write beyond the limit then fails like on a full disk
+    installInterruptHandlers();
+    const int code = runHost({argv + 1, argv + argc});
+    std::fflush(nullptr);
+    // All is written; what libraries still have in work nobody wants any more.
+    if (interruptSignal() != 0) _exit(code);
+    return code;
+}
 
 int runHost(const std::vector<std::string>& arguments) {
     Log log({});

@@ -2,13 +2,17 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/log.h"
 
+#include "host_shim/app/plain_text.h"
 #include "host_shim/pictures/host_error.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <algorithm>
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
+#include <fstream>
 
 namespace pm::host {
 namespace {
@@ -32,12 +36,37 @@ double residentMemoryMib() {
 
 Log::Log(const Settings& settings) : m_settings(settings) {}
 
+Log::~Log() {
+    if (m_file >= 0) ::close(m_file);
+}
+
 void Log::openFile(const std::filesystem::path& file) {
-    m_file.open(file, std::ios::binary | std::ios::trunc);
-    if (!m_file) {
-        throw HostError(ExitCode::kFile,
-                        fmt::format("{}: the log can't be written", file.string()));
+    m_fileName = file;
+    m_file = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
+    if (m_file < 0) {
+        throw HostError(ExitCode::kFile, fmt::format("{}: the log can't be written: {}",
+                                                     file.string(), std::strerror(errno)));
     }
+}
+
+void Log::writeToFile(std::string_view line) {
+    if (m_file < 0 || m_fileError != 0) return;
+    std::string_view rest = line;
+    while (!rest.empty()) {
+        const ssize_t written = ::write(m_file, rest.data(), rest.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written <= 0) {
+            m_fileError = written < 0 ? errno : ENOSPC;
+            break;
+        }
+        rest.remove_prefix(static_cast<std::size_t>(written));
+    }
+    if (m_fileError == 0) return;
+    std::error_code ignored;
+    if (::lseek(m_file, 0, SEEK_END) == 0)
+        std::filesystem::remove(std::filesystem::canonical(m_fileName, ignored), ignored);
+    message(Level::kError, fmt::format("{}: the log can't be written: {}", m_fileName.string(),
+                                       std::strerror(m_fileError)));
 }
 
 double Log::elapsedSeconds() const {
@@ -45,12 +74,8 @@ double Log::elapsedSeconds() const {
 }
 
 void Log::message(Level level, std::string_view text) {
-    std::string line(text);
     // Names come from files: none may end the line or speak to the terminal.
-    const auto isControl = [](unsigned char c) { return c < 0x20 || c == 0x7f; };
-    std::ranges::replace_if(
-        line, [](char c) { return c == '\n' || c == '\t'; }, ' ');
-    std::ranges::replace_if(line, isControl, '?');
+    std::string line = plainText(text);
     const char* colour = nullptr;
     if (level == Level::kError) {
         line = "pm_host: " + line;
@@ -62,8 +87,8 @@ void Log::message(Level level, std::string_view text) {
         line =
             fmt::format("[{:8.2f} s {:6.0f} MiB] {}", elapsedSeconds(), residentMemoryMib(), line);
     }
-    if (m_file.is_open()) m_file << line << '\n' << std::flush;
     if (level >= m_settings.leastLevel) write(line, colour);
+    writeToFile(line + "\n");
 }
 
 void Log::warning(int code, std::string_view text) {

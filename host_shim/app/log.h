@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <map>
 #include <string>
 #include <string_view>
@@ -30,11 +29,16 @@ class Log {
         bool colours{};
     };
     explicit Log(const Settings& settings);
+    ~Log();
+    Log(const Log&) = delete;
+    Log& operator=(const Log&) = delete;
 
     // Settings become known after the log is needed.
     void configure(const Settings& settings) { m_settings = settings; }
     // Errors: kFile.
     void openFile(const std::filesystem::path& file);
+    // Whether a line did not get into the file, which was told once; one that stayed empty is gone.
+    bool fileFailed() const { return m_fileError != 0; }
 
     void message(Level level, std::string_view text);
     void info(std::string_view text) { message(Level::kInfo, text); }
@@ -56,10 +60,13 @@ class Log {
 
   private:
     void write(std::string_view text, const char* colour);
+    void writeToFile(std::string_view line);
 
     Settings m_settings;
     std::chrono::steady_clock::time_point m_start{std::chrono::steady_clock::now()};
-    std::ofstream m_file;
+    std::filesystem::path m_fileName;
+    int m_file{-1};
+    int m_fileError{};  // the first errno
     std::map<int, WarningCount> m_warnings;
     std::string m_subject;
     bool m_hasStatusLine{};

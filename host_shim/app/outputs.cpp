@@ -7,7 +7,6 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <set>
 
 namespace pm::host {
@@ -56,11 +55,11 @@ void checkTextFile(const fs::path& file) {
             fmt::format("{}: the folder {} does not exist (--make-output-path makes it)",
                         file.string(), folder.string()));
     }
-    const FinishedFile probe(file);
-    const bool isFile = !fs::exists(file, error) || fs::is_regular_file(file, error);
-    if (!isFile || !std::ofstream(probe.temporaryPath())) {
-        throw HostError(ExitCode::kFile, fmt::format("{}: can't be written", file.string()));
+    if (fs::exists(file, error) && !fs::is_regular_file(file, error)) {
+        throw HostError(ExitCode::kFile,
+                        fmt::format("{}: can't be written: it is no regular file", file.string()));
     }
+    const FinishedFile probe(file);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/report_html.h"
 
+#include "host_shim/app/plain_text.h"
+
 #include <fmt/format.h>
 
 namespace pm::host {
@@ -38,7 +40,7 @@ constexpr const char* kPolicy =
 
 std::string escaped(std::string_view text) {
     std::string result;
-    for (const char c : text) {
+    for (const char c : plainLines(text)) {
         switch (c) {
             case '&':
                 result += "&amp;";
@@ -55,11 +57,8 @@ std::string escaped(std::string_view text) {
             case '\'':
                 result += "&#39;";
                 break;
-            default: {
-                const auto byte = static_cast<unsigned char>(c);
-                const bool isControl = (byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7f;
-                result += isControl ? std::string("\xEF\xBF\xBD") : std::string(1, c);
-            }
+            default:
+                result += c;
         }
     }
     return result;

@@ -10,7 +10,7 @@ namespace pm::host {
 
 // Pieces of a page that is HTML and well-formed XML at once. Texts are UTF-8.
 
-// As content or as the value of an attribute; what XML can't hold becomes U+FFFD.
+// As content or as the value of an attribute; by plainLines().
 std::string escaped(std::string_view text);
 
 // <section> with a heading. content is HTML.

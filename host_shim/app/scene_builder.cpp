@@ -3,6 +3,7 @@
 #include "host_shim/app/scene_builder.h"
 
 #include "host_shim/app/interrupt.h"
+#include "host_shim/app/scene_memory.h"
 
 #include <fmt/format.h>
 
@@ -12,8 +13,6 @@
 
 namespace pm::host {
 namespace {
-
-constexpr uint32_t kTessellationRate = 8;
 
 PmrMeshDesc describe(const MeshData& mesh) {
     auto desc = PMR_INIT(PmrMeshDesc);

@@ -7,7 +7,9 @@
 #include "host_shim/app/material_rules.h"
 #include "host_shim/app/outputs.h"
 #include "host_shim/app/picture_assembly.h"
+#include "host_shim/app/plain_text.h"
 #include "host_shim/app/scene_builder.h"
+#include "host_shim/app/scene_memory.h"
 #include "host_shim/app/session_files.h"
 #include "host_shim/app/texture_setup.h"
 #include "host_shim/colour/display_picture.h"
@@ -75,6 +77,7 @@ int Session::run() {
     if (!m_options.statistics.empty() && (!toFile || m_mayWriteStatistics))
         write(&Session::writeStatistics);
     if (!m_options.report.empty() && m_mayWriteStatistics) write(&Session::writeReport);
+    if (written == 0 && m_log.fileFailed()) written = static_cast<int>(ExitCode::kFile);
     return m_statistics.exitCode != 0 ? m_statistics.exitCode : written;
 }
 
@@ -169,6 +172,7 @@ void Session::buildScene(const ColourPipeline& colour, MaterialBuilder& material
                          std::optional<PluginScene>& scene) {
     const WarningSink sink = [this](Warning code, const std::string& text) { warn(code, text); };
     SceneData data;
+    checkFileFits(m_options);
     phase("readSceneSeconds", [&] {
         data = readObjFile(m_options.scene, sink, throwIfInterrupted, m_options.camera.eye,
                            materialRules(m_options));
@@ -192,6 +196,7 @@ void Session::buildScene(const ColourPipeline& colour, MaterialBuilder& material
                               data.meshes.size(), data.faceCount, data.materials.size(),
                               data.materialFiles.size(), camera.eye[0], camera.eye[1],
                               camera.eye[2], camera.lookAt[0], camera.lookAt[1], camera.lookAt[2]));
+    checkSceneFits(m_options, data);
     buildLit(data, camera, colour, materials, scene);
     const TextureCounts textures = materials.textureCounts();
     if (textures.found + textures.converted > 0)
@@ -229,7 +234,9 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
             run.keepFrame(whole + " needs the whole picture at once");
     }
     if (m_options.explain) {
-        std::fputs((run.explain() + explainMaterials(m_statistics.materialFiles)).c_str(), stdout);
+        std::fputs(
+            plainLines(run.explain() + explainMaterials(m_statistics.materialFiles)).c_str(),
+            stdout);
         m_statistics.stopReason = "finished";
         return 0;
     }

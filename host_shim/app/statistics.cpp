@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/statistics.h"
 
+#include "host_shim/app/plain_text.h"
+
 #include <fmt/format.h>
 #include <unistd.h>
 #include <nlohmann/json.hpp>
@@ -118,7 +120,7 @@ std::string Statistics::toJson(const Log& log) const {
     const Json warnings = warningList(log, all);
     join(mine, all);
     all["warnings"] = warnings;
-    return all.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return plainJson(all.dump(2, ' ', false, Json::error_handler_t::replace)) + "\n";
 }
 
 }  // namespace pm::host

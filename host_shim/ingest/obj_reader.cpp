@@ -20,6 +20,7 @@
 #include <fstream>
 #include <functional>
 #include <limits>
+#include <span>
 #include <sstream>
 #include <streambuf>
 #include <utility>
@@ -139,20 +140,25 @@ void checkParsed(const Parsed& parsed, const ObjText& text, const std::string& f
     }
 }
 
-std::vector<SubdivisionTag> tagsOfGroup(const ObjText& text, std::size_t group) {
-    std::vector<SubdivisionTag> tags;
-    std::ranges::copy_if(text.tags, std::back_inserter(tags),
-                         [group](const SubdivisionTag& tag) { return tag.group == group; });
-    return tags;
+// Groups of tags only grow through the file.
+std::span<const SubdivisionTag> tagsOfGroup(const ObjText& text, std::size_t group) {
+    const auto [first, last] =
+        std::ranges::equal_range(text.tags, group, {}, &SubdivisionTag::group);
+    return {first, last};
 }
 
-// Opening one would wait, deaf to Ctrl-C, for somebody to write into it.
-void refusePipe(const fs::path& file) {
+// What is no file may never end; opening a pipe would wait, deaf to Ctrl-C, for somebody to write
+// into it.
+void refuseWhatIsNoFile(const fs::path& file) {
     std::error_code ignored;
-    if (fs::is_fifo(file, ignored))
-        throw HostError(
-            ExitCode::kFile,
-            fmt::format("{}: can't be read: it is a pipe; a file is wanted", file.string()));
+    const fs::file_status status = fs::status(file, ignored);
+    if (!fs::exists(status) || fs::is_regular_file(status)) return;
+    throw HostError(ExitCode::kFile,
+                    fmt::format("{}: can't be read: it is a {}; a file is wanted", file.string(),
+                                fs::is_directory(status) ? "folder"
+                                : fs::is_fifo(status)    ? "pipe"
+                                : fs::is_socket(status)  ? "socket"
+                                                         : "device"));
 }
 
 std::ifstream openFile(const fs::path& file) {
@@ -233,7 +239,7 @@ SceneData readObj(std::string_view text, const std::string& fileName, const fs::
         ask();
         MeshData& mesh = scene.meshes.emplace_back(assembly.assemble(
             shape, objText.faceSizes.data() + scene.faceCount, faces, defaultMaterial));
-        const auto tags = tagsOfGroup(objText, scene.meshes.size() - 1);
+        const std::span<const SubdivisionTag> tags = tagsOfGroup(objText, scene.meshes.size() - 1);
         if (!tags.empty()) {
             mesh.tags = readCageTags(tags, assembly, {scene.faceCount, faces}, fileName, warn);
         }
@@ -255,17 +261,12 @@ void checkSceneFile(const fs::path& file) {
             ExitCode::kBadInput,
             fmt::format("{}: no geometry: this is a folder; an OBJ file is wanted", file.string()));
     }
-    refusePipe(file);
+    refuseWhatIsNoFile(file);
     openFile(file);
 }
 
 std::string readWholeFile(const fs::path& file) {
-    // Streams open folders, and find nothing in them.
-    std::error_code ignored;
-    if (fs::is_directory(file, ignored))
-        throw HostError(ExitCode::kFile,
-                        fmt::format("{}: can't be read: it is a folder", file.string()));
-    refusePipe(file);
+    refuseWhatIsNoFile(file);
     std::ifstream stream = openFile(file);
     std::ostringstream text;
     text << stream.rdbuf();

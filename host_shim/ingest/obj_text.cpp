@@ -10,9 +10,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <iterator>
 #include <map>
+#include <numeric>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace pm::host {
 namespace {
@@ -257,7 +259,7 @@ class ObjScan {
     void addLibrary(std::string_view name) {
         if (name.empty()) {
             leaveOut("mtllib lines without a file name");
-        } else if (std::ranges::find(m_out.materialFiles, name) == m_out.materialFiles.end()) {
+        } else if (m_libraries.emplace(name).second) {
             m_out.materialFiles.emplace_back(name);
             m_out.materialFileLines.push_back(m_lines.number());
         }
@@ -305,16 +307,22 @@ class ObjScan {
     void settleTagGroups() {
         std::vector<std::uint64_t> groups = m_faceGroups;
         groups.erase(std::unique(groups.begin(), groups.end()), groups.end());
+        const bool hasHoles = std::ranges::any_of(
+            m_out.tags, [](const SubdivisionTag& tag) { return tag.name == "hole"; });
+        std::vector<std::int64_t> keptBefore(hasHoles ? m_keptFaces.size() : 0);
+        std::exclusive_scan(m_keptFaces.begin(), m_keptFaces.begin() + std::ssize(keptBefore),
+                            keptBefore.begin(), std::int64_t{0});
         for (SubdivisionTag& tag : m_out.tags) {
             const auto found = std::ranges::lower_bound(groups, tag.group);
             tag.group = static_cast<std::uint64_t>(std::min<std::ptrdiff_t>(
                 found - groups.begin(), static_cast<std::ptrdiff_t>(groups.size()) - 1));
-            if (tag.name == "hole") countKeptFaces(tag);
+            if (tag.name == "hole") countKeptFaces(keptBefore, tag);
         }
     }
 
     // Holes count every f line; faces that were left out move the numbers of later ones.
-    void countKeptFaces(SubdivisionTag& tag) const {
+    // keptBefore: for each f line, how many before it were kept.
+    void countKeptFaces(const std::vector<std::int64_t>& keptBefore, SubdivisionTag& tag) const {
         std::vector<std::int64_t> kept;
         for (const std::int64_t face : tag.integers) {
             if (face < 0 || face >= static_cast<std::int64_t>(m_keptFaces.size())) {
@@ -322,7 +330,7 @@ class ObjScan {
                      fmt::format("hole refers to face {} of {}", face, m_keptFaces.size()));
             }
             if (!m_keptFaces[static_cast<std::size_t>(face)]) continue;
-            kept.push_back(std::count(m_keptFaces.begin(), m_keptFaces.begin() + face, true));
+            kept.push_back(keptBefore[static_cast<std::size_t>(face)]);
         }
         tag.integers = std::move(kept);
     }
@@ -347,6 +355,7 @@ class ObjScan {
     std::vector<bool> m_keptFaces;            // for each f line
     std::vector<ForwardReference> m_forward;
     std::unordered_map<std::string, std::size_t> m_materialNumbers;
+    std::unordered_set<std::string> m_libraries;
     std::map<std::string, std::pair<std::uint64_t, std::uint64_t>> m_leftOut;  // count, first line
     std::string m_unknown;  // the first statement that is not understood
 };

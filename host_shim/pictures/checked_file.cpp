@@ -22,9 +22,9 @@ void failWriting(const std::filesystem::path& path, int error, const std::string
                     fmt::format("{}: can't be written: {}", path.string(), reason));
 }
 
-CheckedFile::CheckedFile(const std::filesystem::path& path, const std::filesystem::path& shownPath)
-    : IOProxy(path.string(), Write) {
-    m_file = ::open(path.c_str(), O_RDWR | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
+CheckedFile::CheckedFile(const FinishedFile& finished, const std::filesystem::path& shownPath)
+    : IOProxy(finished.temporaryPath().string(), Write) {
+    m_file = ::fcntl(finished.descriptor(), F_DUPFD_CLOEXEC, 0);
     if (m_file < 0) failWriting(shownPath, errno, {});
 }
 

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include "host_shim/pictures/finished_file.h"
+
 #include <OpenImageIO/filesystem.h>
 
 #include <atomic>
@@ -18,8 +20,8 @@ namespace pm::host {
 // writers themselves return true for a JPEG, a PNG or the end of an EXR on a full disk.
 class CheckedFile final : public OIIO::Filesystem::IOProxy {
   public:
-    // Creates or truncates. Errors: HostError kFile, naming shownPath.
-    CheckedFile(const std::filesystem::path& path, const std::filesystem::path& shownPath);
+    // finished: new, and outlives this. Errors: HostError kFile, naming shownPath.
+    CheckedFile(const FinishedFile& finished, const std::filesystem::path& shownPath);
     ~CheckedFile() override;
     CheckedFile(const CheckedFile&) = delete;
     CheckedFile& operator=(const CheckedFile&) = delete;

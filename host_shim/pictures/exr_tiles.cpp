@@ -44,7 +44,7 @@ TiledExr::TiledExr(const std::filesystem::path& path, const Picture& head, std::
       m_rows(tilesAcross(m_window.height(), tilePixels)),
       m_spec(tiledSpec(head, tilePixels, options.halfColour)),
       m_finished(path),
-      m_file(m_finished.temporaryPath(), path),
+      m_file(m_finished, path),
       m_output(OIIO::ImageOutput::create(m_finished.temporaryPath().string())),
       m_written(static_cast<std::size_t>(m_columns) * static_cast<std::size_t>(m_rows)) {
     if (!m_output) throw HostError(ExitCode::kFile, m_path.string() + ": " + OIIO::geterror());

@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
+#include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
@@ -35,9 +37,20 @@ std::filesystem::path followLink(std::filesystem::path path) {
     return path;
 }
 
-std::filesystem::path temporaryName(const std::filesystem::path& path) {
-    return path.string() +
-           fmt::format(".tmp.{}.{}{}", hostName(), ::getpid(), path.extension().string());
+// What follows a name cut so that both fit into one; never within a character of UTF-8.
+std::string cutTo(std::string name, std::size_t most) {
+    if (name.size() <= most) return name;
+    while (most > 0 && (static_cast<unsigned char>(name[most]) & 0xc0u) == 0x80) --most;
+    name.resize(most);
+    return name;
+}
+
+constexpr std::size_t kLongestName = 255;  // bytes, of Linux's file systems
+
+std::filesystem::path withEnding(const std::filesystem::path& path, const std::string& name,
+                                 const std::string& ending) {
+    const std::size_t most = kLongestName - std::min(kLongestName, ending.size());
+    return path.parent_path() / (cutTo(name, most) + ending);
 }
 
 // Returns 0 or an errno.
@@ -67,9 +80,27 @@ int writeAll(int file, std::string_view bytes) {
 }  // namespace
 
 FinishedFile::FinishedFile(const std::filesystem::path& finalPath)
-    : m_final(followLink(finalPath)), m_temporary(temporaryName(m_final)) {}
+    : m_final(followLink(finalPath)) {
+    constexpr int kTries = 1000;  // of names that somebody has
+    std::error_code ignored;
+    const int mode = std::filesystem::exists(m_final, ignored) ? 0600 : 0666;  // until it is whole
+    for (int i = 0; i < kTries && m_file < 0; ++i) {
+        const std::string ending =
+            fmt::format(".tmp.{}.{}{}{}", hostName(), ::getpid(),
+                        i == 0 ? "" : fmt::format(".{}", i), m_final.extension().string());
+        m_temporary = withEnding(m_final, m_final.filename().string(), ending);
+        m_file =
+            ::open(m_temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW | O_CLOEXEC, mode);
+        if (m_file < 0 && errno != EEXIST) break;
+    }
+    if (m_file < 0) {
+        throw HostError(ExitCode::kFile, fmt::format("{}: no file can be made in its folder: {}",
+                                                     m_final.string(), std::strerror(errno)));
+    }
+}
 
 FinishedFile::~FinishedFile() {
+    ::close(m_file);
     std::error_code ignored;
     if (!m_committed) std::filesystem::remove(m_temporary, ignored);
 }
@@ -79,6 +110,7 @@ void FinishedFile::commit() {
 }
 
 void FinishedFile::commitAs(const std::filesystem::path& name) {
+    takeOver(name);
     if (const int error = syncPath(m_temporary, O_RDWR)) fail(name, error);
     if (::rename(m_temporary.c_str(), name.c_str()) != 0) fail(name, errno);
     m_committed = true;
@@ -86,22 +118,25 @@ void FinishedFile::commitAs(const std::filesystem::path& name) {
     syncPath(name.has_parent_path() ? name.parent_path() : ".", O_RDONLY | O_DIRECTORY);
 }
 
+// A file is replaced by one that may be read and written by the same people.
+void FinishedFile::takeOver(const std::filesystem::path& name) const {
+    struct stat replaced {};
+    if (::stat(name.c_str(), &replaced) != 0 && ::stat(m_final.c_str(), &replaced) != 0) return;
+    // To others it can be given by root only; to another of the user's groups by anyone.
+    const bool isGiven = ::fchown(m_file, replaced.st_uid, replaced.st_gid) == 0 ||
+                         ::fchown(m_file, static_cast<uid_t>(-1), replaced.st_gid) == 0;
+    static_cast<void>(isGiven);
+    ::fchmod(m_file, replaced.st_mode & 0777u);
+}
+
 void writeFinishedFile(const std::filesystem::path& path, std::string_view bytes) {
     FinishedFile finished(path);
-    const int file = ::open(finished.temporaryPath().c_str(),
-                            O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (file < 0) fail(path, errno);
-    int error = writeAll(file, bytes);
-    if (::close(file) != 0 && error == 0) error = errno;
-    if (error != 0) fail(path, error);
+    if (const int error = writeAll(finished.descriptor(), bytes)) fail(path, error);
     finished.commit();
 }
 
 std::filesystem::path partialName(const std::filesystem::path& path) {
-    std::filesystem::path name = path;
-    name.replace_extension();
-    name += ".partial" + path.extension().string();
-    return name;
+    return withEnding(path, path.stem().string(), ".partial" + path.extension().string());
 }
 
 }  // namespace pm::host

@@ -12,26 +12,34 @@ namespace pm::host {
 
 // A name means finished: what is written goes to temporaryPath(), beside the final name, and takes
 // that name in one step in commit(). Without commit nothing stays. An existing file of the final
-// name is replaced; a symbolic link is followed.
+// name is replaced by one of the same mode, and of the same owner and group where this user may
+// give it to them; other hard links keep the old one. A symbolic link is followed: what it leads to
+// is replaced, and it stays.
 class FinishedFile {
   public:
-    // Errors: none yet; the temporary file is made by whoever writes it.
+    // Makes the temporary file, under a name that nothing had. Errors: kFile.
     explicit FinishedFile(const std::filesystem::path& finalPath);
     ~FinishedFile();  // removes the temporary file unless committed
     FinishedFile(const FinishedFile&) = delete;
     FinishedFile& operator=(const FinishedFile&) = delete;
 
     const std::filesystem::path& finalPath() const { return m_final; }
-    // NAME.tmp.HOST.PID with the extension of the final name at its end, so that a writer who goes
-    // by the extension finds it.
+    // NAME.tmp.HOST.PID, or NAME.tmp.HOST.PID.N where that was there, with the extension of the
+    // final name at its end, so that a writer who goes by the extension finds it; NAME cut where
+    // that is too long.
     const std::filesystem::path& temporaryPath() const { return m_temporary; }
+    // The temporary file, open for reading and writing.
+    int descriptor() const { return m_file; }
     // Syncs the temporary file, renames it and syncs the folder. Errors: kFile.
     void commit();
     // The same under another name in the same folder.
     void commitAs(const std::filesystem::path& name);
 
   private:
+    void takeOver(const std::filesystem::path& name) const;
+
     std::filesystem::path m_final, m_temporary;
+    int m_file{-1};
     bool m_committed{};
 };
 
@@ -39,7 +47,7 @@ class FinishedFile {
 void writeFinishedFile(const std::filesystem::path& path, std::string_view bytes);
 
 // NAME.EXT -> NAME.partial.EXT, where an interrupted render leaves its picture (with the attribute
-// pm:complete = 0 and alpha 0 where nothing is).
+// pm:complete = 0 and alpha 0 where nothing is); NAME cut where that is too long.
 std::filesystem::path partialName(const std::filesystem::path& path);
 
 }  // namespace pm::host

@@ -7,7 +7,7 @@ namespace pm::host {
 void writeImage(const std::filesystem::path& path, const OIIO::ImageSpec& spec,
                 const std::function<bool(OIIO::ImageOutput&)>& write) {
     FinishedFile finished(path);
-    CheckedFile file(finished.temporaryPath(), path);
+    CheckedFile file(finished, path);
     const std::string name = finished.temporaryPath().string();
     const auto output = OIIO::ImageOutput::create(name);
     if (!output) failWriting(path, 0, OIIO::geterror());

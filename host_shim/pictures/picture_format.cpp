@@ -78,13 +78,6 @@ void checkWritable(const std::filesystem::path& path) {
     // Permissions, read-only file systems, quotas and full inode tables all tell themselves by
     // making a file; permission bits alone say nothing to root.
     const FinishedFile probe(path);
-    const std::filesystem::path& name = probe.temporaryPath();
-    const int file = ::open(name.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
-    if (file < 0) {
-        throw HostError(ExitCode::kFile, fmt::format("{}: no file can be made in its folder: {}",
-                                                     path.string(), std::strerror(errno)));
-    }
-    ::close(file);
 }
 
 }  // namespace pm::host

@@ -8,15 +8,7 @@
 namespace pm {
 namespace {
 
-constexpr std::uint32_t kNoSlot = 0xffffffffu;
-
-// a*b - c*d within 1.5 units in the last place, so its sign is right. Jeannerod, Louvet, Muller,
-// Further analysis of Kahan's algorithm for the accurate computation of 2x2 determinants, 2013.
-double differenceOfProducts(double a, double b, double c, double d) {
-    const double cd = c * d;
-    const double error = std::fma(-c, d, cd);
-    return std::fma(a, b, -cd) + error;
-}
+constexpr std::uint32_t kNone = ReflexPoints::kNone;
 
 }  // namespace
 
@@ -101,60 +93,68 @@ void PolygonClipper::linkRing() {
         m_next[i] = i + 1 == count ? 0 : i + 1;
         m_previous[i] = i == 0 ? count - 1 : i - 1;
     }
-    m_reflex.clear();
-    m_reflexSlot.assign(count, kNoSlot);
+    m_reflex.reset(m_points);
+    for (RingMarks& maybe : m_maybe) maybe.reset(count);
+    m_waits.clear();
+    m_firstWait.assign(count, kNone);
     for (std::uint32_t i = 0; i < count; ++i) classify(i);
 }
 
-double PolygonClipper::orientation(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
-    const Point2 &p = m_points[a], &q = m_points[b], &r = m_points[c];
-    return differenceOfProducts(q.x - p.x, r.y - p.y, q.y - p.y, r.x - p.x);
+// Twice the area of the triangle that a corner makes with its neighbours.
+double PolygonClipper::areaAt(std::uint32_t corner) const {
+    return orientation(m_points[m_previous[corner]], m_points[corner], m_points[m_next[corner]]);
 }
 
-// Enters a corner into the list of reflex ones or takes it out.
+// Enters a corner among the reflex ones or takes it out.
 void PolygonClipper::classify(std::uint32_t corner) {
-    const bool reflex = orientation(m_previous[corner], corner, m_next[corner]) <= m_flatArea;
-    std::uint32_t& slot = m_reflexSlot[corner];
-    if (reflex && slot == kNoSlot) {
-        slot = static_cast<std::uint32_t>(m_reflex.size());
-        m_reflex.push_back(corner);
-    } else if (!reflex && slot != kNoSlot) {
-        m_reflexSlot[m_reflex.back()] = slot;
-        m_reflex[slot] = m_reflex.back();
-        m_reflex.pop_back();
-        slot = kNoSlot;
+    const bool reflex = areaAt(corner) <= m_flatArea;
+    if (reflex == m_reflex.has(corner)) return;
+    if (reflex) {
+        m_reflex.insert(corner);
+    } else {
+        m_reflex.erase(corner);
+        endWaitsFor(corner);
     }
 }
 
-// Only a corner that is not convex can lie in an ear first.
-bool PolygonClipper::containsReflexPoint(std::uint32_t corner, bool closed) const {
-    const std::uint32_t a = m_previous[corner], c = m_next[corner];
-    const Point2 &pa = m_points[a], &pb = m_points[corner], &pc = m_points[c];
-    const double left = std::min({pa.x, pb.x, pc.x}), right = std::max({pa.x, pb.x, pc.x});
-    const double low = std::min({pa.y, pb.y, pc.y}), high = std::max({pa.y, pb.y, pc.y});
-    const auto same = [](const Point2& p, const Point2& q) { return p.x == q.x && p.y == q.y; };
-    const auto inside = [closed](double area) { return closed ? area >= 0 : area > 0; };
-    return std::any_of(m_reflex.begin(), m_reflex.end(), [&](std::uint32_t i) {
-        const Point2& p = m_points[i];
-        if (p.x < left || p.x > right || p.y < low || p.y > high) return false;
-        // A slit to a hole visits its points twice; they don't stand in their own way.
-        if (same(p, pa) || same(p, pb) || same(p, pc)) return false;
-        return inside(orientation(a, corner, i)) && inside(orientation(corner, c, i)) &&
-               inside(orientation(c, a, i));
-    });
+void PolygonClipper::endWaitsFor(std::uint32_t corner) {
+    for (std::uint32_t i = m_firstWait[corner]; i != kNone; i = m_waits[i].next)
+        if (m_next[m_waits[i].corner] != kNone)
+            m_maybe[static_cast<std::size_t>(m_waits[i].kind)].set(m_waits[i].corner);
+    m_firstWait[corner] = kNone;
 }
 
-bool PolygonClipper::isEar(std::uint32_t corner, Ear kind) const {
-    const double area = orientation(m_previous[corner], corner, m_next[corner]);
+// Only a corner that is not convex can lie in an ear first. Notes what stands in the way.
+bool PolygonClipper::isFree(std::uint32_t corner, Ear kind) {
+    const std::uint32_t inWay =
+        m_reflex.findIn(m_previous[corner], corner, m_next[corner], kind == Ear::kClear);
+    if (inWay == kNone) return true;
+    m_waits.push_back({corner, kind, m_firstWait[inWay]});
+    m_firstWait[inWay] = static_cast<std::uint32_t>(m_waits.size() - 1);
+    return false;
+}
+
+bool PolygonClipper::isEar(std::uint32_t corner, Ear kind) {
+    const double area = areaAt(corner);
     switch (kind) {
         case Ear::kClear:
-            return area > m_flatArea && !containsReflexPoint(corner, true);
+            return area > m_flatArea && isFree(corner, kind);
         case Ear::kFlat:
             return std::abs(area) <= m_flatArea;
         case Ear::kTouched:
-            return area > 0 && !containsReflexPoint(corner, false);
+            return area > 0 && isFree(corner, kind);
     }
     return false;
+}
+
+// The first one from a corner on, all round; kNone where there is none.
+std::uint32_t PolygonClipper::findEar(std::uint32_t from, Ear kind) {
+    RingMarks& maybe = m_maybe[static_cast<std::size_t>(kind)];
+    while (true) {
+        const std::uint32_t corner = maybe.firstFrom(from);
+        if (corner == kNone || isEar(corner, kind)) return corner;
+        maybe.clear(corner);
+    }
 }
 
 // Takes a corner out of the ring and returns the next one.
@@ -162,12 +162,15 @@ std::uint32_t PolygonClipper::remove(std::uint32_t corner) {
     const std::uint32_t before = m_previous[corner], after = m_next[corner];
     m_next[before] = after;
     m_previous[after] = before;
-    if (m_reflexSlot[corner] != kNoSlot) {
-        const std::uint32_t slot = m_reflexSlot[corner];
-        m_reflexSlot[m_reflex.back()] = slot;
-        m_reflex[slot] = m_reflex.back();
-        m_reflex.pop_back();
-        m_reflexSlot[corner] = kNoSlot;
+    m_next[corner] = kNone;
+    for (RingMarks& maybe : m_maybe) {
+        maybe.clear(corner);
+        maybe.set(before);
+        maybe.set(after);
+    }
+    if (m_reflex.has(corner)) {
+        m_reflex.erase(corner);
+        endWaitsFor(corner);
     }
     classify(before);
     classify(after);
@@ -178,15 +181,13 @@ bool PolygonClipper::clipRing(std::vector<TriangleMesh::Corners>& triangles) {
     std::size_t left = m_points.size();
     std::uint32_t corner = 0;
     while (left > 3) {
-        bool found = false;
+        std::uint32_t ear = kNone;
         for (const Ear kind : {Ear::kClear, Ear::kFlat, Ear::kTouched}) {
-            for (std::size_t i = 0; i < left && !found; ++i) {
-                found = isEar(corner, kind);
-                if (!found) corner = m_next[corner];
-            }
-            if (found) break;
+            ear = findEar(corner, kind);
+            if (ear != kNone) break;
         }
-        if (!found) break;
+        if (ear == kNone) break;
+        corner = ear;
         triangles.push_back({m_previous[corner], corner, m_next[corner]});
         // Going on two corners further keeps the triangles from all sharing one point.
         corner = m_next[remove(corner)];

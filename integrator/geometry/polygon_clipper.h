@@ -7,11 +7,14 @@
 // [2] Sutherland, Sproull, Schumacker, A characterization of ten hidden-surface algorithms, 1974.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "integrator/geometry/polygon_mesh.h"
+#include "integrator/geometry/reflex_points.h"
+#include "integrator/geometry/ring_marks.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
@@ -30,28 +33,38 @@ class PolygonClipper {
     bool clip(std::span<const Vec3d> points, std::vector<TriangleMesh::Corners>& triangles);
 
   private:
-    struct Point2 {
-        double x, y;
-    };
     // How much an ear may ask for: the stricter are tried first.
-    enum class Ear { kClear, kFlat, kTouched };
+    enum class Ear : std::uint32_t { kClear, kFlat, kTouched };
+    static constexpr std::uint32_t kEars = 3;
+    // A corner that is no ear of that kind while another one stands in its way.
+    struct Wait {
+        std::uint32_t corner;
+        Ear kind;
+        std::uint32_t next;  // in m_waits, for the same other one
+    };
 
     bool clipQuad(std::span<const Vec3d> points,
                   std::vector<TriangleMesh::Corners>& triangles) const;
     bool clipRing(std::vector<TriangleMesh::Corners>& triangles);
     void project(std::span<const Vec3d> points, const Vec3d& normal);
     void linkRing();
-    double orientation(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
+    double areaAt(std::uint32_t corner) const;
     void classify(std::uint32_t corner);
-    bool isEar(std::uint32_t corner, Ear kind) const;
-    bool containsReflexPoint(std::uint32_t corner, bool closed) const;
+    std::uint32_t findEar(std::uint32_t from, Ear kind);
+    bool isEar(std::uint32_t corner, Ear kind);
+    bool isFree(std::uint32_t corner, Ear kind);
+    void endWaitsFor(std::uint32_t corner);
     std::uint32_t remove(std::uint32_t corner);
 
     std::vector<Point2> m_points;
     std::vector<std::uint32_t> m_next, m_previous;
-    std::vector<std::uint32_t> m_reflex;      // corners that are not convex
-    std::vector<std::uint32_t> m_reflexSlot;  // where each corner is in m_reflex, or kNoSlot
-    double m_flatArea = 0;                    // twice the area below which three points are in line
+    double m_flatArea = 0;  // twice the area below which three points are in line
+    ReflexPoints m_reflex;
+    // What may be an ear of each kind: all that was not found to be none since its neighbours, or
+    // what stood in its way, changed.
+    std::array<RingMarks, kEars> m_maybe;
+    std::vector<Wait> m_waits;
+    std::vector<std::uint32_t> m_firstWait;  // for each corner, or kNone
 };
 
 }  // namespace pm

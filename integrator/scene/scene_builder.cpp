@@ -10,7 +10,9 @@
 #include <optional>
 
 #include "integrator/scene/coincident_faces.h"
+#include "integrator/scene/copied_faces.h"
 #include "integrator/scene/huge_triangles.h"
+#include "integrator/scene/instance_transform.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/scene_core.h"
 #include "integrator/scene/shape_record.h"
@@ -19,51 +21,6 @@
 namespace pm {
 
 namespace {
-
-Vec3d transformPoint(const Transform& m, const Vec3d& p) {
-    return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3],
-            m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
-            m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
-}
-
-Vec3d row(const Transform& m, int i) {
-    const auto k = static_cast<std::size_t>(4 * i);
-    return {m[k], m[k + 1], m[k + 2]};
-}
-
-double determinant(const Transform& m) {
-    return dot(row(m, 0), cross(row(m, 1), row(m, 2)));
-}
-
-// The transform of normals up to a positive factor: the transposed inverse, whose rows are cross
-// products of the matrix's rows over its determinant. The sign keeps the front in front.
-struct NormalTransform {
-    Vec3d rows[3];
-
-    explicit NormalTransform(const Transform& m)
-        : rows{cross(row(m, 1), row(m, 2)), cross(row(m, 2), row(m, 0)),
-               cross(row(m, 0), row(m, 1))} {
-        if (determinant(m) < 0)
-            for (Vec3d& r : rows) r = -r;
-    }
-    Vec3f apply(const Vec3f& n) const {
-        const Vec3d nd(n);
-        const Vec3d v{dot(rows[0], nd), dot(rows[1], nd), dot(rows[2], nd)};
-        const double l = length(v);
-        return l > 0 ? Vec3f(v / l) : n;
-    }
-};
-
-// The factor of a transform that keeps spheres spheres; 0 when it does not.
-double uniformScale(const Transform& m) {
-    const double s0 = length(row(m, 0)), s1 = length(row(m, 1)), s2 = length(row(m, 2));
-    const double tolerance = 1e-6 * s0;
-    const bool uniform = std::abs(s1 - s0) <= tolerance && std::abs(s2 - s0) <= tolerance &&
-                         std::abs(dot(row(m, 0), row(m, 1))) <= tolerance * s0 &&
-                         std::abs(dot(row(m, 0), row(m, 2))) <= tolerance * s0 &&
-                         std::abs(dot(row(m, 1), row(m, 2))) <= tolerance * s0;
-    return uniform ? s0 : 0.0;
-}
 
 bool emits(const MaterialDescription& material) {
     return !isBlack(material.emission);
@@ -297,9 +254,47 @@ class Scene::Builder {
                                   Vec3d(record.positions[t[2]]) - v0));
     }
 
+    FaceKind kindOf(const ShapeRecord& record, std::uint32_t primitive) const {
+        const MaterialDescription& material = m_scene.material(record.materialOf(primitive));
+        if (isInvisible(material)) return FaceKind::kInvisible;
+        if (emits(material))
+            return record.mirrored ? FaceKind::kShiningMirrored : FaceKind::kShining;
+        if (material.kind == MaterialKind::kDielectric) return FaceKind::kGlass;
+        return isSheet(material) ? FaceKind::kSheet : FaceKind::kOpaque;
+    }
+
+    void leaveOutCopies() {
+        const auto forEachFace = [&](const VisitFace& visit) {
+            for (std::uint32_t shape = 0; shape < m_scene.m_shapes.size(); ++shape) {
+                const ShapeRecord& record = m_scene.m_shapes[shape];
+                if (!record.mesh) continue;
+                for (std::uint32_t i = 0; i < record.mesh->triangles.size(); ++i) {
+                    goOn();
+                    const auto& t = record.mesh->triangles[i];
+                    visit({{record.positions[t[0]], record.positions[t[1]], record.positions[t[2]]},
+                           kindOf(record, i),
+                           shape,
+                           i});
+                }
+            }
+        };
+        const auto needless = findNeedlessCopies(m_scene.m_triangleCount, forEachFace);
+        if (needless.empty()) return;
+        for (const PlacedFace& face : needless)
+            m_scene.m_shapes[face.shape].leaveOut(face.primitive);
+        for (ShapeRecord& record : m_scene.m_shapes)
+            if (record.mesh && !record.visible.empty()) record.leaveOutExact();
+        m_scene.m_notices.push_back(
+            {NoticeCode::kDegenerateGeometry,
+             fmt::format("{} triangles are copies of others in the same place, more than {} of "
+                         "each: only the first of each is seen",
+                         needless.size(), kMostCopies)});
+    }
+
     void addToTracer() {
+        for (ShapeRecord& record : m_scene.m_shapes) record.leaveOutInvisible(m_scene);
+        leaveOutCopies();
         for (ShapeRecord& record : m_scene.m_shapes) {
-            record.leaveOutInvisible(m_scene);
             if (!record.mesh && record.visible.empty()) {
                 m_scene.m_tracer.addSphere(record.sphere.centre, record.sphere.radius);
                 continue;

@@ -28,7 +28,7 @@ struct Scene::ShapeRecord {
     std::vector<Vec3f> normals;                // transformed, unit
     std::vector<Facet> facets;                 // of each triangle
     std::vector<ExactTriangle> exact;          // huge ones, by their numbers
-    // The triangles, those without area that no ray is to meet; empty where rays meet all there is.
+    // The triangles, without area those that no ray is to meet; empty where rays meet all there is.
     std::vector<TriangleMesh::Corners> visible;
     bool mirrored = false;  // the transform turns the winding round
     SphereShape sphere;
@@ -86,6 +86,18 @@ struct Scene::ShapeRecord {
             if (isOne(materialOf(i))) visible[i].fill(visible[i][0]);
         std::erase_if(exact,
                       [&](const ExactTriangle& e) { return isOne(materialOf(e.primitive)); });
+    }
+    // Of a mesh.
+    void leaveOut(std::uint32_t primitive) {
+        if (visible.empty()) visible = mesh->triangles;
+        visible[primitive].fill(visible[primitive][0]);
+    }
+    // After that, for each that was left out.
+    void leaveOutExact() {
+        std::erase_if(exact, [&](const ExactTriangle& e) {
+            const TriangleMesh::Corners& t = visible[e.primitive];
+            return t[0] == t[1] && t[1] == t[2];
+        });
     }
     std::int32_t lightOf(std::uint32_t primitive) const {
         return lightOfPrimitive.empty() ? kNoLight : lightOfPrimitive[primitive];

@@ -15,6 +15,7 @@
 #include "integrator/values/error.h"
 #include "plugin/src/call_error.h"
 #include "plugin/src/piece_file.h"
+#include "plugin/src/temporary_file.h"
 #include "scheduler/frame_store_bytes.h"
 
 namespace pm::plugin {
@@ -25,7 +26,6 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds kBetweenSyncs{1};
 constexpr std::uint64_t kSumsRecordBytes = std::uint64_t{1} << 24;  // about so many each
-constexpr const char* kTemporary = ".tmp";  // the lock of FILE is also that of FILE.tmp
 
 // A name that leads nowhere else: a rename would replace a link, not what it leads to.
 std::string withoutLinks(const std::string& file) {
@@ -36,6 +36,21 @@ std::string withoutLinks(const std::string& file) {
 
 CallError unusable(const std::string& file, const std::string& why) {
     return {PMR_ERROR_FILE, fmt::format("{}: {}", file, why)};
+}
+
+// isNew: it was made; else it was there.
+std::shared_ptr<OwnedFile> openOrMake(const std::string& file, bool& isNew) {
+    std::error_code ignored;
+    isNew = !fs::exists(file, ignored);
+    if (isNew) {
+        try {
+            return std::make_shared<OwnedFile>(file, O_RDWR | O_CREAT | O_EXCL);
+        } catch (const CallError&) {
+            // Somebody else made it meanwhile, or it can't be made, as the next will say.
+            isNew = false;
+        }
+    }
+    return std::make_shared<OwnedFile>(file, O_RDWR | O_CREAT);
 }
 
 // What a frame holds in rectangles of whole rows, of which each fits into a record.
@@ -74,6 +89,17 @@ std::uint64_t writeBands(const FrameStore& frame, const PieceHead& head, const O
 Checkpoint::Checkpoint(const std::string& file, bool resume, PieceHead head, const Rect& window)
     : m_head(std::move(head)), m_done(window) {
     open(withoutLinks(file));
+    try {
+        take(resume);
+    } catch (...) {
+        // Of what this made nothing stays that isn't whole.
+        std::error_code ignored;
+        if (m_madeName && m_file) fs::remove(m_file->name(), ignored);
+        throw;
+    }
+}
+
+void Checkpoint::take(bool resume) {
     const PieceReader reader(*m_file);
     m_isNew = m_file->size() == 0;
     if (!m_isNew && !reader.isPiece())
@@ -98,7 +124,8 @@ Checkpoint::~Checkpoint() {
 void Checkpoint::open(const std::string& file) {
     constexpr int kTries = 10;  // of taking it over from a render that replaces it meanwhile
     for (int i = 0; i < kTries; ++i) {
-        m_file = std::make_shared<OwnedFile>(file, O_RDWR | O_CREAT);
+        m_madeName = false;
+        m_file = openOrMake(file, m_madeName);
         if (!m_file->lock()) break;
         if (m_file->isAtItsName()) return;
     }
@@ -142,14 +169,13 @@ void Checkpoint::readHead() {
 
 void Checkpoint::beginAnew() {
     m_isNew = true;
-    const auto next =
-        std::make_shared<OwnedFile>(m_file->name() + kTemporary, O_RDWR | O_CREAT | O_TRUNC);
-    next->lock();
+    TemporaryFile next(m_file->name());
+    next.file()->lock();
     const std::vector<std::byte> bytes = beginningOfPiece(m_head.toJson());
-    next->writeAt(0, bytes);
-    next->sync();
-    next->rename(m_file->name());
-    m_file = next;
+    next.append(bytes);
+    next.sync();
+    next.commit();
+    m_file = next.file();
     m_end = m_sumsEnd = bytes.size();
 }
 
@@ -289,27 +315,18 @@ void Checkpoint::writeSums(const FrameStore& frame, std::uint32_t passesDone,
     PieceHead head = m_head;
     head.passes = passesDone;
     const std::string name = m_file->name();
-    const auto next = std::make_shared<OwnedFile>(name + kTemporary, O_RDWR | O_CREAT | O_TRUNC);
-    const auto remove = [&name] {
-        std::error_code ignored;
-        fs::remove(name + kTemporary, ignored);
-    };
-    std::uint64_t end = 0;
-    try {
-        next->lock();
-        end = writeBands(frame, head, *next, cancelled);
-        if (cancelled) return remove();
-        m_disk.give([next] { next->sync(); });
-        if (!m_disk.waitUntilIdle(cancelled)) return remove();
-        throwTroubleOfDisk();
-        next->rename(name);
-    } catch (...) {
-        remove();
-        throw;
-    }
+    TemporaryFile next(name);
+    const std::shared_ptr<OwnedFile>& file = next.file();
+    file->lock();
+    const std::uint64_t end = writeBands(frame, head, *file, cancelled);
+    if (cancelled) return;
+    m_disk.give([file] { file->sync(); });
+    if (!m_disk.waitUntilIdle(cancelled)) return;
+    throwTroubleOfDisk();
+    next.rename();
     m_disk.give([name] { syncFolderOf(name); });
     m_head = std::move(head);
-    m_file = next;
+    m_file = file;
     m_end = m_sumsEnd = end;
     m_isNew = false;
     m_synced = std::chrono::steady_clock::now();

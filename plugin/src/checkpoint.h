@@ -70,6 +70,7 @@ class Checkpoint {
 
   private:
     void open(const std::string& file);
+    void take(bool resume);
     void refuseOtherPieces() const;
     void readHead();
     void beginAnew();
@@ -88,7 +89,8 @@ class Checkpoint {
     std::size_t m_channels = 0;
     std::uint64_t m_sumPixels = 0;  // loaded
     std::uint64_t m_droppedBytes = 0;
-    bool m_isNew = false;  // made by this
+    bool m_isNew = false;     // made or begun anew by this
+    bool m_madeName = false;  // nothing had it
     bool m_replacesOther = false;
     bool m_foundNone = false;
 

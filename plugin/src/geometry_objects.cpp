@@ -26,6 +26,7 @@ namespace {
 constexpr std::uint64_t kMaxElements = std::numeric_limits<std::int32_t>::max();
 constexpr std::uint64_t kMaxSlots = 65536;
 constexpr std::uint64_t kIndicesOfALargeMesh = 1'000'000;
+constexpr std::uint64_t kIndicesOfALargeCage = 256;
 constexpr std::uint32_t kMaxHostTessellationRate = 64;
 constexpr std::uint32_t kDefaultTessellationRate = 4;
 
@@ -266,14 +267,16 @@ std::shared_ptr<MeshObject> makeCage(std::shared_ptr<Context> context, const Pmr
     meshDesc.normalIndices = nullptr;
     const std::uint64_t slotCount = slotCountOf(meshDesc);
     const int rate = static_cast<int>(checkedRate(desc.tessellationRate));
-    BuiltMesh built =
-        runLeavable(context->buildCheck(), "tessellating",
-                    [cage = toCage(desc, meshDesc, context->buildCheck()), rate,
-                     threads = context->threads()](const CancelCheck& cancel) {
-                        refuseTooLarge(cage, rate);
-                        WorkerArena arena(threads);
-                        return arena.execute([&] { return tessellate(cage, rate, cancel); });
-                    });
+    // Of many small ones threads would take longer than the work.
+    const bool isSmall = meshDesc.indexCount < kIndicesOfALargeCage;
+    const CancelCheck check = context->buildCheck();
+    auto cut = [cage = toCage(desc, meshDesc, check), rate,
+                threads = isSmall ? 1 : context->threads()](const CancelCheck& cancel) {
+        refuseTooLarge(cage, rate);
+        WorkerArena arena(threads);
+        return arena.execute([&] { return tessellate(cage, rate, cancel); });
+    };
+    BuiltMesh built = isSmall ? cut(check) : runLeavable(check, "tessellating", std::move(cut));
     return finishMesh(std::move(context), std::move(built), slotCount);
 }
 

@@ -20,9 +20,52 @@
 
 namespace pm::plugin {
 
+namespace {
+
+std::string hostName() {
+    std::array<char, 256> host{};
+    std::string name = ::gethostname(host.data(), host.size() - 1) == 0 ? host.data() : "host";
+    std::replace(name.begin(), name.end(), '/', '_');
+    return name;
+}
+
+}  // namespace
+
 OwnedFile::OwnedFile(std::string name, int flags) : m_name(std::move(name)) {
-    m_file = ::open(m_name.c_str(), flags | O_CLOEXEC, 0666);
+    open(flags);
     if (m_file < 0) fail("can't be opened");
+}
+
+OwnedFile OwnedFile::temporaryFor(const std::string& file) {
+    constexpr int kTries = 1000;           // of names that somebody has
+    constexpr std::size_t kLongest = 255;  // bytes of a name, of Linux's file systems
+    const std::filesystem::path path(file);
+    OwnedFile made;
+    for (int i = 0; i < kTries && made.m_file < 0; ++i) {
+        const std::string ending = fmt::format(".tmp.{}.{}{}", hostName(), ::getpid(),
+                                               i == 0 ? "" : fmt::format(".{}", i));
+        std::string name = path.filename().string();
+        std::size_t most = kLongest - std::min(kLongest, ending.size());
+        if (name.size() > most) {
+            // Never within a character of UTF-8.
+            while (most > 0 && (static_cast<unsigned char>(name[most]) & 0xc0u) == 0x80) --most;
+            name.resize(most);
+        }
+        made.m_name = (path.parent_path() / (name + ending)).string();
+        made.open(O_RDWR | O_CREAT | O_EXCL | O_NOFOLLOW);
+        if (made.m_file < 0 && errno != EEXIST) break;
+    }
+    if (made.m_file < 0) made.fail("can't be opened");
+    return made;
+}
+
+void OwnedFile::open(int flags) {
+    m_file = ::open(m_name.c_str(), flags | O_CLOEXEC, 0666);
+    if (m_file < 0 || m_file > STDERR_FILENO) return;
+    const int low = std::exchange(m_file, ::fcntl(m_file, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+    const int error = errno;
+    ::close(low);
+    errno = error;
 }
 
 OwnedFile::~OwnedFile() {
@@ -45,6 +88,14 @@ void OwnedFile::fail(const char* what) const {
 }
 
 void OwnedFile::rename(const std::string& to) {
+    struct stat replaced {};
+    if (::stat(to.c_str(), &replaced) == 0) {
+        // To others it can be given by root only; to another of the user's groups by anyone.
+        const bool isGiven = ::fchown(m_file, replaced.st_uid, replaced.st_gid) == 0 ||
+                             ::fchown(m_file, static_cast<uid_t>(-1), replaced.st_gid) == 0;
+        static_cast<void>(isGiven);
+        ::fchmod(m_file, replaced.st_mode & 0777u);
+    }
     if (std::rename(m_name.c_str(), to.c_str()) != 0) fail("can't be renamed");
     m_name = to;
 }
@@ -111,13 +162,6 @@ void syncFolderOf(const std::string& file) {
     if (open < 0) return;
     ::fsync(open);
     ::close(open);
-}
-
-std::string temporaryNameOf(const std::string& file) {
-    std::array<char, 256> host{};
-    std::string name = ::gethostname(host.data(), host.size() - 1) == 0 ? host.data() : "host";
-    std::replace(name.begin(), name.end(), '/', '_');
-    return fmt::format("{}.tmp.{}.{}", file, name, ::getpid());
 }
 
 }  // namespace pm::plugin

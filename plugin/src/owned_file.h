@@ -14,15 +14,21 @@ namespace pm::plugin {
 class OwnedFile {
   public:
     OwnedFile() = default;
-    // flags: as open(2); O_CLOEXEC is added, new files get 0666 less the umask.
+    // flags: as open(2); O_CLOEXEC is added, new files get 0666 less the umask. Never one of the
+    // standard descriptors, into which a host that closed them would print.
     OwnedFile(std::string name, int flags);
+    // A new one, where `file` is written until it is whole: NAME.tmp.HOST.PID, or
+    // NAME.tmp.HOST.PID.N where that was there; NAME cut where that is too long. For reading too.
+    static OwnedFile temporaryFor(const std::string& file);
     ~OwnedFile();
     OwnedFile(OwnedFile&& other) noexcept;
     OwnedFile& operator=(OwnedFile&& other) noexcept;
 
     explicit operator bool() const { return m_file >= 0; }
     const std::string& name() const { return m_name; }
-    void rename(const std::string& to);  // and this is its name from then on
+    // This is its name from then on. What had it is replaced, and its mode, and its owner and group
+    // where this user may give it to them, are kept.
+    void rename(const std::string& to);
 
     std::uint64_t size() const;
     void truncate(std::uint64_t size) const;
@@ -38,6 +44,7 @@ class OwnedFile {
     bool isAtItsName() const;
 
   private:
+    void open(int flags);
     [[noreturn]] void fail(const char* what) const;
 
     int m_file = -1;
@@ -47,8 +54,5 @@ class OwnedFile {
 // So that a rename in its folder outlives a power cut; where a file system can't, the file itself
 // is safe anyway.
 void syncFolderOf(const std::string& file);
-
-// NAME.tmp.HOST.PID: where a file is written until it is whole.
-std::string temporaryNameOf(const std::string& file);
 
 }  // namespace pm::plugin

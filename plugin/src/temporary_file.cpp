@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "plugin/src/temporary_file.h"
 
-#include <fcntl.h>
-
 #include <filesystem>
 #include <system_error>
 #include <utility>
@@ -12,8 +10,7 @@ namespace pm::plugin {
 
 TemporaryFile::TemporaryFile(std::string finalName)
     : m_final(std::move(finalName)),
-      m_file(std::make_shared<OwnedFile>(temporaryNameOf(m_final),
-                                         O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW)) {}
+      m_file(std::make_shared<OwnedFile>(OwnedFile::temporaryFor(m_final))) {}
 
 TemporaryFile::~TemporaryFile() {
     remove();
@@ -29,9 +26,13 @@ void TemporaryFile::append(std::span<const std::byte> bytes) {
     m_end += bytes.size();
 }
 
-void TemporaryFile::commit() {
+void TemporaryFile::rename() {
     m_file->rename(m_final);
     m_isThere = false;
+}
+
+void TemporaryFile::commit() {
+    rename();
     syncFolderOf(m_final);
 }
 

@@ -12,7 +12,7 @@
 
 namespace pm::plugin {
 
-// A file that is written under temporaryNameOf(its name) and removed unless it is committed.
+// A file that is written as OwnedFile::temporaryFor(its name) and removed unless it is committed.
 // Errors of all members: CallError(IO).
 class TemporaryFile {
   public:
@@ -29,6 +29,8 @@ class TemporaryFile {
     // Removes it now.
     void remove() noexcept;
     // Gives it its name; synced before, it is whole.
+    void rename();
+    // And syncs the folder.
     void commit();
 
   private:

@@ -157,6 +157,54 @@ TEST_F(FinishedFiles, ASymbolicLinkIsFollowed) {
     EXPECT_NO_THROW(readExr(file("store/real.exr")));
 }
 
+TEST_F(FinishedFiles, NamesThatSomebodyHasAreLeftAlone) {
+    const std::string taken = FinishedFile(file("a.exr")).temporaryPath().string();
+    writeBytes(file("mine"), "mine");
+    std::filesystem::create_symlink(file("mine"), taken);
+    FinishedFile finished(file("a.exr"));
+    EXPECT_NE(finished.temporaryPath(), taken);
+    EXPECT_EQ(finished.temporaryPath().extension(), ".exr");
+    writeAny(file("a.exr"));
+    EXPECT_TRUE(std::filesystem::is_symlink(taken));
+    EXPECT_EQ(readBytes(file("mine")), "mine");
+}
+
+TEST_F(FinishedFiles, ModesOfReplacedFilesAreKept) {
+    const mode_t before = umask(022);
+    const auto modeOf = [&](const char* name) {
+        struct stat status {};
+        return ::stat(file(name).c_str(), &status) == 0 ? status.st_mode & 07777u : 0u;
+    };
+    for (const mode_t mode : {0666u, 0600u, 0664u, 0640u}) {
+        writeBytes(file("a.exr"), "old");
+        ASSERT_EQ(::chmod(file("a.exr").c_str(), mode), 0);
+        writeAny(file("a.exr"));
+        EXPECT_EQ(modeOf("a.exr"), mode);
+    }
+    writeFinishedFile(file("new.json"), "{}");
+    EXPECT_EQ(modeOf("new.json"), 0644u);
+    // Before it is whole nobody else may read what replaces a private file.
+    ASSERT_EQ(::chmod(file("a.exr").c_str(), 0600), 0);
+    const FinishedFile finished(file("a.exr"));
+    EXPECT_EQ(modeOf(finished.temporaryPath().filename().c_str()), 0600u);
+    umask(before);
+}
+
+TEST_F(FinishedFiles, NamesMayBeAsLongAsAFileSystemTakesThem) {
+    std::string name;
+    while (name.size() + 2 <= 250) name += "\u00e9";
+    name.resize(250);
+    name += "x.exr";
+    ASSERT_EQ(name.size(), 255u);
+    checkWritable(file(name));
+    writeAny(file(name));
+    EXPECT_EQ(listing(), name);
+    const std::string partial = partialName(file(name)).filename().string();
+    EXPECT_EQ(partial.substr(partial.size() - 14), "\u00e9.partial.exr");
+    EXPECT_LE(partial.size(), 255u);
+    EXPECT_GE(partial.size(), 254u);
+}
+
 TEST(PartialName, ComesBeforeTheExtension) {
     EXPECT_EQ(partialName("a/b.c/shot.0001.exr"), "a/b.c/shot.0001.partial.exr");
     EXPECT_EQ(partialName("x.png"), "x.partial.png");

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Renders that go on from a checkpoint have the bits of those that were never interrupted.
+#include <sys/resource.h>
+
 #include <array>
+#include <csignal>
 
 #include "tests/abi/box_scene.h"
 #include "tests/pieces/piece_host.h"
@@ -198,6 +201,31 @@ TEST_F(Checkpoints, EmptyOnesAreNotLeftBehind) {
     EXPECT_TRUE(files().empty());
     writeFile(path("c"), "");  // killed between the making and the first byte
     expectSameBits(render({}), render(on()));
+}
+
+// Of a user's own, and where a link leads to.
+TEST_F(Checkpoints, NamesBesideThemAreLeftAlone) {
+    for (const char* name : {"c.tmp", "mine"}) writeFile(path(name), "mine");
+    EXPECT_TRUE(render({{"checkpoint", path("c")}}).isOk());
+    EXPECT_EQ("mine", readFile(path("c.tmp")));
+    EXPECT_EQ("mine", readFile(path("mine")));
+    std::filesystem::remove(path("c.tmp"));
+    std::filesystem::create_symlink(path("mine"), path("c.tmp"));
+    EXPECT_TRUE(render({{"checkpoint", path("c")}}).isOk());
+    EXPECT_EQ("mine", readFile(path("mine")));
+}
+
+TEST_F(Checkpoints, OnAFullDiskLeaveNothing) {
+    rlimit limit{};
+    getrlimit(RLIMIT_FSIZE, &limit);
+    const rlimit none{10, limit.rlim_max};
+    const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+    setrlimit(RLIMIT_FSIZE, &none);
+    const Outcome outcome = render({{"checkpoint", path("c")}});
+    setrlimit(RLIMIT_FSIZE, &limit);
+    std::signal(SIGXFSZ, handler);
+    expectRefusal(outcome, PMR_ERROR_IO, "can't be written");
+    EXPECT_TRUE(files().empty());
 }
 
 TEST_F(Checkpoints, StayBoundedOverManyPasses) {

@@ -140,6 +140,34 @@ TEST_F(Outputs, aRenderWithNothingToResumeSaysSo) {
     EXPECT_NE(none.err.find(line), std::string::npos) << none.err;
 }
 
+// Runs PM_HOST by a shell, in the folder.
+int shell(const fs::path& folder, const std::string& arguments) {
+    return std::system(
+        ("cd '" + folder.string() + "' && '" PM_HOST "' box.obj --size 8x8 " + arguments).c_str());
+}
+
+TEST_F(Outputs, closedDescriptorsTakeNoFile) {
+    EXPECT_EQ(shell(m_folder,
+                    "--passes 2 --photons 1000 -o a.exr --checkpoint c --keep-checkpoint "
+                    "--log l --stats s <&- >&- 2>&-"),
+              0);
+    EXPECT_EQ(readText(path("c")).find("Progress"), std::string::npos);
+    EXPECT_NO_THROW(readExr(path("a.exr")));
+    EXPECT_TRUE(nlohmann::json::parse(readText(path("s"))).is_object());
+    // Of results that go nowhere the exit code tells.
+    EXPECT_EQ(shell(m_folder, "--explain >&- 2>&-"), 4 << 8);
+}
+
+TEST_F(Outputs, aLogThatCannotBeWrittenIsTold) {
+    // Files of 0 blocks: what a full disk does.
+    EXPECT_EQ(std::system(("cd '" + m_folder.string() +
+                           "' && (ulimit -f 0; '" PM_HOST
+                           "' box.obj --size 8x8 --explain --log l >/dev/null 2>/dev/null)")
+                              .c_str()),
+              4 << 8);
+    EXPECT_FALSE(fs::exists(path("l")));
+}
+
 // Libraries that run out of memory say nothing.
 TEST_F(Outputs, aWriterThatGivesNoReasonIsNotQuoted) {
     const OIIO::ImageSpec spec(4, 4, 3, OIIO::TypeDesc::FLOAT);

@@ -163,7 +163,7 @@ TEST_F(ReportPage, isCheckedBeforeTheFirstRay) {
 
 TEST(ReportHtml, textsCanHoldNoTags) {
     EXPECT_EQ(escaped("<a b=\"c\">&'"), "&lt;a b=&quot;c&quot;&gt;&amp;&#39;");
-    EXPECT_EQ(escaped(std::string("a\x01\x1b[31m\n\tb")), "a\uFFFD\uFFFD[31m\n\tb");
+    EXPECT_EQ(escaped(std::string("a\x01\x1b[31m\n\tb")), "a\\x01\\x1b[31m\n\tb");
 }
 
 // An interrupted render's reason is its error, too.
