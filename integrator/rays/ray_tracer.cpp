@@ -264,7 +264,8 @@ struct RayTracer::Impl {
     void check(const std::string& doing) const {
         const RTCError error = rtcGetDeviceError(device);
         if (error == RTC_ERROR_NONE) return;
-        if (error == RTC_ERROR_OUT_OF_MEMORY)
+        // Unknown is what becomes of an error that it has no memory to keep.
+        if (error == RTC_ERROR_OUT_OF_MEMORY || error == RTC_ERROR_UNKNOWN)
             throw Error(Status::kOutOfMemory, "out of memory: Embree failed " + doing);
         throw Error(Status::kInternal,
                     "Embree failed " + doing + ", error " + std::to_string(error));
@@ -278,7 +279,7 @@ RayTracer::RayTracer(const std::string& isa) : m_impl(std::make_unique<Impl>()) 
     m_impl->device = rtcNewDevice(config.c_str());
     if (!m_impl->device) {
         m_impl->check("making a device for " + config);
-        throw Error(Status::kInternal, "Embree offers no device for " + config);
+        throw Error(Status::kOutOfMemory, "out of memory: Embree makes no device for " + config);
     }
     rtcSetDeviceMemoryMonitorFunction(
         m_impl->device,
@@ -288,6 +289,10 @@ RayTracer::RayTracer(const std::string& isa) : m_impl(std::make_unique<Impl>()) 
         },
         m_impl.get());
     m_impl->scene = rtcNewScene(m_impl->device);
+    if (!m_impl->scene) {
+        m_impl->check("making a scene");
+        throw Error(Status::kOutOfMemory, "out of memory: Embree makes no scene");
+    }
     // A filter only comes with rays that look for all their hits; others pay nothing for it.
     rtcSetSceneFlags(m_impl->scene, RTC_SCENE_FLAG_ROBUST | RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION);
     m_impl->check("creating a scene");

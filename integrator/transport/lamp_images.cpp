@@ -338,7 +338,7 @@ std::vector<LampImage> findLampImages(const Scene& scene, const Camera& camera,
                 if (!start) continue;
                 const auto image = converge(scene, camera, lamp, start->lobes, start->x, start->y);
                 if (!image) continue;
-                const auto [x, y] = image->centre;
+                const double x = image->centre[0], y = image->centre[1];
                 starts.leaveOut(x, y);
                 const bool isKnown = std::any_of(
                     images.begin() + static_cast<std::ptrdiff_t>(before), images.end(),

@@ -11,7 +11,7 @@
  *     destroyRender, release...
  *
  * Conventions
- *   - Every function returns a PmrStatus: PMR_OK or a negative code. lastError gives the text.
+ *   - Functions return a PmrStatus: PMR_OK or a negative code. lastError gives the text.
  *   - Structs hold fixed-width integers, float, double and pointers only. Their first member is
  *     their size in bytes as the caller was compiled; a larger struct than the library knows is
  *     accepted when its unknown tail is zero, a smaller one is read as if the rest were zero, so
@@ -461,7 +461,8 @@ typedef struct PmrApi {
     /* Contexts. Releasing one that still has scenes or renders is fine: it lives until they end. */
     PmrStatus(PMR_CALL* createContext)(const PmrContextDesc* desc, PmrContext* context);
     PmrStatus(PMR_CALL* releaseContext)(PmrContext context);
-    /* The text of the last error of a call on this context or on anything made from it. */
+    /* Why the last call of this thread failed that returned a status, this one's own not counted;
+     * empty after PMR_OK. context may be null, as after a createContext that failed. */
     PmrStatus(PMR_CALL* lastError)(PmrContext context, char* buffer, uint64_t capacity,
                                    uint64_t* needed);
 

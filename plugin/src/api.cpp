@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
+#include <fmt/format.h>
+
 #include "plugin/src/api_functions.h"
+#include "plugin/src/entry.h"
 
 namespace pm::plugin {
 
@@ -74,9 +77,14 @@ constexpr PmrApi kApi = {
 }  // namespace pm::plugin
 
 extern "C" PmrStatus PMR_CALL pmrGetApi(uint32_t abiVersion, const PmrApi** api) {
-    if (api == nullptr) return PMR_ERROR_ARGUMENT;
-    *api = nullptr;
-    if (abiVersion != PMR_ABI_VERSION) return PMR_ERROR_ABI;
-    *api = &pm::plugin::kApi;
-    return PMR_OK;
+    using namespace pm::plugin;
+    return onNothing([&] {
+        if (api == nullptr) throw argumentError("api is null");
+        *api = nullptr;
+        if (abiVersion != PMR_ABI_VERSION)
+            throw CallError(PMR_ERROR_ABI,
+                            fmt::format("ABI version {} is not offered; it must be {}", abiVersion,
+                                        PMR_ABI_VERSION));
+        *api = &kApi;
+    });
 }

@@ -7,6 +7,7 @@
 #include "plugin/src/callback_scope.h"
 #include "plugin/src/context.h"
 #include "plugin/src/entry.h"
+#include "plugin/src/last_error.h"
 #include "plugin/src/objects.h"
 #include "plugin/src/scene_object.h"
 #include "plugin/src/struct_reader.h"
@@ -47,10 +48,15 @@ PmrStatus PMR_CALL releaseContext(PmrContext context) noexcept {
 
 PmrStatus PMR_CALL lastError(PmrContext context, char* buffer, uint64_t capacity,
                              uint64_t* needed) noexcept {
-    // Not onObject: a failure here must not become the last error.
-    const std::shared_ptr<Context> owner = findObject<Context>(context);
-    if (!owner) return PMR_ERROR_HANDLE;
-    return onNothing([&] { writeText(owner->lastError(), buffer, capacity, needed); });
+    // Not onObject: neither a failure here nor a success is the last call that the host asks for.
+    try {
+        if (context != nullptr && !findObject<Context>(context)) return PMR_ERROR_HANDLE;
+        writeText(plugin::lastError(), buffer, capacity, needed);
+        return PMR_OK;
+    } catch (...) {
+        std::string text;
+        return translateException(text);
+    }
 }
 
 PmrStatus PMR_CALL cancelBuilds(PmrContext context, int32_t on) noexcept {

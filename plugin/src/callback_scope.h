@@ -17,7 +17,9 @@ class CallbackScope {
 
   private:
     static int& depth() noexcept {
-        thread_local int callbacks = 0;
+        // Its place is there from a thread's start: else the C library would take memory for it
+        // when it is first used, and end the process where there is none.
+        [[gnu::tls_model("initial-exec")]] thread_local int callbacks = 0;
         return callbacks;
     }
 };

@@ -54,19 +54,4 @@ void Context::sendNotice(const Notice& notice) const {
     sendMessage(PMR_LEVEL_WARNING, static_cast<std::int32_t>(notice.code), notice.text);
 }
 
-void Context::setLastError(const char* text) noexcept {
-    try {
-        std::string copy(text);
-        const std::lock_guard lock(m_errorMutex);
-        m_lastError.swap(copy);
-    } catch (...) {
-        // Without memory for the text the status alone has to do.
-    }
-}
-
-std::string Context::lastError() const {
-    const std::lock_guard lock(m_errorMutex);
-    return m_lastError;
-}
-
 }  // namespace pm::plugin

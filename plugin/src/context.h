@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <string>
 
 #include "integrator/values/cancel_check.h"
@@ -16,8 +15,8 @@
 
 namespace pm::plugin {
 
-// What everything that a host makes hangs on: its message function, the text of the last error, the
-// textures. Lives until the last object made from it ends.
+// What everything that a host makes hangs on: its message function and the textures. Lives until
+// the last object made from it ends.
 class Context {
   public:
     static constexpr ObjectKind kKind = ObjectKind::kContext;
@@ -37,10 +36,6 @@ class Context {
     void sendMessage(std::int32_t level, std::int32_t code, const std::string& text) const;
     void sendNotice(const Notice& notice) const;
 
-    // Threads: any. Out of memory keeps the text before.
-    void setLastError(const char* text) noexcept;
-    std::string lastError() const;
-
   private:
     PmrMessageFunction m_message;
     void* m_user;
@@ -49,8 +44,6 @@ class Context {
     TextureSystem m_textures;
 
     std::atomic<bool> m_cancelBuilds{false};
-    mutable std::mutex m_errorMutex;
-    std::string m_lastError;
 };
 
 }  // namespace pm::plugin

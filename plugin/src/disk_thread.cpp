@@ -60,11 +60,13 @@ void DiskThread::doOne(std::unique_lock<std::mutex>& lock) {
     lock.unlock();
     std::string trouble;
     try {
-        work();
-    } catch (const std::exception& error) {
-        trouble = error.what();
+        try {
+            work();
+        } catch (const std::exception& error) {
+            trouble = error.what();
+        }
     } catch (...) {
-        trouble = "the disk's thread failed";
+        trouble = "out of memory";  // short enough to need none
     }
     work = nullptr;  // may close a file, which may wait as well
     lock.lock();

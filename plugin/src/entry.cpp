@@ -9,7 +9,34 @@
 #include <stdexcept>
 #include <system_error>
 
+#include "plugin/src/api_functions.h"
+#include "plugin/src/last_error.h"
+
 namespace pm::plugin {
+
+namespace {
+
+const char* handleType(ObjectKind kind) {
+    switch (kind) {
+        case ObjectKind::kContext:
+            return "PmrContext";
+        case ObjectKind::kMesh:
+            return "PmrMesh";
+        case ObjectKind::kTexture:
+            return "PmrTexture";
+        case ObjectKind::kMaterial:
+            return "PmrMaterial";
+        case ObjectKind::kScene:
+            return "PmrScene";
+        case ObjectKind::kRender:
+            return "PmrRender";
+        case ObjectKind::kMerge:
+            return "PmrMerge";
+    }
+    return "handle";
+}
+
+}  // namespace
 
 PmrStatus toPmrStatus(Status status) noexcept {
     switch (status) {
@@ -62,11 +89,28 @@ PmrStatus translateException(std::string& text) noexcept {
     }
 }
 
-PmrStatus translateException(Context* context) noexcept {
+PmrStatus endCall(PmrStatus status) noexcept {
+    if (status == PMR_OK)
+        clearLastError();
+    else
+        setLastError(api::statusText(status));
+    return status;
+}
+
+PmrStatus endCallByException() noexcept {
     std::string text;
     const PmrStatus status = translateException(text);
-    if (context != nullptr) context->setLastError(text.c_str());
+    setLastError(text.empty() ? api::statusText(status) : text.c_str());
     return status;
+}
+
+PmrStatus endCallWithoutObject(std::uintptr_t handle, ObjectKind kind) noexcept {
+    try {
+        throw CallError(PMR_ERROR_HANDLE,
+                        fmt::format("{:#x} is not a live {}", handle, handleType(kind)));
+    } catch (...) {
+        return endCallByException();
+    }
 }
 
 void writeText(const std::string& text, char* buffer, std::uint64_t capacity,

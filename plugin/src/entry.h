@@ -24,8 +24,13 @@ PmrStatus toPmrStatus(Status status) noexcept;
 
 // Turns the exception being handled into a status and its text. Call it inside a catch block.
 PmrStatus translateException(std::string& text) noexcept;
-// The text becomes the last error of `context` (may be null).
-PmrStatus translateException(Context* context) noexcept;
+// What every function that returns a status ends with: its text becomes the last error of this
+// thread, none after PMR_OK.
+PmrStatus endCall(PmrStatus status) noexcept;
+// The same in a catch block.
+PmrStatus endCallByException() noexcept;
+// The same for a handle that `kind` has not.
+PmrStatus endCallWithoutObject(std::uintptr_t handle, ObjectKind kind) noexcept;
 
 template <typename Object, typename Handle>
 std::shared_ptr<Object> findObject(Handle handle) {
@@ -33,31 +38,23 @@ std::shared_ptr<Object> findObject(Handle handle) {
         handleTable().find(reinterpret_cast<std::uintptr_t>(handle), Object::kKind));
 }
 
-inline Context* contextOf(Context& context) {
-    return &context;
-}
-template <typename Object>
-Context* contextOf(Object& object) {
-    return object.context().get();
-}
-
 // Calls body(shared_ptr<Object>) for the object of a handle. body returns nothing (PMR_OK) or a
 // status.
 template <typename Object, typename Handle, typename Body>
 PmrStatus onObject(Handle handle, Body&& body) noexcept {
     const FpEnvironment environment;
-    std::shared_ptr<Object> object;
     try {
-        object = findObject<Object>(handle);
-        if (!object) return PMR_ERROR_HANDLE;
+        const std::shared_ptr<Object> object = findObject<Object>(handle);
+        if (!object)
+            return endCallWithoutObject(reinterpret_cast<std::uintptr_t>(handle), Object::kKind);
         if constexpr (std::is_void_v<decltype(body(object))>) {
             body(object);
-            return PMR_OK;
+            return endCall(PMR_OK);
         } else {
-            return body(object);
+            return endCall(body(object));
         }
     } catch (...) {
-        return translateException(object ? contextOf(*object) : nullptr);
+        return endCallByException();
     }
 }
 
@@ -67,9 +64,9 @@ PmrStatus onNothing(Body&& body) noexcept {
     const FpEnvironment environment;
     try {
         body();
-        return PMR_OK;
+        return endCall(PMR_OK);
     } catch (...) {
-        return translateException(nullptr);
+        return endCallByException();
     }
 }
 
@@ -88,17 +85,21 @@ Handle publish(std::shared_ptr<Object> object) {
 
 template <typename Object, typename Handle>
 PmrStatus retainHandle(Handle handle) noexcept {
-    const bool live = handleTable().retain(reinterpret_cast<std::uintptr_t>(handle), Object::kKind);
-    return live ? PMR_OK : PMR_ERROR_HANDLE;
+    const auto number = reinterpret_cast<std::uintptr_t>(handle);
+    const bool live = handleTable().retain(number, Object::kKind);
+    return live ? endCall(PMR_OK) : endCallWithoutObject(number, Object::kKind);
 }
 
 template <typename Object, typename Handle>
 PmrStatus releaseHandle(Handle handle) noexcept {
     const FpEnvironment environment;
-    std::shared_ptr<void> last;
-    const bool live =
-        handleTable().release(reinterpret_cast<std::uintptr_t>(handle), Object::kKind, last);
-    return live ? PMR_OK : PMR_ERROR_HANDLE;
+    const auto number = reinterpret_cast<std::uintptr_t>(handle);
+    bool live = false;
+    {
+        std::shared_ptr<void> last;  // ends before the call does: it may wait, or call the host
+        live = handleTable().release(number, Object::kKind, last);
+    }
+    return live ? endCall(PMR_OK) : endCallWithoutObject(number, Object::kKind);
 }
 
 // Writes a text by the interface's rule for buffers; throws CallError(ARGUMENT) when it did not

@@ -33,7 +33,12 @@ void EventQueue::message(std::int32_t level, std::int32_t code, std::string text
     if (m_sinks.message == nullptr || m_dropping || m_messages.size() >= kMaxWaitingMessages)
         return;
     m_messages.push_back({level, code, std::move(text)});
-    push(Kind::kMessage);
+    try {
+        push(Kind::kMessage);
+    } catch (...) {
+        m_messages.pop_back();
+        throw;
+    }
 }
 
 void EventQueue::progress(double fraction, double remainingSeconds) {
@@ -41,7 +46,9 @@ void EventQueue::progress(double fraction, double remainingSeconds) {
     if (m_sinks.progress == nullptr || m_dropping) return;
     m_fraction = std::max(m_fraction, fraction);
     m_remainingSeconds = remainingSeconds;
-    if (!std::exchange(m_progressWaits, true)) push(Kind::kProgress);
+    if (m_progressWaits) return;
+    push(Kind::kProgress);
+    m_progressWaits = true;
 }
 
 void EventQueue::bucketStarted(const PmrBucketInfo& bucket) {
@@ -49,30 +56,33 @@ void EventQueue::bucketStarted(const PmrBucketInfo& bucket) {
     if (m_sinks.bucketStarted == nullptr || m_dropping) return;
     Bucket& waiting = m_buckets[bucket.bucketIndex];
     if (waiting.startedWaits || waiting.finishedWaits) return;
+    push(Kind::kStarted, bucket.bucketIndex);
     waiting.started = bucket;
     waiting.startedWaits = true;
-    push(Kind::kStarted, bucket.bucketIndex);
 }
 
 void EventQueue::bucketFinished(const PmrBucketInfo& bucket) {
     const std::lock_guard lock(m_mutex);
     if (m_sinks.bucketFinished == nullptr || m_dropping) return;
     Bucket& waiting = m_buckets[bucket.bucketIndex];
+    if (!waiting.finishedWaits) push(Kind::kFinishedBucket, bucket.bucketIndex);
     waiting.finished = bucket;
-    if (!std::exchange(waiting.finishedWaits, true))
-        push(Kind::kFinishedBucket, bucket.bucketIndex);
+    waiting.finishedWaits = true;
 }
 
-void EventQueue::finished(PmrStatus status) {
+void EventQueue::finished(PmrStatus status) noexcept {
     const std::lock_guard lock(m_mutex);
     m_status = status;
     m_finishedWaits = true;
-    push(Kind::kFinished);
+    m_changed.notify_all();
 }
 
 EventQueue::Parcel EventQueue::take() {
-    const Event event = m_events.front();
-    m_events.pop_front();
+    Event event{Kind::kFinished, 0};
+    if (!m_events.empty()) {
+        event = m_events.front();
+        m_events.pop_front();
+    }
     Parcel parcel;
     parcel.kind = event.kind;
     switch (event.kind) {
@@ -138,7 +148,8 @@ bool EventQueue::waitFor(std::unique_lock<std::mutex>& lock, const Deadline& dea
 EventQueue::Delivery EventQueue::deliverOne(const Deadline& deadline) {
     std::unique_lock lock(m_mutex);
     const bool ready = waitFor(lock, deadline, [](const EventQueue& queue) {
-        return queue.m_over || (!queue.m_delivering && !queue.m_events.empty());
+        const bool waits = !queue.m_events.empty() || queue.m_finishedWaits;
+        return queue.m_over || (!queue.m_delivering && waits);
     });
     if (m_over) return Delivery::kOver;
     if (!ready) return Delivery::kTimeout;
@@ -166,7 +177,6 @@ void EventQueue::dropAllButFinished() {
     m_events.clear();
     m_messages.clear();
     m_buckets.clear();
-    if (m_finishedWaits) push(Kind::kFinished);
 }
 
 void EventQueue::close() {

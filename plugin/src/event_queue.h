@@ -47,8 +47,8 @@ class EventQueue {
     // A bucket that begins is not told where an earlier event of it still waits.
     void bucketStarted(const PmrBucketInfo& bucket);
     void bucketFinished(const PmrBucketInfo& bucket);
-    // The last event; once.
-    void finished(PmrStatus status);
+    // The last event; once. It needs no memory, as all the others do (std::bad_alloc).
+    void finished(PmrStatus status) noexcept;
 
     enum class Delivery { kDelivered, kTimeout, kOver };
     // Waits for an event until the deadline and calls the host with it, on the calling thread.
@@ -102,9 +102,9 @@ class EventQueue {
     bool m_progressWaits = false;
     PmrStatus m_status = PMR_OK;
     bool m_dropping = false;
-    bool m_finishedWaits = false;
-    bool m_delivering = false;  // a callback is running
-    bool m_over = false;        // `finished` has returned
+    bool m_finishedWaits = false;  // behind all of m_events
+    bool m_delivering = false;     // a callback is running
+    bool m_over = false;           // `finished` has returned
 };
 
 }  // namespace pm::plugin

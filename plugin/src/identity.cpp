@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <iterator>
 #include <memory>
+#include <new>
 #include <span>
 #include <string_view>
 #include <type_traits>
@@ -28,7 +29,10 @@ constexpr const char* kCameraPart = "camera";
 // in with its length, so that no two different inputs feed the same bytes.
 class Hasher {
   public:
-    Hasher() : m_state(XXH3_createState()) { XXH3_128bits_reset(m_state.get()); }
+    Hasher() : m_state(XXH3_createState()) {
+        if (!m_state) throw std::bad_alloc();
+        XXH3_128bits_reset(m_state.get());
+    }
 
     template <typename T>
     requires std::is_arithmetic_v<T> || std::is_enum_v<T>

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <exception>
 #include <mutex>
+#include <new>
 #include <thread>
 #include <vector>
 
@@ -64,9 +65,11 @@ struct LeftThread {
 // Those left behind, of the whole process.
 class LeftThreads {
   public:
-    void add(LeftThread left) {
+    // Takes nothing where it throws.
+    void add(const std::shared_ptr<Job>& job, std::thread& thread) {
         const std::lock_guard lock(m_mutex);
-        m_threads.push_back(std::move(left));
+        m_threads.emplace_back();
+        m_threads.back() = {job, std::move(thread)};
     }
     void joinEnded() {
         const std::lock_guard lock(m_mutex);
@@ -102,6 +105,16 @@ void joinAtExit() {
     std::atexit([] { leftThreads().joinAll(); });
 }
 
+// Without memory to leave it, it is waited for.
+void leaveBehind(const std::shared_ptr<Job>& job, std::thread& thread) {
+    try {
+        joinAtExit();
+        leftThreads().add(job, thread);
+    } catch (const std::bad_alloc&) {
+        thread.join();
+    }
+}
+
 void waitForThoseLeft(const CancelCheck& cancel, const char* what) {
     for (leftThreads().joinEnded(); const auto job = leftThreads().first();
          leftThreads().joinEnded())
@@ -119,8 +132,7 @@ void callLeavable(const CancelCheck& cancel, const char* what,
     if (!job->waitUntilOver(cancel)) {
         job->cancelled = true;
         if (!job->waitFor(kGrace)) {
-            joinAtExit();
-            leftThreads().add({job, std::move(thread)});
+            leaveBehind(job, thread);
             throw Error(Status::kCancelled, std::string("cancelled while ") + what);
         }
     }

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 #include <fstream>
 #include <limits>
 #include <optional>
@@ -22,7 +21,7 @@ namespace {
 constexpr double kShareOfMachine = 0.9;
 
 // The number that a small file begins with; nothing for "max" or no file.
-std::optional<std::uint64_t> readNumber(const std::filesystem::path& file) {
+std::optional<std::uint64_t> readNumber(const std::string& file) {
     std::ifstream stream(file);
     std::string line;
     if (!std::getline(stream, line)) return std::nullopt;
@@ -32,15 +31,16 @@ std::optional<std::uint64_t> readNumber(const std::filesystem::path& file) {
     return value;
 }
 
-// The least limit from a group up to the root of its hierarchy.
-std::uint64_t leastLimit(const std::filesystem::path& root, std::filesystem::path group,
-                         const char* file) {
+// The least limit from a group ("/a/b") up to the root of its hierarchy. Names are put together as
+// text: std::filesystem::path frees memory twice where its operator/= gets none (libstdc++ 12).
+std::uint64_t leastLimit(const std::string& root, std::string group, const std::string& file) {
     std::uint64_t least = std::numeric_limits<std::uint64_t>::max();
     while (true) {
-        if (const auto limit = readNumber(root / group.relative_path() / file))
+        while (!group.empty() && group.back() == '/') group.pop_back();
+        if (const auto limit = readNumber(root + group + '/' + file))
             least = std::min(least, *limit);
-        if (!group.has_relative_path()) return least;
-        group = group.parent_path();
+        if (group.empty()) return least;
+        group.resize(std::min(group.rfind('/'), group.size() - 1));
     }
 }
 
@@ -53,7 +53,7 @@ std::uint64_t cgroupLimitBytes() {
         if (first == std::string::npos || second == std::string::npos) continue;
         const std::string controllers =
             fmt::format(",{},", line.substr(first + 1, second - first - 1));
-        const std::filesystem::path group = line.substr(second + 1);
+        const std::string group = line.substr(second + 1);
         if (controllers == ",,")
             least = std::min(least, leastLimit("/sys/fs/cgroup", group, "memory.max"));
         else if (controllers.find(",memory,") != std::string::npos)

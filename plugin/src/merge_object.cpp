@@ -169,7 +169,7 @@ std::string MergeObject::statisticsJson() const {
     addError(picture().frame->estimateError(), json);
     json["buckets"] = {{"count", head.bucketCount}, {"sizePixels", picture().bucketSize}};
     json["settings"] = settingsJson(picture().settings);
-    return json.dump(2, ' ', false, Json::error_handler_t::replace);
+    return json.dump(2);
 }
 
 }  // namespace pm::plugin

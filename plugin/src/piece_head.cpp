@@ -3,15 +3,14 @@
 #include "plugin/src/piece_head.h"
 
 #include <array>
-#include <nlohmann/json.hpp>
+#include <limits>
 
 #include "plugin/src/call_error.h"
+#include "plugin/src/json.h"
 
 namespace pm::plugin {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "pm-piece/1";
 
@@ -48,6 +47,13 @@ bool isKept(const SettingSpec& spec, PieceKind kind) {
     }
 }
 
+std::uint32_t numberOf(const Json& json, const char* key) {
+    const std::uint64_t number = json.at(key).number();
+    if (number > std::numeric_limits<std::uint32_t>::max())
+        throw CallError(PMR_ERROR_FILE, "its head can't be understood");
+    return static_cast<std::uint32_t>(number);
+}
+
 Json pairsJson(const auto& pairs) {
     Json json = Json::array();
     for (const auto& [name, value] : pairs) json.push_back({name, value});
@@ -74,35 +80,29 @@ std::string PieceHead::toJson() const {
                  {"firstBucket", range.first},
                  {"lastBucket", range.last}};
     if (!photonHash.empty()) json["photonHash"] = photonHash;
-    return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+    return json.dump();
 }
 
 PieceHead PieceHead::fromJson(std::span<const std::byte> text) {
-    const auto* first = reinterpret_cast<const char*>(text.data());
-    try {
-        const Json json = Json::parse(first, first + text.size());
-        if (json.at("schema") != kSchema)
-            throw CallError(PMR_ERROR_FILE, "of another version than " + std::string(kSchema));
-        PieceHead head;
-        head.kind = kindOf(json.at("kind").get<std::string>());
-        head.photonHash = json.value("photonHash", std::string());
-        for (const Json& part : json.at("identity"))
-            head.identity.push_back({part.at(0).get<std::string>(), part.at(1).get<std::string>()});
-        json.at("sceneHash").get_to(head.sceneHash);
-        json.at("settingsHash").get_to(head.settingsHash);
-        json.at("isa").get_to(head.isa);
-        for (const Json& setting : json.at("settings"))
-            head.settings.emplace_back(setting.at(0).get<std::string>(),
-                                       setting.at(1).get<std::string>());
-        json.at("passes").get_to(head.passes);
-        json.at("sharesNoise").get_to(head.sharesNoise);
-        json.at("bucketCount").get_to(head.bucketCount);
-        json.at("firstBucket").get_to(head.range.first);
-        json.at("lastBucket").get_to(head.range.last);
-        return head;
-    } catch (const nlohmann::json::exception&) {
-        throw CallError(PMR_ERROR_FILE, "its head can't be understood");
-    }
+    const Json json = Json::parse(text);
+    if (json.at("schema").text() != kSchema)
+        throw CallError(PMR_ERROR_FILE, "of another version than " + std::string(kSchema));
+    PieceHead head;
+    head.kind = kindOf(json.at("kind").text());
+    if (const Json* hash = json.find("photonHash")) head.photonHash = hash->text();
+    for (const Json& part : json.at("identity").elements())
+        head.identity.push_back({part.elementAt(0).text(), part.elementAt(1).text()});
+    head.sceneHash = json.at("sceneHash").text();
+    head.settingsHash = json.at("settingsHash").text();
+    head.isa = json.at("isa").text();
+    for (const Json& setting : json.at("settings").elements())
+        head.settings.emplace_back(setting.elementAt(0).text(), setting.elementAt(1).text());
+    head.passes = numberOf(json, "passes");
+    head.sharesNoise = json.at("sharesNoise").truth();
+    head.bucketCount = numberOf(json, "bucketCount");
+    head.range.first = numberOf(json, "firstBucket");
+    head.range.last = numberOf(json, "lastBucket");
+    return head;
 }
 
 PieceHead makePieceHead(PieceKind kind, const Identity& scene, const SettingValues& values) {

@@ -141,7 +141,11 @@ void Render::runJob() {
         m_state = PMR_RENDER_FINISHED;
     }
     m_stateChanged.notify_all();
-    if (status == PMR_OK) m_events.progress(1.0, 0.0);
+    try {
+        if (status == PMR_OK) m_events.progress(1.0, 0.0);
+    } catch (...) {
+        // Without memory `finished` has to tell it.
+    }
     m_events.finished(status);
 }
 
@@ -159,10 +163,14 @@ PmrStatus Render::runWork() {
     } catch (...) {
         std::string text;
         const PmrStatus status = translateException(text);
-        if (status != PMR_ERROR_CANCELLED)
-            m_events.message(PMR_LEVEL_ERROR, PMR_MESSAGE_NONE, text);
+        try {
+            if (status != PMR_ERROR_CANCELLED)
+                m_events.message(PMR_LEVEL_ERROR, PMR_MESSAGE_NONE, text);
+        } catch (...) {
+            // Without memory `finished` has to tell it.
+        }
         const std::lock_guard lock(m_mutex);
-        m_errorText = text;
+        m_errorText = std::move(text);
         return status;
     }
 }
@@ -187,7 +195,7 @@ PmrStatus Render::poll(double timeoutSeconds) {
 
 PmrStatus Render::outcome() const {
     const std::lock_guard lock(m_mutex);
-    if (m_status != PMR_OK) context()->setLastError(m_errorText.c_str());
+    if (m_status != PMR_OK) throw CallError(m_status, m_errorText);
     return m_status;
 }
 

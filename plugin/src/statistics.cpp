@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <nlohmann/json.hpp>
 
 #include "plugin/src/call_error.h"
 #include "plugin/src/identity.h"
@@ -183,8 +182,7 @@ std::string Render::statisticsJson() const {
     json["plan"] = planJson(running->plan(), counters);
     json["warnings"] = warningsJson(running->scene(), *running);
     json["settings"] = settingsJson(settings());
-    // Names of files may hold bytes that are no UTF-8; they are replaced rather than thrown at.
-    return json.dump(2, ' ', false, Json::error_handler_t::replace);
+    return json.dump(2);
 }
 
 }  // namespace pm::plugin

@@ -3,15 +3,13 @@
 // What the statistics of renders and of merged parts share.
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <optional>
 
+#include "plugin/src/json.h"
 #include "plugin/src/setting_values.h"
 #include "scheduler/frame_error.h"
 
 namespace pm::plugin {
-
-using Json = nlohmann::ordered_json;
 
 Json settingsJson(const SettingValues& values);
 

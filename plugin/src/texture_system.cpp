@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "plugin/src/call_error.h"
+#include "plugin/src/picture_file.h"
 
 namespace pm::plugin {
 
@@ -162,6 +163,7 @@ TexturePicture TextureSystem::open(const PmrTextureDesc& desc) {
     picture.base = checkedFinite(desc.base, "base");
     picture.texelHash = {desc.texelHash[0], desc.texelHash[1]};
 
+    checkIsRegularFile(picture.fileName);
     OIIO::TextureSystem& textures = system();
     const OIIO::ustring name(picture.fileName);
     picture.handle = textures.get_texture_handle(name);

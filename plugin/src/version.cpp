@@ -75,7 +75,7 @@ const std::string& versionText() {
     return text;
 }
 
-nlohmann::ordered_json versionsJson() {
+Json versionsJson() {
     return {{"pm", PM_VERSION_TEXT},
             {"build", PM_BUILD_TEXT},
             {"embree", PM_EMBREE_VERSION_TEXT},

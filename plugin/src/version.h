@@ -2,8 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include <nlohmann/json.hpp>
 #include <string>
+
+#include "plugin/src/json.h"
 
 namespace pm::plugin {
 
@@ -11,7 +12,7 @@ namespace pm::plugin {
 const std::string& versionText();
 
 // The same by name.
-nlohmann::ordered_json versionsJson();
+Json versionsJson();
 
 // What the linker marked this library with, hexadecimal digits: two builds have two of them. Empty
 // where the linker makes none.

@@ -39,7 +39,6 @@ void expectHandleErrors(std::uintptr_t bad) {
     std::uint32_t count = 0;
     const PmrStatus answers[] = {
         api().releaseContext(context),
-        api().lastError(context, nullptr, 0, &needed),
         api().createSphere(context, &sphere, &mesh),
         api().createScene(context, nullptr, &newScene),
         api().retainMesh(made<PmrMesh>(bad)),

@@ -1,8 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Textures through the interface: a square in front of the camera that emits its picture.
+#include <sys/stat.h>
+#include <unistd.h>
+
 #include <cstdio>
+#include <cstdlib>
+#include <filesystem>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "tests/abi/host.h"
 
@@ -133,6 +140,42 @@ TEST(Textures, WrapModes) {
     expectColour(renderQuarters(desc)[3], 0, 0, 0);
     desc.wrapS = PMR_WRAP_MIRROR;  // the second copy runs backwards
     expectColour(renderQuarters(desc)[0], 0, 2, 0);
+}
+
+// What is no regular file never reaches the picture library, which would read it for ever.
+TEST(Textures, AreRegularFiles) {
+    const BoxHost host;
+    std::string folder = ::testing::TempDir() + "pm_odd.XXXXXX";
+    ASSERT_NE(nullptr, mkdtemp(folder.data()));
+    const std::string pipe = folder + "/pipe.png", empty = folder + "/empty.png",
+                      link = folder + "/link.png", lost = folder + "/lost.png";
+    ASSERT_EQ(0, mkfifo(pipe.c_str(), 0600));
+    std::fclose(std::fopen(empty.c_str(), "wb"));
+    ASSERT_EQ(0, symlink("/dev/zero", link.c_str()));
+    ASSERT_EQ(0, symlink(lost.c_str(), lost.c_str()));
+    const std::vector<std::pair<std::string, std::string>> rows = {
+        {"/dev/zero", "is a device"},
+        {link, "is a device"},
+        {pipe, "is a pipe"},
+        {folder, "is a folder"},
+        {empty, "is empty"},
+        {"/proc/self/maps", "is made by the kernel"},
+        {"/proc/kcore", "is made by the kernel"},
+        {"/sys/kernel/mm/transparent_hugepage/enabled", "is made by the kernel"},
+        {lost, "symbolic links"},
+        {folder + "/none.png", "No such file"},
+        {folder + "/none.null", "No such file"}};  // a name that the library makes up a picture for
+    for (const auto& [file, why] : rows) {
+        if (file.starts_with("/") && !file.starts_with(folder) && access(file.c_str(), F_OK) != 0)
+            continue;
+        PmrTextureDesc desc = PMR_INIT(PmrTextureDesc);
+        desc.fileName = file.c_str();
+        PmrTexture texture = nullptr;
+        EXPECT_EQ(PMR_ERROR_IO, api().createTexture(host.context(), &desc, &texture)) << file;
+        EXPECT_NE(std::string::npos, host.lastError().find(file)) << host.lastError();
+        EXPECT_NE(std::string::npos, host.lastError().find(why)) << host.lastError();
+    }
+    std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -1,0 +1,53 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: The pm authors
+"""Which of a library's files can't be compiled together with its others in one go.
+
+usage: same_names.py FILE...
+
+In an unnamed namespace files are free to call things alike. Prints the fewest files it finds that
+have to be compiled alone, separated by semicolons. Reads clang-format's layout, not C++: an
+overload of a function counts as the same name where it has as many parameters.
+"""
+import collections
+import re
+import sys
+
+NAMESPACE = re.compile(r"^namespace \{\n(.*?)^\}  // namespace$", re.M | re.S)
+TYPE = re.compile(r"^(?:struct|class|enum class|enum|using) (?:alignas\([^)]*\) )?(\w+)", re.M)
+CONSTANT = re.compile(r"^(?:static |inline )?const(?:expr)? [^;({=]*?\b(k[A-Z]\w*)", re.M)
+FUNCTION = re.compile(r"^(?![ /}#])[^=;{\n]*?\b(\w+)\(([^{;]*)\)[^(){;]*\{", re.M)
+
+
+def names(file):
+    """The names of a file's unnamed namespaces; of functions with the number of parameters."""
+    found = set()
+    with open(file, encoding="utf-8") as source:
+        for body in NAMESPACE.findall(source.read()):
+            found.update(TYPE.findall(body), CONSTANT.findall(body))
+            found.update((name, parameters.count(",")) for name, parameters in FUNCTION.findall(body))
+    return found
+
+
+def main():
+    files_by_name = collections.defaultdict(set)
+    for file in sys.argv[1:]:
+        for name in names(file):
+            files_by_name[name].add(file)
+    alone = []
+    while True:
+        clashes = collections.Counter()
+        for files in files_by_name.values():
+            if len(files) > 1:
+                clashes.update(sorted(files))
+        if not clashes:
+            break
+        worst = max(sorted(clashes), key=clashes.get)
+        alone.append(worst)
+        for files in files_by_name.values():
+            files.discard(worst)
+    print(";".join(alone), end="")
+
+
+if __name__ == "__main__":
+    main()
