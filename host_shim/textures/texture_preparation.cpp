@@ -235,7 +235,7 @@ TextureFacts TexturePreparer::Work::bake(TextureCache& cache, const std::string&
     const fs::path path = cache.textureFile(name);
     FinishedFile finished(cache.nameForNew());
     cache.noteUnderway(finished.temporaryPath());
-    CheckedFile file(finished.temporaryPath(), path);
+    CheckedFile file(finished, path);
     facts = baking->bake(file, finished.temporaryPath(), path, goOn);
     cache.commit(name, finished, toRecord(facts, request.file));
     result.texture.file = cache.textureFile(name);
