@@ -21,13 +21,14 @@ struct Texel {
     float r{}, g{}, b{}, a{1.0f};
 };
 
-// A texel as light: channels that are infinite or NaN count as 0, and where the rest adds up to no
-// more than 0 there is none. Single channels may be below 0: so are saturated colours of a wider
-// space than the rendering space.
+// A texel as light: channels that are infinite or NaN count as 0, and so do those below 0 where the
+// rest adds up to no more than 0. Elsewhere single channels may be below 0: so are saturated colours
+// of a wider space than the rendering space.
 inline Texel asLight(Texel texel) {
     for (float* const channel : {&texel.r, &texel.g, &texel.b, &texel.a})
         if (!(std::abs(*channel) <= std::numeric_limits<float>::max())) *channel = 0.0f;
-    return texel.r + texel.g + texel.b > 0.0f ? texel : Texel{0.0f, 0.0f, 0.0f, texel.a};
+    if (texel.r + texel.g + texel.b > 0.0f) return texel;
+    return {std::fmax(texel.r, 0.0f), std::fmax(texel.g, 0.0f), std::fmax(texel.b, 0.0f), texel.a};
 }
 
 // Texels of which no light can be: adding up to less than 0, or with a channel that is infinite or

@@ -87,9 +87,8 @@ TEST_F(Kill, AtAnyMomentCostsNoBit) {
     EXPECT_GT(goneOn, kills / 2);
     EXPECT_GT(finished, kills / 5);
     // All is tidied up: nothing is left but what was being written when a kill came.
-    fs::remove(path("c.tmp"));
     for (const std::string& name : leftFiles())
-        EXPECT_NE(name.find("a.exr.tmp."), std::string::npos) << name;
+        EXPECT_TRUE(name.starts_with("a.exr.tmp.") || name.starts_with("c.tmp.")) << name;
     std::cout << killed << " kills of a render whose passes take "
               << std::chrono::duration<double>(time).count() << " s, " << goneOn
               << " runs went on from a checkpoint, " << finished << " finished between kills\n";

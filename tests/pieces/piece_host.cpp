@@ -90,6 +90,7 @@ Outcome PieceHost::render(PmrScene scene, const Settings& settings, int cancelAf
     outcome.started = api().startRender(render);
     if (outcome.started == PMR_OK) {
         outcome.ended = api().waitRender(render, -1.0);
+        if (!outcome.isOk()) outcome.error = m_host.lastError();
         const PmrRectangle frame{0, 0, 40, 28};
         outcome.beauty = readLayer(render, "beauty", 4, frame);
         outcome.standardError = readLayer(render, "stderr", 3, frame);
@@ -98,8 +99,9 @@ Outcome PieceHost::render(PmrScene scene, const Settings& settings, int cancelAf
             textOf([&](char* buffer, std::uint64_t capacity, std::uint64_t* needed) {
                 return api().renderStatistics(render, buffer, capacity, needed);
             }));
+    } else {
+        outcome.error = m_host.lastError();
     }
-    if (!outcome.isOk()) outcome.error = m_host.lastError();
     EXPECT_EQ(PMR_OK, api().destroyRender(render));
     outcome.warnings = seen.warnings;
     outcome.infos = seen.infos;
