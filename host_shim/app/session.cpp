@@ -234,9 +234,8 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
             run.keepFrame(whole + " needs the whole picture at once");
     }
     if (m_options.explain) {
-        std::fputs(
-            plainLines(run.explain() + explainMaterials(m_statistics.materialFiles)).c_str(),
-            stdout);
+        std::fputs(plainLines(run.explain() + explainMaterials(m_statistics.materialFiles)).c_str(),
+                   stdout);
         m_statistics.stopReason = "finished";
         return 0;
     }

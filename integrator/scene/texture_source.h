@@ -22,8 +22,8 @@ struct Texel {
 };
 
 // A texel as light: channels that are infinite or NaN count as 0, and so do those below 0 where the
-// rest adds up to no more than 0. Elsewhere single channels may be below 0: so are saturated colours
-// of a wider space than the rendering space.
+// rest adds up to no more than 0. Elsewhere single channels may be below 0: so are saturated
+// colours of a wider space than the rendering space.
 inline Texel asLight(Texel texel) {
     for (float* const channel : {&texel.r, &texel.g, &texel.b, &texel.a})
         if (!(std::abs(*channel) <= std::numeric_limits<float>::max())) *channel = 0.0f;

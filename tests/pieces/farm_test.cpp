@@ -62,8 +62,8 @@ TEST_F(Farm, MergedPartsAreTheBytesOfALocalRender) {
 // Parts keep how bright they are to be shown; a merge may be told otherwise.
 TEST_F(Farm, ExposureIsOfThePartsOrOfTheMerge) {
     makeParts();
-    ASSERT_EQ(run(command({"-o", "zero.png", "--exposure", "0"})).exitCode, 0);
-    ASSERT_EQ(run(command({"-o", "two.png", "--exposure", "2"})).exitCode, 0);
+    ASSERT_EQ(run(command({"-o", "zero.exr", "-o", "zero.png", "--exposure", "0"})).exitCode, 0);
+    ASSERT_EQ(run(command({"-o", "two.exr", "-o", "two.png", "--exposure", "2"})).exitCode, 0);
     ASSERT_EQ(merge({"-o", "m.png"}).exitCode, 0);
     EXPECT_TRUE(readText(path("m.png")) == readText(path("zero.png")));
     ASSERT_EQ(merge({"-o", "m.png", "--exposure", "2"}).exitCode, 0);
