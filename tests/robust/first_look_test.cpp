@@ -132,7 +132,7 @@ TEST_F(FirstLook, ALightToSeeByWhereTheOwnOnesShowNothing) {
     // Who places the camera gets what there is, and a word.
     expectWarning(small("away.obj", {"-o", "c.exr", "--eye", "0,1,9"}),
                   {"the picture is black", "--camera-light on"});
-    expectWarning(small("away.obj", {"-o", "c.exr", "--camera-light", "off"}),
+    expectWarning(small("closed.obj", {"-o", "c.exr", "--camera-light", "off"}),
                   {"the picture is black", "--camera-light on"});
 }
 
