@@ -142,8 +142,8 @@ void checkParsed(const Parsed& parsed, const ObjText& text, const std::string& f
 
 // Groups of tags only grow through the file.
 std::span<const SubdivisionTag> tagsOfGroup(const ObjText& text, std::size_t group) {
-    const auto [first, last] =
-        std::ranges::equal_range(text.tags, group, {}, &SubdivisionTag::group);
+    const auto first = std::ranges::lower_bound(text.tags, group, {}, &SubdivisionTag::group);
+    const auto last = std::ranges::upper_bound(text.tags, group, {}, &SubdivisionTag::group);
     return {first, last};
 }
 

@@ -41,7 +41,7 @@ struct Candidate {
     PlacedFace face;
 
     explicit Candidate(const PlacedFace& placed) : corners(cornersOf(placed)), face(placed) {
-        std::ranges::rotate(corners, std::ranges::min_element(corners));
+        std::rotate(corners.begin(), std::ranges::min_element(corners), corners.end());
         isTurned = corners[2] < corners[1];
         if (isTurned) std::swap(corners[1], corners[2]);
         const bool shines =
