@@ -44,6 +44,7 @@ void FrameStoreBytes::forEachRow(Store& store, const Rect& rect, Visit visit) {
     forEachArray(store, [&](auto& array) {
         using Element = std::remove_reference_t<decltype(array[0])>;
         static_assert(std::is_trivially_copyable_v<Element>);
+        if (array.empty()) return;
         const std::size_t perPixel = array.size() / pixels;
         const std::size_t rowBytes =
             static_cast<std::size_t>(rect.width()) * perPixel * sizeof(Element);

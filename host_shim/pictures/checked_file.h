@@ -7,7 +7,9 @@
 #include <OpenImageIO/filesystem.h>
 
 #include <atomic>
+#include <cstdint>
 #include <filesystem>
+#include <vector>
 
 namespace pm::host {
 
@@ -17,7 +19,8 @@ namespace pm::host {
                               const std::string& text);
 
 // The file that a picture writer of OpenImageIO writes into, with every failure remembered: the
-// writers themselves return true for a JPEG, a PNG or the end of an EXR on a full disk.
+// writers themselves return true for a JPEG, a PNG or the end of an EXR on a full disk. For one
+// thread.
 class CheckedFile final : public OIIO::Filesystem::IOProxy {
   public:
     // finished: new, and outlives this. Errors: HostError kFile, naming shownPath.
@@ -26,7 +29,8 @@ class CheckedFile final : public OIIO::Filesystem::IOProxy {
     CheckedFile(const CheckedFile&) = delete;
     CheckedFile& operator=(const CheckedFile&) = delete;
 
-    // 0, or the errno of the first failure.
+    // 0, or the errno of the first failure; of what was written last it may come with the next
+    // call.
     int firstError() const { return m_error; }
     // Closes and returns firstError().
     int finish();
@@ -39,7 +43,12 @@ class CheckedFile final : public OIIO::Filesystem::IOProxy {
     std::size_t size() const override;
 
   private:
+    void flush();
+    std::size_t writeNow(const void* buffer, std::size_t size, std::int64_t offset);
+
     int m_file{-1};
+    std::vector<char> m_kept;  // what was written last, not yet in the file
+    std::int64_t m_keptAt{};   // where it belongs
     std::atomic<int> m_error{0};
 };
 

@@ -171,6 +171,9 @@ void MipWriter::finish(const std::function<void()>& goOn) {
         level.rows = {};
     }
     const bool good = m_output->close();
+    // Which leaves a file of levels open for more: the table of where its tiles are comes with the
+    // end.
+    m_output.reset();
     if (!good || m_file.finish() != 0) fail();
 }
 

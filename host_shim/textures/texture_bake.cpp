@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <memory>
 #include <new>
 
@@ -51,26 +52,26 @@ class RowConverter {
 
     const TexelConversion& conversion() const { return m_conversion; }
 
-    const std::vector<float>& read(int rowCount, BadTexelCount& bad) {
+    // The next rows. bad: added to.
+    void read(int rowCount, std::vector<float>& values, BadTexelCount& bad) {
         const std::size_t texels =
             static_cast<std::size_t>(m_rows.width()) * static_cast<std::size_t>(rowCount);
-        m_values.resize(texels * static_cast<std::size_t>(m_conversion.outChannels()));
+        values.resize(texels * static_cast<std::size_t>(m_conversion.outChannels()));
         if (m_codes == 256) {
             m_rows.readCodes(rowCount, m_codes8);
-            m_conversion.apply(m_codes8, m_values);
+            m_conversion.apply(m_codes8, values);
         } else if (m_codes != 0) {
             m_rows.readCodes(rowCount, m_codes16);
-            m_conversion.apply(m_codes16, m_values);
+            m_conversion.apply(m_codes16, values);
         } else if (m_isPlain) {
-            m_rows.readRows(rowCount, m_values);
-            return m_values;
+            m_rows.readRows(rowCount, values);
+            return;
         } else {
             m_rows.readRows(rowCount, m_picked);
-            m_conversion.apply(m_picked, m_values);
+            m_conversion.apply(m_picked, values);
         }
         if (!std::isfinite(m_conversion.largest()))
-            replaceNotFinite(m_values, m_conversion.outChannels(), bad);
-        return m_values;
+            replaceNotFinite(values, m_conversion.outChannels(), bad);
     }
 
   private:
@@ -80,7 +81,7 @@ class RowConverter {
     bool m_isPlain;
     std::vector<std::uint8_t> m_codes8;
     std::vector<std::uint16_t> m_codes16;
-    std::vector<float> m_picked, m_values;
+    std::vector<float> m_picked;
 };
 
 struct FreeHash {
@@ -146,7 +147,7 @@ bool TextureBake::isHalf(float largest) const {
 }
 
 TextureFacts TextureBake::bake(CheckedFile& file, const std::filesystem::path& path,
-                               const std::filesystem::path& shownName,
+                               const std::filesystem::path& shownName, int threads,
                                const std::function<void()>& goOn) {
     RowConverter converter(m_rows, m_isColour, m_conversion);
     const int channels = converter.conversion().outChannels();
@@ -158,9 +159,22 @@ TextureFacts TextureBake::bake(CheckedFile& file, const std::filesystem::path& p
          m_rows.fileBytes() * kFlatRatio < texelBytes},
         file, path, shownName);
     BadTexelCount bad;
+    std::vector<float> band, nextBand;
+    const auto read = [&](int y, std::vector<float>& values) {
+        if (y < m_rows.height())
+            converter.read(std::min(kBandRows, m_rows.height() - y), values, bad);
+    };
+    // Both: a thread where the system has one left.
+    const auto launch =
+        threads > 1 ? std::launch::async | std::launch::deferred : std::launch::deferred;
+    read(0, band);
     for (int y = 0; y < m_rows.height(); y += kBandRows) {
         if (goOn) goOn();
-        writer.addRows(converter.read(std::min(kBandRows, m_rows.height() - y), bad));
+        // Waited for at the end of this block, whatever the writer throws.
+        auto ahead = std::async(launch, [&, y] { read(y + kBandRows, nextBand); });
+        writer.addRows(band);
+        ahead.get();
+        band.swap(nextBand);
     }
     writer.finish(goOn);
     bad.notFinite += m_rows.badTexels().notFinite;

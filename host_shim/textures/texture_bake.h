@@ -39,11 +39,13 @@ class TextureBake {
     // Writes the texture to `file`, whose name is `path`: tiled, mip-mapped, in the rendering
     // space, converted before any filtering, in half (8-bit colour, and half where nothing is
     // converted) or float, so that nothing is clipped. Grey that stays grey and numbers have one
-    // channel, colours three. goOn: called every few rows; may throw. Errors: HostError kBadInput
+    // channel, colours three. threads: with two or more, rows are read ahead by another thread; the
+    // file is the same. goOn: called every few rows; may throw. Errors: HostError kBadInput
     // when the picture is broken, kFile when the texture can't be written; the text names `rows`'
     // file or shownName.
     TextureFacts bake(CheckedFile& file, const std::filesystem::path& path,
-                      const std::filesystem::path& shownName, const std::function<void()>& goOn);
+                      const std::filesystem::path& shownName, int threads,
+                      const std::function<void()>& goOn);
 
   private:
     bool isHalf(float largest) const;

@@ -18,6 +18,7 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <tuple>
 #include <unordered_set>
 
 namespace pm::host {
@@ -226,7 +227,9 @@ std::vector<TextureCache::Entry> TextureCache::list() const {
             entry.source = record->get("source");
         entries.push_back(std::move(entry));
     }
-    std::ranges::stable_sort(entries, {}, &Entry::lastUsed);
+    std::ranges::sort(entries, {}, [](const Entry& entry) {
+        return std::tie(entry.lastUsed, entry.source, entry.name);
+    });
     return entries;
 }
 

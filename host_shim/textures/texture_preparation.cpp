@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Of what textures are made and how; another number makes all of them anew.
-constexpr int kBakeVersion = 1;
+constexpr int kBakeVersion = 2;
 
 struct Stopped {};
 
@@ -129,6 +129,7 @@ struct TexturePreparer::Work {
     SpaceConversion conversion;
     Result result;
     bool wasOpened{}, wasFound{};
+    int threads = 1;  // that it may keep busy
 
     void findOriginal(TextureCache& cache, const std::function<void()>& goOn);
     void makeTexture(TextureCache& cache, MemoryBudget& budget, const std::function<void()>& goOn);
@@ -236,7 +237,7 @@ TextureFacts TexturePreparer::Work::bake(TextureCache& cache, const std::string&
     FinishedFile finished(cache.nameForNew());
     cache.noteUnderway(finished.temporaryPath());
     CheckedFile file(finished, path);
-    facts = baking->bake(file, finished.temporaryPath(), path, goOn);
+    facts = baking->bake(file, finished.temporaryPath(), path, threads, goOn);
     cache.commit(name, finished, toRecord(facts, request.file));
     result.texture.file = cache.textureFile(name);
     return facts;
@@ -297,6 +298,7 @@ void TexturePreparer::prepare(const std::vector<TextureRequest>& requests) {
     if (works.empty()) return;
     const auto shared = std::make_shared<Shared>(std::move(works), m_cache, m_settings.memoryBytes);
     const std::uint32_t threads = std::max(1u, m_settings.threads);
+    for (Work& work : shared->works) work.threads = shared->works.size() < threads ? 2 : 1;
     const auto each = [&](auto step) {
         try {
             callAsking(m_goOn, [shared, threads, step] {

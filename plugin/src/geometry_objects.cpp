@@ -235,7 +235,9 @@ SubdivisionCage toCage(const PmrCageDesc& desc, const PmrMeshDesc& meshDesc,
 }
 
 void refuseTooLarge(const SubdivisionCage& cage, int rate) {
+    constexpr std::uint64_t kFitsAnywhere = 16 << 20;  // asking the system takes longer than that
     const TessellationSize size = tessellationSize(cage, rate);
+    if (size.bytes <= kFitsAnywhere) return;
     const std::uint64_t limit = memoryLimitBytes(0.0);
     if (size.bytes > limit)
         throw CallError(PMR_ERROR_MEMORY,

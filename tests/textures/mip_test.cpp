@@ -6,6 +6,7 @@
 #include <xxhash.h>
 
 #include <cmath>
+#include <cstring>
 #include <numeric>
 
 namespace pm::host::test {
@@ -79,6 +80,50 @@ TEST_F(Mips, TwoBakesAreTheSameBytes) {
     std::filesystem::remove_all(cacheFolder());
     EXPECT_EQ(baked({file("a.png")}).file, path);
     EXPECT_EQ(readBytes(path), first);
+}
+
+// Of an OpenEXR file of one part: the bytes after the header, where the table of the tiles begins.
+std::size_t endOfHeader(const std::string& bytes) {
+    std::size_t at = 8;
+    while (at < bytes.size() && bytes[at] != '\0') {
+        at = bytes.find('\0', bytes.find('\0', at) + 1) + 1;  // past name and type
+        std::uint32_t size{};
+        std::memcpy(&size, &bytes[at], sizeof size);
+        at += sizeof size + size;
+    }
+    return at + 1;
+}
+
+// Without it a reader has to walk through all tiles each time that it opens the file.
+TEST_F(Mips, TheFileSaysWhereItsTilesAre) {
+    const std::vector<float> values(std::size_t{200} * 70, 0.5f);
+    writeTexture(file("a.png"), 200, 70, 1, OIIO::TypeDesc::UINT8, values);
+    const std::string bytes = readBytes(baked({file("a.png")}).file);
+    const std::size_t table = endOfHeader(bytes);
+    constexpr std::size_t kTiles = 4 * 2 + 2 + 6;  // 200 x 70, 100 x 35, then one each
+    for (std::size_t i = 0; i < kTiles; ++i) {
+        std::uint64_t offset{};
+        ASSERT_LE(table + 8 * i + 8, bytes.size());
+        std::memcpy(&offset, &bytes[table + 8 * i], sizeof offset);
+        EXPECT_GE(offset, table + 8 * kTiles) << "tile " << i;
+        EXPECT_LT(offset, bytes.size()) << "tile " << i;
+    }
+}
+
+// One texture has all threads: rows are read ahead of those that are written.
+TEST_F(Mips, ThreadsMakeTheSameBytes) {
+    std::vector<float> values;
+    for (int i = 0; i < 90 * 300 * 3; ++i) values.push_back(static_cast<float>(i % 241) / 240.0f);
+    writeTexture(file("a.png"), 90, 300, 3, OIIO::TypeDesc::UINT8, values);
+    std::vector<std::string> made;
+    for (const std::uint32_t threads : {1u, 2u}) {
+        std::filesystem::remove_all(cacheFolder());
+        TexturePreparer preparing(m_colour, cache(), {threads, std::uint64_t{1} << 30}, {});
+        made.push_back(readBytes(preparing.texture({file("a.png")}).file));
+    }
+    EXPECT_EQ(made[0], made[1]);
+    const auto levels = readLevels(baked({file("a.png")}).file);
+    EXPECT_NEAR(levels[0].values.back(), std::pow((values.back() + 0.055) / 1.055, 2.4), 0.01);
 }
 
 }  // namespace
