@@ -37,6 +37,13 @@ constexpr std::uint64_t kTimeBytes = 16;
 // Code and libraries of pm_host as measured with next to no scene; a host that is larger knows so.
 constexpr std::uint64_t kProgramBytes = std::uint64_t{150} << 20;
 
+// Of all texels those that are held at once: all of them, within bounds by which a small limit is
+// kept and a large one gains nothing any more. Those that don't fit are read again.
+std::uint64_t heldTexelBytes(std::uint64_t texelBytes, std::uint64_t limit) {
+    constexpr std::uint64_t kLeast = std::uint64_t{64} << 20, kMost = std::uint64_t{1} << 30;
+    return std::min(texelBytes, std::clamp(limit / 8, kLeast, kMost));
+}
+
 // The layers as floats, which every host has to put somewhere.
 std::uint64_t hostBytes(const SettingValues& values) {
     std::uint64_t channels = 0;
@@ -73,11 +80,13 @@ std::string obstacle(const SettingValues& values) {
 }
 
 std::string figures(const MemoryNeed& need) {
+    const std::string textures =
+        need.textures == 0 ? "" : fmt::format(", textures {:.2f}", toGib(need.textures));
     return fmt::format(
         "{:.2f} GiB (scene {:.2f}, frame {:.2f}, photon maps {:.2f}, buckets {:.2f}, process "
-        "{:.2f})",
+        "{:.2f}{})",
         toGib(need.total()), toGib(need.scene), toGib(need.frame), toGib(need.maps),
-        toGib(need.buckets), toGib(need.process));
+        toGib(need.buckets), toGib(need.process), textures);
 }
 
 std::uint64_t threadsOf(const SettingValues& values) {
@@ -117,23 +126,30 @@ BucketGrid bucketsOf(const SettingValues& values) {
 }
 
 MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues& values,
-                      const BucketGrid& grid) {
+                      const BucketGrid& grid, std::uint64_t texelBytes) {
     const RenderSettings settings = values.toRenderSettings();
     const ChannelLayout layout = channelLayout(settings);
     const std::uint64_t threads = threadsOf(values);
     const auto bucketSize = static_cast<std::uint64_t>(grid.bucketSize());
     MemoryPlan memory;
     memory.limit = memoryLimitBytes(values.number(Setting::kMemoryLimit));
-    memory.whole = {scene.memoryBytes(), frameBytes(settings, settings.window), plan.mapBytes,
+    memory.whole = {scene.memoryBytes(),
+                    frameBytes(settings, settings.window),
+                    plan.mapBytes,
                     threads * bucketSize * bucketSize *
                             static_cast<std::uint64_t>(layout.count + 1) * sizeof(float) +
                         grid.cellCount() * (sizeof(PmrBucketInfo) * 2 + kTimeBytes),
-                    kProgramBytes + hostBytes(values)};
+                    kProgramBytes + hostBytes(values),
+                    heldTexelBytes(texelBytes, memory.limit)};
     // Without pixels there is no frame, whatever the delivery.
     const bool photonsOnly = values.integer(Setting::kPhotonsOnly) != 0;
     if (photonsOnly)
-        memory.whole = {scene.memoryBytes(), 0, plan.landingsPerPass() * kTracedBytesPerPhoton, 0,
-                        kProgramBytes};
+        memory.whole = {scene.memoryBytes(),
+                        0,
+                        plan.landingsPerPass() * kTracedBytesPerPhoton,
+                        0,
+                        kProgramBytes,
+                        memory.whole.textures};
     memory.need = memory.whole;
     if (photonsOnly) return memory;
     const std::string& delivery = values.word(Setting::kDelivery);

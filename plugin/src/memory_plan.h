@@ -15,8 +15,9 @@ namespace pm::plugin {
 // What a render needs, in bytes.
 struct MemoryNeed {
     std::uint64_t scene = 0, frame = 0, maps = 0, buckets = 0;
-    std::uint64_t process = 0;  // program and libraries, and a host's copy of the layers
-    std::uint64_t total() const { return scene + frame + maps + buckets + process; }
+    std::uint64_t process = 0;   // program and libraries, and a host's copy of the layers
+    std::uint64_t textures = 0;  // of their texels, those that are held at once
+    std::uint64_t total() const { return scene + frame + maps + buckets + process + textures; }
 };
 
 // How a render holds its pixels: the whole frame, one pass after the other over all buckets; or
@@ -39,10 +40,10 @@ struct MemoryPlan {
 // The most passes whose maps are held at once.
 inline constexpr std::uint32_t kMostPassesByBuckets = 8;
 
-// grid: of the window's whole atoms. Errors: CallError ARGUMENT where delivery by buckets is
-// demanded and can't be.
+// grid: of the window's whole atoms. texelBytes: of all textures of the scene. Errors: CallError
+// ARGUMENT where delivery by buckets is demanded and can't be.
 MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues& values,
-                      const BucketGrid& grid);
+                      const BucketGrid& grid, std::uint64_t texelBytes);
 
 // The buckets of a render with these settings: of whole atoms.
 BucketGrid bucketsOf(const SettingValues& values);

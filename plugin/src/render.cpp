@@ -82,7 +82,7 @@ Plan Render::makePlan() const {
 MemoryPlan Render::memoryPlan(const Plan& plan) const {
     const SettingValues values = settings();
     checkDelivery(values);
-    return planMemory(*m_built, plan, values, bucketsOf(values));
+    return planMemory(*m_built, plan, values, bucketsOf(values), m_scene->texelBytes());
 }
 
 std::string Render::explain() const {
@@ -110,7 +110,9 @@ void Render::start(PmrRender handle) {
         throw CallError(PMR_ERROR_STATE, "the render was started before");
     m_startTime = std::chrono::steady_clock::now();
     checkDelivery(m_settings);
-    auto made = std::make_shared<RenderWork>(m_built, m_scene->identity(), m_settings);
+    auto made = std::make_shared<RenderWork>(m_built, m_scene->identity(), m_settings,
+                                             m_scene->texelBytes());
+    m_scene->context()->textures().holdAtMost(made->memory().need.textures);
     m_events.open(handle, {[made](std::uint32_t bucket) { made->beforeDelivery(bucket); },
                            [made](std::uint32_t bucket) { made->afterDelivery(bucket); }});
     // The threads wait for m_mutex, so they see the state that is set last.

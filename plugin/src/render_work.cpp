@@ -48,7 +48,7 @@ ProgressClock::Ends endsOf(const StopRule& rule, bool isAdaptive) {
 }  // namespace
 
 RenderWork::RenderWork(std::shared_ptr<const Scene> scene, const Identity& sceneIdentity,
-                       const SettingValues& values)
+                       const SettingValues& values, std::uint64_t texelBytes)
     : m_processorStart(processorSeconds()),
       m_scene(std::move(scene)),
       m_settings(values.toRenderSettings()),
@@ -56,7 +56,7 @@ RenderWork::RenderWork(std::shared_ptr<const Scene> scene, const Identity& scene
       m_arena(static_cast<int>(values.integer(Setting::kThreads))),
       m_plan(m_arena.execute([this] { return makePlan(*m_scene, m_settings); })),
       m_grid(bucketsOf(values)),
-      m_memory(planMemory(*m_scene, m_plan, values, m_grid)),
+      m_memory(planMemory(*m_scene, m_plan, values, m_grid, texelBytes)),
       m_layout(channelLayout(m_settings)),
       m_photons(values, sceneIdentity, *m_scene, m_plan),
       m_clock(endsOf(m_stopRule, m_settings.isAdaptive()), m_plan.tracePhotons) {

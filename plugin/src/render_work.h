@@ -58,7 +58,7 @@ class RenderWork {
     // Plans, checks the memory limit before anything is allocated, then makes frame and renderer.
     // Errors: MEMORY with all figures; those of FrameRenderer and RenderPieces.
     RenderWork(std::shared_ptr<const Scene> scene, const Identity& sceneIdentity,
-               const SettingValues& values);
+               const SettingValues& values, std::uint64_t texelBytes);
 
     // Before run: tells the host what the plan found.
     void announce(EventQueue& events);

@@ -236,6 +236,11 @@ double SceneObject::buildSeconds() const {
     return m_buildSeconds;
 }
 
+std::uint64_t SceneObject::texelBytes() const {
+    const std::lock_guard lock(m_mutex);
+    return m_textures->texelBytes();
+}
+
 std::uint64_t SceneObject::textureFailures() const {
     return m_textures->failureCount();
 }

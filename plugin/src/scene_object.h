@@ -48,6 +48,7 @@ class SceneObject {
     Identity identity() const;
     double buildSeconds() const;
     std::uint64_t textureFailures() const;
+    std::uint64_t texelBytes() const;  // of all textures
 
   private:
     void requireOpen() const;

@@ -21,6 +21,14 @@ std::vector<const TexturePicture*> SceneTextures::pictures() const {
     return pictures;
 }
 
+std::uint64_t SceneTextures::texelBytes() const {
+    std::uint64_t bytes = 0;
+    for (const TexturePicture* picture : pictures())
+        bytes += std::uint64_t{picture->width} * picture->height *
+                 static_cast<std::uint64_t>(picture->channelCount) * sizeof(float);
+    return bytes + bytes / 3;
+}
+
 Texel SceneTextures::lookUp(std::int32_t index, Vec2f uv, float width) const {
     Texel texel;
     const TextureObject& texture = *m_textures[static_cast<std::size_t>(index)];

@@ -27,6 +27,8 @@ class SceneTextures final : public TextureSource {
 
     // In the order of their numbers.
     std::vector<const TexturePicture*> pictures() const;
+    // Bytes of all their texels, of every level.
+    std::uint64_t texelBytes() const;
 
     Texel lookUp(std::int32_t index, Vec2f uv, float width) const override;
     Texel lookUpOfLight(std::int32_t index, Vec2f uv) const override;

@@ -21,7 +21,8 @@ namespace pm::plugin {
 
 namespace {
 
-constexpr float kCacheMegabytes = 1024.0f;
+constexpr float kFirstMegabytes = 256.0f;  // before a render says
+constexpr float kLeastMegabytes = 64.0f;
 // Pictures that are not tiled are cut into tiles of this size when they are read.
 constexpr int kTilePixels = 64;
 
@@ -131,7 +132,7 @@ OIIO::TextureSystem& TextureSystem::system() {
     std::call_once(m_once, [this] {
         OIIO::TextureSystem* made = OIIO::TextureSystem::create(false);
         if (made == nullptr) throw CallError(PMR_ERROR_INTERNAL, "no texture system");
-        made->attribute("max_memory_MB", kCacheMegabytes);
+        made->attribute("max_memory_MB", kFirstMegabytes);
         made->attribute("autotile", kTilePixels);
         made->attribute("automip", 0);
         made->attribute("accept_untiled", 1);
@@ -146,6 +147,12 @@ OIIO::TextureSystem& TextureSystem::system() {
         m_system = made;
     });
     return *m_system;
+}
+
+void TextureSystem::holdAtMost(std::uint64_t bytes) {
+    if (bytes == 0) return;
+    const float megabytes = static_cast<float>(bytes) / (1024.0f * 1024.0f);
+    system().attribute("max_memory_MB", std::max(megabytes, kLeastMegabytes));
 }
 
 TexturePicture TextureSystem::open(const PmrTextureDesc& desc) {

@@ -52,6 +52,10 @@ class TextureSystem {
     // that is not there or can't be read.
     TexturePicture open(const PmrTextureDesc& desc);
 
+    // Texels that are held at once, in bytes; those of the render that asked last, as all renders
+    // of a context share them. At least 64 MiB. The look-ups are the same.
+    void holdAtMost(std::uint64_t bytes);
+
     // The picture's value at uv, origin bottom left. Bilinear within a level, linear between the
     // levels of a mip-mapped file; a file without levels is looked up at its only one whatever the
     // width. One channel is grey, two are grey and alpha; gain and base apply to the colour.

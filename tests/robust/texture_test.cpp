@@ -3,6 +3,7 @@
 // Pictures that are hard to read, and the folder of prepared ones, as a user sees them.
 #include "tests/robust/host_process.h"
 
+#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 namespace pm::host::test {
@@ -49,6 +50,29 @@ TEST_F(Textures, TheCacheIsListedCheckedAndCleared) {
     EXPECT_NE(clear.out.find("1 textures removed"), std::string::npos) << clear.out;
     EXPECT_EQ(run({"cache"}).exitCode, 2);
     EXPECT_EQ(run({"cache", "--list", "--texture-cache", "nowhere"}).exitCode, 4);
+}
+
+// All texels of 4096 x 2048, or an eighth of the limit.
+TEST_F(Textures, TexelsAreInTheMemoryPlan) {
+    const auto output = OIIO::ImageOutput::create("png");
+    output->open(path("large.png").string(), {4096, 2048, 3, OIIO::TypeDesc::UINT8});
+    output->write_image(OIIO::TypeDesc::UINT8,
+                        std::vector<std::uint8_t>(std::size_t{4096} * 2048 * 3, 200).data());
+    output->close();
+    useForWalls("large.png");
+    const std::string roomy = look({"--memory-limit", "8"}).out;
+    EXPECT_NE(roomy.find(", textures 0.12)"), std::string::npos) << roomy;
+    const std::string tight = look({"--memory-limit", "0.8"}).out;
+    EXPECT_NE(tight.find(", textures 0.10)"), std::string::npos) << tight;
+    ASSERT_EQ(run({"box.obj", "--size", "16x12", "--passes", "1", "--aa", "1", "--photons", "500",
+                   "-o", "a.exr"})
+                  .exitCode,
+              0);
+    EXPECT_EQ(run({"box.obj", "--size", "16x12", "--passes", "1", "--aa", "1", "--photons", "500",
+                   "--memory-limit", "0.4", "-o", "b.exr"})
+                  .exitCode,
+              0);
+    EXPECT_EQ(readExr(path("a.exr")).find("R")->values, readExr(path("b.exr")).find("R")->values);
 }
 
 TEST_F(Textures, WhereNothingCanBeKept) {
