@@ -109,13 +109,16 @@ Parsed parse(ObjText& text, const std::string& fileName, const GoOn& goOn) {
 }
 
 // The text was checked; this holds the parser to it, since a bad index would be read out of bounds.
-void checkParsed(const Parsed& parsed, const ObjText& text, const std::string& fileName) {
+// Numbers of normals or texture coordinates of which there are none become -1.
+void checkParsed(Parsed& parsed, const ObjText& text, const std::string& fileName) {
     const std::array<std::size_t, 3> counts{parsed.attributes.vertices.size() / 3,
                                             parsed.attributes.texcoords.size() / 2,
                                             parsed.attributes.normals.size() / 3};
     std::size_t face = 0, corner = 0;
-    for (const tinyobj::shape_t& shape : parsed.shapes) {
-        for (const tinyobj::index_t& index : shape.mesh.indices) {
+    for (tinyobj::shape_t& shape : parsed.shapes) {
+        for (tinyobj::index_t& index : shape.mesh.indices) {
+            if (counts[1] == 0) index.texcoord_index = -1;
+            if (counts[2] == 0) index.normal_index = -1;
             const std::array<int, 3> indices{index.vertex_index, index.texcoord_index,
                                              index.normal_index};
             for (std::size_t kind = 0; kind < 3; ++kind) {
@@ -217,7 +220,7 @@ SceneData readObj(std::string_view text, const std::string& fileName, const fs::
         if (goOn) goOn();
     };
     ObjText objText = readObjText(text, fileName, warn, goOn);
-    const Parsed parsed = parse(objText, fileName, goOn);
+    Parsed parsed = parse(objText, fileName, goOn);
     ask();
     checkParsed(parsed, objText, fileName);
     ask();

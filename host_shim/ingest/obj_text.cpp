@@ -246,9 +246,16 @@ class ObjScan {
         if (index > count) m_forward.push_back({kind, index, m_lines.number()});
     }
 
-    void checkForwardReferences() const {
+    // Some exporters number normals or texture coordinates and leave all of them out.
+    void checkForwardReferences() {
         for (const ForwardReference& reference : m_forward) {
             const std::uint64_t count = m_out.counts[reference.kind];
+            if (count == 0 && reference.kind > 0) {
+                auto& [times, line] = m_leftOut[fmt::format(
+                    "corners' {}s, of which there are none,", kKinds[reference.kind])];
+                if (times++ == 0) line = reference.line;
+                continue;
+            }
             if (reference.index > static_cast<std::int64_t>(count)) {
                 fail(reference.line, fmt::format("face refers to {} {} of {}",
                                                  kKinds[reference.kind], reference.index, count));

@@ -58,12 +58,26 @@ TEST(Obj, boundsLeaveOutVerticesThatNoFaceHas) {
 TEST(Obj, refusesIndicesOutOfRangeWithTheLine) {
     EXPECT_EQ(refusal(kQuad + "f 1 2 9001\n"), "3 scene.obj:5: face refers to vertex 9001 of 4");
     EXPECT_EQ(refusal(kQuad + "f 1 2 -5\n"), "3 scene.obj:5: face refers to vertex -5 of 4 so far");
-    EXPECT_EQ(refusal(kQuad + "f 1/1 2/1 3/1\n"),
-              "3 scene.obj:5: face refers to texture coordinate 1 of 0");
+    EXPECT_EQ(refusal(kQuad + "vt 0 0\nf 1/1 2/1 3/2\n"),
+              "3 scene.obj:6: face refers to texture coordinate 2 of 1");
     EXPECT_EQ(refusal(kQuad + "vn 0 0 1\n\nf 1//1 2//1 3//2\n"),
               "3 scene.obj:7: face refers to normal 2 of 1");
     EXPECT_EQ(refusal(kQuad + "f 0 1 2\n"),
               "3 scene.obj:5: face refers to vertex 0; the first is 1 (or -1, counted back)");
+}
+
+// As files of OpenSubdiv's and others have it.
+TEST(Obj, numbersOfNormalsOfWhichThereAreNoneAreLeftOut) {
+    for (const std::string corners : {"1//1 2//2 3//3", "1/1 2/1 3/1", "1/4/1 2/5/2 3/6/3"}) {
+        const SceneData scene = read(kQuad + "f " + corners + "\n");
+        ASSERT_EQ(scene.meshes.size(), 1u) << corners;
+        EXPECT_TRUE(scene.meshes[0].normals.empty()) << corners;
+        EXPECT_TRUE(scene.meshes[0].uvs.empty()) << corners;
+    }
+    std::string told;
+    readObj(kQuad + "f 1//1 2//2 3//3\n", "scene.obj", {},
+            [&](Warning, const std::string& text) { told += text + "\n"; });
+    EXPECT_EQ(told, "scene.obj:5: 3 corners' normals, of which there are none, left out\n");
 }
 
 TEST(Obj, indicesMayPointForward) {
