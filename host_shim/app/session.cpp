@@ -65,6 +65,11 @@ int Session::run() {
     if (m_statistics.exitCode == 130) m_statistics.stopReason = "interrupted";
     if (m_statistics.exitCode == 143) m_statistics.stopReason = "terminated";
     m_log.reportHiddenWarnings();
+    // Told already; the statistics say so as well.
+    if (m_statistics.exitCode == 0 && m_log.fileFailed()) {
+        m_statistics.exitCode = static_cast<int>(ExitCode::kFile);
+        m_statistics.error = m_options.log.string() + ": can't be written";
+    }
     const bool toFile = m_options.statistics != "-";
     int written = 0;
     const auto write = [&](void (Session::*work)()) {

@@ -166,6 +166,12 @@ TEST_F(Outputs, aLogThatCannotBeWrittenIsTold) {
                               .c_str()),
               4 << 8);
     EXPECT_FALSE(fs::exists(path("l")));
+    EXPECT_EQ(std::system(("cd '" + m_folder.string() +
+                           "' && (ulimit -f 0; '" PM_HOST
+                           "' box.obj --size 8x8 --explain --log l --stats - 2>/dev/null)"
+                           " | grep -q '\"exitCode\": 4'")
+                              .c_str()),
+              0);
 }
 
 // Libraries that run out of memory say nothing.
