@@ -104,6 +104,13 @@ class FrameStore {
     void readStandardError(const Rect& rect, float* destination, std::int64_t pixelStrideBytes,
                            std::int64_t rowStrideBytes) const;
 
+    // As read, but what the error of the mean of the three beauty channels may look like: the means
+    // of the even and the odd passes, one minus the other, scaled to the variance of the mean of
+    // both. Other than standard errors it keeps what pixels have in common. 0 where a half has no
+    // sample.
+    void readHalfDifference(const Rect& rect, float* destination, std::int64_t pixelStrideBytes,
+                            std::int64_t rowStrideBytes) const;
+
     // As read, but one float: the number of samples so far.
     void readSampleCount(const Rect& rect, float* destination, std::int64_t pixelStrideBytes,
                          std::int64_t rowStrideBytes) const;
@@ -174,6 +181,7 @@ class FrameStore {
     void visitError(std::int32_t x, std::int32_t y, const NeighbourRows& rows,
                     const ErrorVisitor& visit) const;
     double mean(std::size_t pixel, std::int32_t channel) const;
+    double halfDifference(std::size_t pixel, std::int32_t beautyChannel) const;
     double varianceOfMean(std::size_t pixel, std::int32_t beautyChannel) const;
     std::size_t pixelIndex(std::int32_t x, std::int32_t y) const;
     std::mutex& bandLock(std::int32_t y) const;

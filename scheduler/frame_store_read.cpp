@@ -49,6 +49,20 @@ double FrameStore::varianceOfMean(std::size_t pixel, std::int32_t beautyChannel)
     return ofSample * (evenShare * evenShare / evenWeight + oddShare * oddShare / oddWeight);
 }
 
+// Of means of n_e and n_o passes with the variance v a pass the difference has v (1/n_e + 1/n_o),
+// the mean of all v / (n_e + n_o).
+double FrameStore::halfDifference(std::size_t pixel, std::int32_t beautyChannel) const {
+    const auto [even, odd] = halves(pixel);
+    const double evenWeight = m_evenWeights[pixel], oddWeight = m_weights[pixel] - evenWeight;
+    if (!(even > 0.0 && odd > 0.0 && evenWeight > 0.0 && oddWeight > 0.0)) return 0.0;
+    const std::int32_t channel = m_beautyFirst + beautyChannel;
+    const double sum =
+        m_sums[pixel * static_cast<std::size_t>(m_channels) + static_cast<std::size_t>(channel)];
+    const double ofEven = evenSum(pixel, channel);
+    return std::sqrt(even * odd) / (even + odd) *
+           (ofEven / evenWeight - (sum - ofEven) / oddWeight);
+}
+
 template <typename ReadPixel>
 void FrameStore::readRows(const Rect& rect, std::int32_t floatsPerPixel, float* destination,
                           std::int64_t pixelStrideBytes, std::int64_t rowStrideBytes,
@@ -100,6 +114,16 @@ void FrameStore::readStandardError(const Rect& rect, float* destination,
                      values[i] =
                          known ? static_cast<float>(std::sqrt(varianceOfMean(pixel, i))) : 0.0f;
                  }
+             });
+}
+
+void FrameStore::readHalfDifference(const Rect& rect, float* destination,
+                                    std::int64_t pixelStrideBytes,
+                                    std::int64_t rowStrideBytes) const {
+    readRows(rect, kBeautyChannels, destination, pixelStrideBytes, rowStrideBytes,
+             [&](std::size_t pixel, float* values) {
+                 for (std::int32_t i = 0; i < kBeautyChannels; ++i)
+                     values[i] = static_cast<float>(halfDifference(pixel, i));
              });
 }
 

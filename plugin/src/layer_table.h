@@ -22,6 +22,7 @@ enum class Layer : std::size_t {
     kNormal,
     kDepth,
     kStandardError,
+    kHalfDifference,
     kSamples,
     kAaLevel,
     kCount

@@ -87,6 +87,7 @@ void layerValue(Layer layer, const ChannelLayout& layout, const float* pixel, fl
                 pixel[layout.alpha] > 0.0f ? pixel[layout.depth] / pixel[layout.alpha] : kNoDepth;
             break;
         case Layer::kStandardError:
+        case Layer::kHalfDifference:
         case Layer::kSamples:
         case Layer::kAaLevel:
         case Layer::kCount:
@@ -154,8 +155,9 @@ void readLayerPixels(const PixelRequest& request, const SettingValues& settings,
     const std::vector<Layer> available = layersOf(settings);
     // What every frame holds anyway may be read without being asked for.
     const bool isKept =
-        spec != nullptr && (spec->id == Layer::kStandardError || spec->id == Layer::kSamples ||
-                            spec->id == Layer::kAaLevel);
+        spec != nullptr &&
+        (spec->id == Layer::kStandardError || spec->id == Layer::kHalfDifference ||
+         spec->id == Layer::kSamples || spec->id == Layer::kAaLevel);
     if (spec == nullptr ||
         (!isKept && std::find(available.begin(), available.end(), spec->id) == available.end()))
         throw CallError(PMR_ERROR_NAME,
@@ -169,6 +171,8 @@ void readLayerPixels(const PixelRequest& request, const SettingValues& settings,
         clear(rect, *spec, target);
     else if (spec->id == Layer::kStandardError)
         frame->readStandardError(rect, request.destination, target.pixelStride, target.rowStride);
+    else if (spec->id == Layer::kHalfDifference)
+        frame->readHalfDifference(rect, request.destination, target.pixelStride, target.rowStride);
     else if (spec->id == Layer::kSamples)
         frame->readSampleCount(rect, request.destination, target.pixelStride, target.rowStride);
     else if (spec->id == Layer::kAaLevel)

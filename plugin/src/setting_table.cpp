@@ -73,8 +73,8 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
     {Setting::kSeed, "seed", PMR_SETTING_INTEGER, "", "1", 0, kMaxInteger, 1, "", true,
      "Start of all random numbers; the same seed gives the same picture.", "None."},
     {Setting::kLayers, "layers", PMR_SETTING_TEXT, "", "", 0, 0, 1, "", false,
-     "Optional layers, separated by commas: albedo, N, Z, stderr, samples, aalevel.",
-     "albedo and N take 24 bytes a pixel each, Z 8; stderr and samples none."},
+     "Optional layers, separated by commas: albedo, N, Z, stderr, halfdiff, samples, aalevel.",
+     "albedo and N take 24 bytes a pixel each, Z 8; stderr, halfdiff, samples and aalevel none."},
     {Setting::kMemoryLimit, "memoryLimitGib", PMR_SETTING_NUMBER, "GiB", "0", 0, 1048576, 1, "",
      false,
      "A render that needs more is refused at its start, or goes bucket by bucket where the host "
