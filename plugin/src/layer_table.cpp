@@ -34,7 +34,8 @@ constexpr std::array<LayerSpec, kLayerCount> kLayers = {{
      "Standard error of the beauty's mean, from the spread between passes; 0 with one pass."},
     {Layer::kHalfDifference, "halfdiff", "halfdiff.X,halfdiff.Y,halfdiff.Z", 3, PMR_LAYER_DATA,
      false,
-     "The beauty's mean over even passes minus that over odd ones, scaled to its standard error: an "
+     "The beauty's mean over even passes minus that over odd ones, scaled to its standard error: "
+     "an "
      "error as it may be, with what pixels have in common; 0 with one pass."},
     {Layer::kSamples, "samples", "samples.X", 1, PMR_LAYER_DATA, false,
      "Camera samples of the pixel; a quarter for each that it shares with its group at level 0."},

@@ -154,10 +154,9 @@ void readLayerPixels(const PixelRequest& request, const SettingValues& settings,
     const LayerSpec* spec = findLayer(request.layer);
     const std::vector<Layer> available = layersOf(settings);
     // What every frame holds anyway may be read without being asked for.
-    const bool isKept =
-        spec != nullptr &&
-        (spec->id == Layer::kStandardError || spec->id == Layer::kHalfDifference ||
-         spec->id == Layer::kSamples || spec->id == Layer::kAaLevel);
+    const bool isKept = spec != nullptr &&
+                        (spec->id == Layer::kStandardError || spec->id == Layer::kHalfDifference ||
+                         spec->id == Layer::kSamples || spec->id == Layer::kAaLevel);
     if (spec == nullptr ||
         (!isKept && std::find(available.begin(), available.end(), spec->id) == available.end()))
         throw CallError(PMR_ERROR_NAME,

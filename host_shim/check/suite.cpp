@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/check/suite.h"
+
+#include "host_shim/pictures/host_error.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <fstream>
+#include <initializer_list>
+#include <string_view>
+
+namespace pm::host {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+// What a scene's options may not say, as the suite says it.
+constexpr std::string_view kOwnOptions[] = {"-o",      "--output", "--reference",
+                                            "--stats", "--seed",   "--statistics"};
+
+class SuiteReader {
+  public:
+    explicit SuiteReader(const fs::path& file) { m_suite.file = file; }
+
+    Suite read() {
+        std::ifstream stream(m_suite.file, std::ios::binary);
+        if (!stream)
+            throw HostError(ExitCode::kFile,
+                            fmt::format("{}: can't be read", m_suite.file.string()));
+        json text;
+        try {
+            text = json::parse(stream);
+        } catch (const json::parse_error& error) {
+            fail(fmt::format("no JSON: {}", error.what()));
+        }
+        m_suite.folder = fs::absolute(m_suite.file).parent_path();
+        readAll(text);
+        return std::move(m_suite);
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& text) const {
+        throw HostError(ExitCode::kBadInput, fmt::format("{}: {}", m_suite.file.string(), text));
+    }
+
+    void checkKeys(const json& object, const std::string& where,
+                   std::initializer_list<std::string_view> allowed) const {
+        if (!object.is_object()) fail(where + " must be an object");
+        for (const auto& [key, value] : object.items())
+            if (std::ranges::find(allowed, key) == allowed.end())
+                fail(fmt::format("{} has no '{}'; allowed are {}", where, key,
+                                 fmt::join(allowed, ", ")));
+    }
+
+    std::string text(const json& object, const char* key, const std::string& where) const {
+        if (!object.contains(key) || !object[key].is_string() ||
+            object[key].get_ref<const std::string&>().empty())
+            fail(fmt::format("{}: '{}' must be a text that is not empty", where, key));
+        return object[key];
+    }
+
+    std::vector<std::string> options(const json& object, const std::string& where) const {
+        std::vector<std::string> result;
+        if (!object.contains("options")) return result;
+        const json& list = object["options"];
+        if (!list.is_array()) fail(where + ": 'options' must be a list of texts");
+        for (const json& entry : list) {
+            if (!entry.is_string()) fail(where + ": 'options' must be a list of texts");
+            const std::string option = entry;
+            const std::string name = option.substr(0, option.find('='));
+            if (std::ranges::find(kOwnOptions, name) != std::end(kOwnOptions))
+                fail(fmt::format("{}: {} is for the check itself to say", where, name));
+            result.push_back(option);
+        }
+        return result;
+    }
+
+    void readScene(const json& entry, const std::string& where,
+                   const std::vector<std::string>& common) {
+        checkKeys(entry, where, {"name", "scene", "options", "display", "codeLimit"});
+        SuiteScene scene;
+        scene.name = text(entry, "name", where);
+        const bool isPlain = std::ranges::all_of(scene.name, [](char c) {
+            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+                   c == '_' || c == '-';
+        });
+        if (!isPlain) fail(fmt::format("{}: 'name' is of letters, digits, _ and - only", where));
+        if (std::ranges::find(m_suite.scenes, scene.name, &SuiteScene::name) !=
+            m_suite.scenes.end())
+            fail(fmt::format("{}: the name '{}' is there twice", where, scene.name));
+        scene.scene = m_suite.folder / text(entry, "scene", where);
+        scene.options = common;
+        for (std::string& option : options(entry, where))
+            scene.options.push_back(std::move(option));
+        if (entry.contains("display")) {
+            if (!entry["display"].is_boolean()) fail(where + ": 'display' must be true or false");
+            scene.hasDisplay = entry["display"];
+        }
+        if (entry.contains("codeLimit")) {
+            const json& limit = entry["codeLimit"];
+            if (!limit.is_number() || !(limit >= 0) || !(limit <= 255))
+                fail(where + ": 'codeLimit' must be a number from 0 to 255");
+            scene.codeLimit = limit;
+        }
+        m_suite.scenes.push_back(std::move(scene));
+    }
+
+    void readAll(const json& all) {
+        checkKeys(all, "the suite", {"schema", "references", "options", "scenes"});
+        if (text(all, "schema", "the suite") != "pm-suite/1")
+            fail("'schema' must be \"pm-suite/1\"");
+        const bool isNamed = all.contains("references");
+        m_suite.references =
+            m_suite.folder / (isNamed ? text(all, "references", "the suite") : "references");
+        const std::vector<std::string> common = options(all, "the suite");
+        if (!all.contains("scenes") || !all["scenes"].is_array() || all["scenes"].empty())
+            fail("'scenes' must be a list of at least one scene");
+        for (std::size_t i = 0; i < all["scenes"].size(); ++i)
+            readScene(all["scenes"][i], fmt::format("scene {}", i + 1), common);
+    }
+
+    Suite m_suite;
+};
+
+}  // namespace
+
+Suite readSuite(const fs::path& file) {
+    return SuiteReader(file).read();
+}
+
+}  // namespace pm::host

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace pm::host {
+
+// One picture of a regression suite.
+struct SuiteScene {
+    std::string name;                  // unique; of its references and in what is told
+    std::filesystem::path scene;       // absolute
+    std::vector<std::string> options;  // of pm_host, those of the whole suite first
+    bool hasDisplay{};                 // a display picture is compared as well
+    double codeLimit{1.0};             // of 255: what a display picture may differ by, at most
+};
+
+// A file of scenes with their options, whose references lie in a folder beside it:
+//   {"schema": "pm-suite/1", "references": "references", "options": ["--passes", "16"],
+//    "scenes": [{"name": "box", "scene": "box.obj", "options": ["--size", "96x64"],
+//                "display": true, "codeLimit": 1}]}
+// Files are relative to the suite's own folder; so is what options name.
+struct Suite {
+    std::filesystem::path file, folder, references;
+    std::vector<SuiteScene> scenes;
+};
+
+// Errors: HostError kFile where it can't be read, kBadInput naming the entry that is wrong and what
+// is allowed.
+Suite readSuite(const std::filesystem::path& file);
+
+}  // namespace pm::host
