@@ -3,6 +3,7 @@
 #include "host_shim/app/host.h"
 
 #include "host_shim/app/cache_command.h"
+#include "host_shim/app/check_command.h"
 #include "host_shim/app/guarded.h"
 #include "host_shim/app/interrupt.h"
 #include "host_shim/app/listings.h"
@@ -49,6 +50,10 @@ int printHelp(const Options& options) {
         print(cacheHelpText());
         return 0;
     }
+    if (options.helpOfCheck) {
+        print(checkHelpText());
+        return 0;
+    }
     try {
         const Plugin plugin(options.plugin);
         print(helpText(
@@ -83,6 +88,8 @@ ColourOptions listedColour(const Options& options) {
 int printList(const Options& options) {
     if (options.list == "views") {
         print(listViews(ColourPipeline(listedColour(options))));
+    } else if (options.list == "looks") {
+        print(listLooks(ColourPipeline(listedColour(options))));
     } else if (options.list == "spaces") {
         print(listSpaces(ColourPipeline(listedColour(options))));
     } else {
@@ -101,6 +108,7 @@ int runOptions(const Options& options, Log& log) {
     if (!options.list.empty()) return printList(options);
     if (options.cacheList || options.cacheClear || options.cacheVerify)
         return runCacheCommand(options);
+    if (options.check) return runCheckCommand(*options.check, log);
     return Session(options, log).run();
 }
 

@@ -37,6 +37,16 @@ std::string listViews(const ColourPipeline& colour) {
     return text;
 }
 
+std::string listLooks(const ColourPipeline& colour) {
+    std::string text;
+    for (const LookEntry& entry : colour.listLooks()) {
+        text += entry.name;
+        if (!entry.description.empty()) text += ": " + entry.description;
+        text += "\n";
+    }
+    return text;
+}
+
 std::string listSpaces(const ColourPipeline& colour) {
     std::string text;
     for (const SpaceEntry& entry : colour.listSpaces()) {

@@ -12,6 +12,7 @@ namespace pm::host {
 // What --list prints, one entry a line.
 std::string listViews(const ColourPipeline& colour);
 std::string listSpaces(const ColourPipeline& colour);
+std::string listLooks(const ColourPipeline& colour);
 std::string listLayers(const PmrApi& api);
 std::string listSettings(const PmrApi& api);
 std::string listOrders(const PmrApi& api);

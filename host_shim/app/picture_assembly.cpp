@@ -77,6 +77,10 @@ void addStatistics(const PictureSource& source, Picture& picture) {
     if (!json.is_object()) return;
     if (const auto isa = json.find("isa"); isa != json.end() && isa->is_string())
         picture.attributes["pm:isa"] = isa->get<std::string>();
+    // By it another picture can be held to the same bits.
+    if (const auto versions = json.find("versions"); versions != json.end())
+        if (const std::string build = versions->value("buildId", ""); !build.empty())
+            picture.attributes["pm:build"] = build;
     if (const auto done = json.find("passesDone");
         done != json.end() && done->is_number_integer()) {
         picture.attributes["pm:passesDone"] = done->dump();

@@ -4,6 +4,8 @@
 
 #include "host_shim/pictures/host_error.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -37,7 +39,54 @@ std::vector<double> smoothed(const RegionGrid& grid, const std::vector<double>& 
     return result;
 }
 
+// Floats that were summed in another order may differ by that of the value.
+constexpr double kRounding = 1e-6;
+constexpr double kLeastLimit = 7.0;
+constexpr double kBeyondOwn = 1.5;
+
+// Of a render's mean against that of the others.
+std::vector<double> variancesOf(const RegionGrid& grid, const RegionSpread& spread) {
+    std::vector<double> result = smoothed(grid, spread.variance);
+    const double ofMean = 1.0 + 1.0 / spread.renders;
+    for (std::size_t i = 0; i < result.size(); ++i) {
+        const double rounding = kRounding * spread.mean[i];
+        result[i] = std::max(spread.variance[i], result[i]) * ofMean + rounding * rounding;
+    }
+    return result;
+}
+
+void measure(RegionSpread& spread, const std::vector<std::vector<double>>& means,
+             std::size_t without) {
+    const std::size_t count = means.size() - (without < means.size() ? 1 : 0);
+    spread.renders = static_cast<std::int32_t>(count);
+    spread.mean.assign(means.front().size(), 0.0);
+    spread.variance.assign(means.front().size(), 0.0);
+    for (std::size_t i = 0; i < spread.mean.size(); ++i) {
+        double sum = 0, squares = 0;
+        for (std::size_t k = 0; k < means.size(); ++k)
+            if (k != without) sum += means[k][i];
+        const double mean = sum / static_cast<double>(count);
+        for (std::size_t k = 0; k < means.size(); ++k)
+            if (k != without) squares += (means[k][i] - mean) * (means[k][i] - mean);
+        spread.mean[i] = mean;
+        spread.variance[i] = squares / static_cast<double>(count - 1);
+    }
+}
+
 }  // namespace
+
+Beauty beautyOf(const Picture& picture) {
+    Beauty beauty{picture.dataWindow, {}};
+    for (std::size_t c = 0; c < 3; ++c) {
+        const Channel* channel = picture.find(kChannels[c]);
+        if (channel == nullptr)
+            throw HostError(ExitCode::kBadInput,
+                            fmt::format("the picture has no channel {}; R, G and B are compared",
+                                        kChannels[c]));
+        beauty.values[c] = channel->values;
+    }
+    return beauty;
+}
 
 RegionGrid::RegionGrid(const PixelRect& window, std::int32_t side)
     : m_window(window), m_side(side == 0 ? std::max(window.width(), window.height()) : side) {
@@ -50,21 +99,19 @@ PixelRect RegionGrid::rect(std::int32_t column, std::int32_t row) const {
     return {x0, y0, std::min(x0 + m_side, m_window.x1), std::min(y0 + m_side, m_window.y1)};
 }
 
-std::vector<double> RegionGrid::means(const Picture& picture) const {
+std::vector<double> RegionGrid::means(const Beauty& picture) const {
     std::vector<double> result;
-    std::array<const Channel*, 3> channels{};
-    for (std::size_t c = 0; c < 3; ++c) channels[c] = picture.find(kChannels[c]);
     const auto width = static_cast<std::size_t>(m_window.width());
     for (std::int32_t row = 0; row < m_rows; ++row) {
         for (std::int32_t column = 0; column < m_columns; ++column) {
             const PixelRect area = rect(column, row);
-            for (const Channel* channel : channels) {
+            for (const std::span<const float> values : picture.values) {
                 double sum = 0;
                 for (std::int32_t y = area.y0; y < area.y1; ++y) {
                     const auto line = static_cast<std::size_t>(y - m_window.y0) * width;
                     for (std::int32_t x = area.x0; x < area.x1; ++x)
                         sum += static_cast<double>(
-                            channel->values[line + static_cast<std::size_t>(x - m_window.x0)]);
+                            values[line + static_cast<std::size_t>(x - m_window.x0)]);
                 }
                 result.push_back(sum / static_cast<double>(area.area()));
             }
@@ -73,45 +120,72 @@ std::vector<double> RegionGrid::means(const Picture& picture) const {
     return result;
 }
 
-RegionSpread spreadOf(const RegionGrid& grid, const std::vector<std::vector<double>>& means) {
-    if (means.size() < 2)
-        throw HostError(ExitCode::kInternal, "a spread is of two renders at least");
+RegionSpread spreadOf(const PixelRect& window, std::int32_t side,
+                      const std::vector<std::vector<double>>& means) {
+    if (means.size() < 3)
+        throw HostError(ExitCode::kInternal, "a spread is of three renders at least");
     RegionSpread spread;
-    spread.side = grid.side();
-    spread.renders = static_cast<std::int32_t>(means.size());
-    spread.mean.resize(means.front().size());
-    spread.variance.resize(means.front().size());
-    for (std::size_t i = 0; i < spread.mean.size(); ++i) {
-        double sum = 0, squares = 0;
-        for (const std::vector<double>& render : means) sum += render[i];
-        const double mean = sum / static_cast<double>(means.size());
-        for (const std::vector<double>& render : means)
-            squares += (render[i] - mean) * (render[i] - mean);
-        spread.mean[i] = mean;
-        spread.variance[i] = squares / static_cast<double>(means.size() - 1);
+    spread.side = side;
+    spread.limit = kLeastLimit;
+    for (std::size_t one = 0; one < means.size(); ++one) {
+        measure(spread, means, one);
+        const double z = std::abs(furthestRegion(window, spread, means[one]).z);
+        spread.limit = std::max(spread.limit, kBeyondOwn * z);
     }
+    measure(spread, means, means.size());
+    spread.stored = means.front();
     return spread;
 }
 
-std::optional<RegionFinding> furthestRegion(const RegionGrid& grid, const RegionSpread& spread,
-                                            const std::vector<double>& means, double threshold) {
-    // Floats that were summed in another order may differ by that of the value.
-    constexpr double kRounding = 1e-6;
-    const std::vector<double> around = smoothed(grid, spread.variance);
-    const double ofMean = 1.0 + 1.0 / spread.renders;
-    std::optional<RegionFinding> found;
+RegionFinding furthestRegion(const PixelRect& window, const RegionSpread& spread,
+                             const std::vector<double>& means, double floor) {
+    const RegionGrid grid(window, spread.side);
+    const std::vector<double> variances = variancesOf(grid, spread);
+    RegionFinding found;
     for (std::size_t i = 0; i < means.size(); ++i) {
-        const double mean = spread.mean[i];
-        const double variance =
-            std::max(spread.variance[i], around[i]) * ofMean + kRounding * kRounding * mean * mean;
-        const double off = means[i] - mean;
-        const double z = off == 0 ? 0 : off / std::sqrt(variance);
-        if (std::abs(z) <= (found ? std::abs(found->z) : threshold)) continue;
+        const double mean = spread.mean[i], off = means[i] - mean;
+        const double beyond = std::copysign(std::max(std::abs(off) - floor, 0.0), off);
+        const double z = beyond == 0 ? 0 : beyond / std::sqrt(variances[i]);
+        if (i != 0 && std::abs(z) <= std::abs(found.z)) continue;
         const auto region = static_cast<std::int32_t>(i / 3);
         found = RegionFinding{grid.rect(region % grid.columns(), region / grid.columns()),
                               static_cast<int>(i % 3), z, mean != 0 ? off / mean : 0};
     }
     return found;
+}
+
+RegionFinding mostChangedRegion(const PixelRect& window, std::int32_t side,
+                                const std::vector<double>& wanted, const std::vector<double>& got) {
+    const RegionGrid grid(window, side);
+    RegionFinding found;
+    for (std::size_t i = 0; i < wanted.size(); ++i) {
+        const double off = got[i] - wanted[i];
+        const double relative = wanted[i] != 0 ? off / std::abs(wanted[i]) : off;
+        if (i != 0 && std::abs(relative) <= std::abs(found.relative)) continue;
+        const auto region = static_cast<std::int32_t>(i / 3);
+        found = RegionFinding{grid.rect(region % grid.columns(), region / grid.columns()),
+                              static_cast<int>(i % 3), 0, relative};
+    }
+    return found;
+}
+
+double seenChange(const PixelRect& window, const RegionSpread& spread) {
+    const std::vector<double> variances = variancesOf(RegionGrid(window, spread.side), spread);
+    std::vector<double> changes;
+    for (std::size_t i = 0; i < variances.size(); ++i)
+        if (spread.mean[i] > 0)
+            changes.push_back(spread.limit * std::sqrt(variances[i]) / spread.mean[i]);
+    if (changes.empty()) return 0;
+    const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
+    std::ranges::nth_element(changes, middle);
+    return *middle;
+}
+
+std::string describe(const RegionFinding& finding) {
+    return fmt::format(
+        "region {},{} to {},{}: {} is {:.3g} % {}", finding.rect.x0, finding.rect.y0,
+        finding.rect.x1, finding.rect.y1, kChannels[static_cast<std::size_t>(finding.channel)],
+        100 * std::abs(finding.relative), finding.relative < 0 ? "darker" : "brighter");
 }
 
 }  // namespace pm::host

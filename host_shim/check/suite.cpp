@@ -19,8 +19,8 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 // What a scene's options may not say, as the suite says it.
-constexpr std::string_view kOwnOptions[] = {"-o",      "--output", "--reference",
-                                            "--stats", "--seed",   "--statistics"};
+constexpr std::string_view kOwnOptions[] = {"-o",     "--output", "--reference", "--stats",
+                                            "--seed", "--report", "--log",       "--progress"};
 
 class SuiteReader {
   public:
@@ -96,6 +96,12 @@ class SuiteReader {
         scene.options = common;
         for (std::string& option : options(entry, where))
             scene.options.push_back(std::move(option));
+        // One that is measured would hide what makes the picture darker.
+        const auto isExposure = [](const std::string& option) {
+            return option == "--exposure" || option.starts_with("--exposure=");
+        };
+        if (std::ranges::none_of(scene.options, isExposure))
+            scene.options.insert(scene.options.end(), {"--exposure", "0"});
         if (entry.contains("display")) {
             if (!entry["display"].is_boolean()) fail(where + ": 'display' must be true or false");
             scene.hasDisplay = entry["display"];
@@ -130,6 +136,12 @@ class SuiteReader {
 
 Suite readSuite(const fs::path& file) {
     return SuiteReader(file).read();
+}
+
+std::string namesOf(const Suite& suite) {
+    std::string names;
+    for (const SuiteScene& scene : suite.scenes) names += (names.empty() ? "" : ", ") + scene.name;
+    return names;
 }
 
 }  // namespace pm::host

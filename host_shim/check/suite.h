@@ -10,11 +10,12 @@ namespace pm::host {
 
 // One picture of a regression suite.
 struct SuiteScene {
-    std::string name;                  // unique; of its references and in what is told
-    std::filesystem::path scene;       // absolute
-    std::vector<std::string> options;  // of pm_host, those of the whole suite first
-    bool hasDisplay{};                 // a display picture is compared as well
-    double codeLimit{1.0};             // of 255: what a display picture may differ by, at most
+    std::string name;             // unique; of its references and in what is told
+    std::filesystem::path scene;  // absolute
+    // Of pm_host, those of the whole suite first; --exposure 0 where they don't say one.
+    std::vector<std::string> options;
+    bool hasDisplay{};      // a display picture is compared as well
+    double codeLimit{1.0};  // of 255: what a display picture may differ by, at most
 };
 
 // A file of scenes with their options, whose references lie in a folder beside it:
@@ -30,5 +31,8 @@ struct Suite {
 // Errors: HostError kFile where it can't be read, kBadInput naming the entry that is wrong and what
 // is allowed.
 Suite readSuite(const std::filesystem::path& file);
+
+// "box, glass, hall".
+std::string namesOf(const Suite& suite);
 
 }  // namespace pm::host

@@ -174,8 +174,9 @@ void readChoices(const Typed& typed, Options& options) {
                                               {"json", ProgressStyle::kJson},
                                               {"alf", ProgressStyle::kAlf},
                                               {"none", ProgressStyle::kNone}});
-    chosen<int>("--list", options.list, 0,
-                {{"views", 0}, {"spaces", 0}, {"aovs", 0}, {"orders", 0}, {"settings", 0}});
+    chosen<int>(
+        "--list", options.list, 0,
+        {{"views", 0}, {"looks", 0}, {"spaces", 0}, {"aovs", 0}, {"orders", 0}, {"settings", 0}});
     options.cameraLight = chosen<CameraLight>(
         "--camera-light", typed.cameraLight, CameraLight::kAuto,
         {{"auto", CameraLight::kAuto}, {"on", CameraLight::kOn}, {"off", CameraLight::kOff}});
@@ -219,13 +220,37 @@ std::string oneLine(std::string text) {
     return text;
 }
 
-enum class Command { kRender, kMerge, kCache };
+enum class Command { kRender, kMerge, kCache, kCheck };
 
 Command commandOf(const std::vector<std::string>& arguments) {
     if (arguments.empty()) return Command::kRender;
     return arguments.front() == "merge"   ? Command::kMerge
            : arguments.front() == "cache" ? Command::kCache
+           : arguments.front() == "check" ? Command::kCheck
                                           : Command::kRender;
+}
+
+void readCheck(const Typed& typed, CheckOptions& check) {
+    if (typed.checkSuite.empty())
+        throw HostError(ExitCode::kUsage,
+                        "no SUITE.json given; usage: pm_host check SUITE.json [options], see "
+                        "pm_host check -h");
+    check.suite = typed.checkSuite;
+    check.only = typed.onlyScenes;
+    if (!typed.jobs.empty())
+        check.jobs = static_cast<int>(integerValue("--jobs", typed.jobs, 1, 1024));
+    if (!typed.timeBudget.empty())
+        check.timeBudgetSeconds = numberValue("--time-budget", typed.timeBudget, 0, 1e9);
+    if (!typed.seed.empty())
+        check.seed = static_cast<std::uint64_t>(
+            integerValue("--seed", typed.seed, 0, std::numeric_limits<std::int64_t>::max()));
+    if (check.update && check.because.empty())
+        throw HostError(ExitCode::kUsage, "--update wants --because TEXT: why references change");
+    if (!check.update && !check.because.empty())
+        throw HostError(ExitCode::kUsage, "--because is of --update");
+    if (check.update && check.seed)
+        throw HostError(ExitCode::kUsage,
+                        "--update and --seed: references have seeds of their own");
 }
 
 // Which words belong to which option; what they mean is read from typed.
@@ -236,6 +261,8 @@ void readWords(const std::vector<std::string>& arguments, Command command, Typed
         addAllOfMerge(app, typed, options);
     else if (command == Command::kCache)
         addAllOfCache(app, typed, options);
+    else if (command == Command::kCheck)
+        addAllOfCheck(app, typed, options);
     else
         addAll(app, typed, options, nullptr);
     try {
@@ -258,10 +285,16 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
     const bool isMerge = command == Command::kMerge;
     Options options;
     Typed typed;
+    if (command == Command::kCheck) options.check.emplace();
     readWords(arguments, command, typed, options);
     options.helpOfMerge = options.help && isMerge;
     options.helpOfCache = options.help && command == Command::kCache;
+    options.helpOfCheck = options.help && command == Command::kCheck;
     if (options.help || options.version) return options;
+    if (command == Command::kCheck) {
+        readCheck(typed, *options.check);
+        return options;
+    }
     readTextureCache(typed, options);
     if (command == Command::kCache) {
         if (!options.cacheList && !options.cacheClear && !options.cacheVerify)
@@ -301,7 +334,7 @@ std::string helpText(const SettingHelp& settingHelp) {
     Typed typed;
     CLI::App app("pm: a photon-mapping bucket renderer", "pm_host");
     addAll(app, typed, options, settingHelp);
-    return app.help() + "\n" + mergeHelpText() + "\n" + cacheHelpText();
+    return app.help() + "\n" + mergeHelpText() + "\n" + cacheHelpText() + "\n" + checkHelpText();
 }
 
 std::string mergeHelpText() {
@@ -318,6 +351,15 @@ std::string cacheHelpText() {
     CLI::App cache("pm_host cache: the folder of prepared textures", "pm_host cache");
     addAllOfCache(cache, typed, options);
     return cache.help();
+}
+
+std::string checkHelpText() {
+    Options options;
+    options.check.emplace();
+    Typed typed;
+    CLI::App check("pm_host check: a suite of scenes against its references", "pm_host check");
+    addAllOfCheck(check, typed, options);
+    return check.help();
 }
 
 }  // namespace pm::host

@@ -24,5 +24,7 @@ std::string helpText(const SettingHelp& settingHelp);
 std::string mergeHelpText();
 // The same of pm_host cache.
 std::string cacheHelpText();
+// And of pm_host check.
+std::string checkHelpText();
 
 }  // namespace pm::host

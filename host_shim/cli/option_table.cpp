@@ -199,7 +199,8 @@ void addReportOptions(CLI::App& app, Typed& typed, Options& options) {
 
 void addPrintingOptions(CLI::App& app, Typed& typed, Options& options) {
     app.add_flag("--explain", options.explain, "print what the scene needs, and stop");
-    addText(app, "--list", options.list, "views|spaces|aovs|orders|settings", "print and stop");
+    addText(app, "--list", options.list, "views|looks|spaces|aovs|orders|settings",
+            "print and stop");
     app.add_flag("--version", options.version, "print and stop");
     addText(app, "--progress", typed.progress, "auto|bar|plain|json|alf|none",
             "how progress is shown (auto)");
@@ -232,6 +233,39 @@ void addAllOfCache(CLI::App& app, Typed& typed, Options& options) {
     app.add_flag("--verify", options.cacheVerify,
                  "read them and their originals whole; remove what is damaged, exit 3 if any was");
     addTextureOptions(app, typed);
+    app.add_flag("-h,--help", options.help, "print and stop");
+}
+
+void addAllOfCheck(CLI::App& app, Typed& typed, Options& options) {
+    CheckOptions& check = *options.check;
+    app.set_help_flag();
+    app.option_defaults()->always_capture_default(false);
+    addText(app, "SUITE", typed.checkSuite, "FILE.json", "the suite: scenes and their options");
+    app.add_option("--only", typed.onlyScenes, "scenes to check; may be repeated (all)")
+        ->type_name("NAME[,NAME]")
+        ->expected(1)
+        ->delimiter(',')
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->check(valueFault);
+    addText(app, "--jobs", typed.jobs, "N",
+            "scenes rendered at once, which share the threads; 1 to 1024 (1)");
+    addText(app, "--time-budget", typed.timeBudget, "SECONDS",
+            "for all; what isn't done by then counts as different (none)");
+    addText(app, "--seed", typed.seed, "N",
+            "another seed than the references', for a look at the noise");
+    app.add_flag("--update", check.update, "make the references anew; wants --because");
+    addText(app, "--because", check.because, "TEXT", "why; kept with the references");
+    app.add_option("--junit", check.junit, "the outcome as JUnit's XML")
+        ->type_name("FILE")
+        ->check(valueFault);
+    app.add_option("--html", check.html, "pages to look at: index.html, and one for each scene")
+        ->type_name("FOLDER")
+        ->check(valueFault);
+    app.add_option("--plugin", check.plugin,
+                   "the library (else $PM_PLUGIN_PATH, else beside pm_host)")
+        ->type_name("FILE")
+        ->check(valueFault);
+    app.add_flag("-q,--quiet", options.quiet, "only warnings and errors");
     app.add_flag("-h,--help", options.help, "print and stop");
 }
 

@@ -20,8 +20,8 @@ namespace pm::host {
 struct Typed {
     std::string scene, frame, size, eye, lookAt, up, fov, crop, aa, seed, subdivide, onlyPixel,
         errorLimit, progress, checkpoint, photonMap, mtlDialect, textureCache, textureCacheSize,
-        exposure, cameraLight;
-    std::vector<std::string> outputs, context, layers, parts, searchPaths;
+        exposure, cameraLight, checkSuite, jobs, timeBudget;
+    std::vector<std::string> onlyScenes, outputs, context, layers, parts, searchPaths;
     std::map<std::string, std::string> settings;  // option -> text
 };
 
@@ -40,5 +40,7 @@ void addAll(CLI::App& app, Typed& typed, Options& options, const SettingHelp& he
 void addAllOfMerge(CLI::App& app, Typed& typed, Options& options);
 // The same of `pm_host cache`.
 void addAllOfCache(CLI::App& app, Typed& typed, Options& options);
+// The same of `pm_host check SUITE.json`; options.check must be there.
+void addAllOfCheck(CLI::App& app, Typed& typed, Options& options);
 
 }  // namespace pm::host

@@ -34,6 +34,19 @@ struct GivenSetting {
     std::string value;
 };
 
+// pm_host check SUITE.json.
+struct CheckOptions {
+    std::filesystem::path suite;
+    bool update{};                  // references are made anew
+    std::string because;            // why; not empty then
+    std::vector<std::string> only;  // names of scenes; empty: all
+    int jobs{1};                    // renders at once
+    std::optional<double> timeBudgetSeconds;
+    std::optional<std::uint64_t> seed;  // in place of the references' own
+    std::filesystem::path junit, html;  // empty: none
+    std::filesystem::path plugin;
+};
+
 // What the command line says, checked as far as it can be without files.
 struct Options {
     std::vector<std::string> commandLine;
@@ -58,7 +71,7 @@ struct Options {
     std::filesystem::path log;
     std::filesystem::path report;  // a page, empty = none
     bool explain{};
-    std::string list;  // empty, views, spaces, aovs, orders or settings
+    std::string list;  // empty, views, looks, spaces, aovs, orders or settings
     bool version{};
     bool help{};
     bool helpOfMerge{};
@@ -79,6 +92,8 @@ struct Options {
     std::optional<double> textureCacheGib;          // the most that it may hold
     bool cacheList{}, cacheClear{}, cacheVerify{};  // pm_host cache
     bool helpOfCache{};
+    std::optional<CheckOptions> check;
+    bool helpOfCheck{};
     std::vector<std::filesystem::path> merge;  // parts to put together, instead of a scene
 };
 

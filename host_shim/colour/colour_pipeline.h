@@ -42,6 +42,11 @@ struct ViewEntry {
     std::string view;
     bool isDefault{};  // this display and view are taken when none is named
 };
+// One line of --list looks.
+struct LookEntry {
+    std::string name;
+    std::string description;  // one line, may be empty
+};
 struct SpaceEntry {
     std::string name;
     std::vector<std::string> aliases;
@@ -126,6 +131,7 @@ class ColourPipeline {
     // One-line texts for the log, found while the pipeline was made.
     const std::vector<std::string>& warnings() const;
     std::vector<ViewEntry> listViews() const;
+    std::vector<LookEntry> listLooks() const;  // those that --look takes
     std::vector<SpaceEntry> listSpaces() const;
 
   private:

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace pm::host {
 namespace {
 
@@ -116,6 +118,18 @@ std::vector<ViewEntry> ColourPipeline::listViews() const {
         for (const std::string& view : activeViews(config, display)) {
             entries.push_back({display, view, display == display0 && view == view0});
         }
+    }
+    return entries;
+}
+
+std::vector<LookEntry> ColourPipeline::listLooks() const {
+    const auto& config = m_state->config.config;
+    std::vector<LookEntry> entries;
+    for (int i = 0; i < config->getNumLooks(); ++i) {
+        const char* name = config->getLookNameByIndex(i);
+        std::string words = config->getLook(name)->getDescription();
+        std::ranges::replace(words, '\n', ' ');
+        entries.push_back({name, std::move(words)});
     }
     return entries;
 }

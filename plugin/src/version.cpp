@@ -78,6 +78,7 @@ const std::string& versionText() {
 Json versionsJson() {
     return {{"pm", PM_VERSION_TEXT},
             {"build", PM_BUILD_TEXT},
+            {"buildId", buildId()},
             {"embree", PM_EMBREE_VERSION_TEXT},
             {"openImageIo", openImageIoVersion()},
             {"tbb", tbbVersion()}};

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/app/check_command.h"
+
+#include "host_shim/app/outputs.h"
+#include "host_shim/app/plain_text.h"
+#include "host_shim/check/check_page.h"
+#include "host_shim/check/check_run.h"
+#include "host_shim/check/junit.h"
+#include "host_shim/ingest/warnings.h"
+#include "host_shim/pictures/finished_file.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace pm::host {
+namespace {
+
+constexpr double kWantedChange = 0.02;
+
+void print(const std::string& text) {
+    const std::string plain = plainLines(text);
+    std::fwrite(plain.data(), 1, plain.size(), stdout);
+    std::fflush(stdout);
+}
+
+std::string lineOf(const SceneOutcome& outcome, bool isUpdate) {
+    const std::string& name = outcome.scene->name;
+    std::string text;
+    if (isUpdate && outcome.isRight())
+        text = fmt::format("{}: stored", name);
+    else
+        text = fmt::format("{}: {}", name, nameOf(outcome.status));
+    if (outcome.status == SceneOutcome::Status::kWithinNoise)
+        text +=
+            fmt::format(" (furthest region at {:.0f} % of its limit)", 100 * outcome.shareOfLimit);
+    text += fmt::format(", {:.2f} s\n", outcome.seconds);
+    for (const Finding& finding : outcome.findings)
+        text += fmt::format("    {}: {}\n", finding.measure, finding.text);
+    if (!outcome.isRight()) text += fmt::format("    {}\n", outcome.command);
+    return text;
+}
+
+std::string summaryOf(const std::vector<SceneOutcome>& outcomes, bool isUpdate) {
+    std::size_t right = 0;
+    for (const SceneOutcome& outcome : outcomes) right += outcome.isRight() ? 1 : 0;
+    return fmt::format("{} of {} scenes {}\n", right, outcomes.size(),
+                       isUpdate ? "stored" : "right");
+}
+
+void warnOfNoise(const SceneOutcome& outcome, Log& log) {
+    if (outcome.seenChange > kWantedChange)
+        log.warning(static_cast<int>(Warning::kOutput),
+                    fmt::format("{}: a change of one 16 x 16 region is found from {:.2g} % on; "
+                                "more --passes find less",
+                                outcome.scene->name, 100 * outcome.seenChange));
+}
+
+}  // namespace
+
+int runCheckCommand(const CheckOptions& options, Log& log) {
+    const Suite suite = readSuite(options.suite);
+    if (!options.junit.empty()) checkOutputs({}, {options.junit}, false);
+    std::optional<CheckPages> pages;
+    if (!options.html.empty()) pages.emplace(options.html, suite);
+    CheckRun run(options, suite, [&](const SceneOutcome& outcome) {
+        print(lineOf(outcome, options.update));
+        if (options.update) warnOfNoise(outcome, log);
+        if (pages) pages->add(outcome);
+    });
+    const std::vector<SceneOutcome> outcomes = options.update ? run.update() : run.check();
+    if (pages) pages->writeIndex();
+    if (!options.junit.empty()) writeFinishedFile(options.junit, junitXml(suite, outcomes));
+    print(summaryOf(outcomes, options.update));
+    return exitCodeOf(outcomes);
+}
+
+}  // namespace pm::host

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/check/check_page.h"
+
+#include "host_shim/app/report_html.h"
+#include "host_shim/app/report_pictures.h"
+#include "host_shim/pictures/finished_file.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pm::host {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kPictureBytes = 1'500'000;
+constexpr std::size_t kThumbnailBytes = 30'000;
+constexpr int kThumbnailWidth = 160;
+constexpr double kShareOfScale = 0.99;  // above all is shown alike
+
+// Relative, with the guard of relMSE; channels taken together.
+Plane differenceOf(const Picture& stored, const Picture& picture) {
+    const Beauty a = beautyOf(stored), b = beautyOf(picture);
+    Plane plane{a.window.width(), a.window.height(), {}};
+    for (std::size_t i = 0; i < a.values[0].size(); ++i) {
+        double sum = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double r = a.values[c][i], x = b.values[c][i];
+            sum += (x - r) * (x - r) / (r * r + 0.01);
+        }
+        plane.values.push_back(static_cast<float>(std::sqrt(sum / 3)));
+    }
+    return plane;
+}
+
+bool haveOneShape(const SceneOutcome& outcome) {
+    return outcome.stored && outcome.picture &&
+           outcome.stored->dataWindow == outcome.picture->dataWindow;
+}
+
+std::string picturesHtml(const SceneOutcome& outcome, const EmbeddedPicture& shown,
+                         const EmbeddedPicture& stored) {
+    if (!haveOneShape(outcome))
+        return section("picture", "Picture", figureHtml(shown, "the new picture", "New."));
+    const Plane plane = differenceOf(*outcome.stored, *outcome.picture);
+    const float most = quantile(plane, kShareOfScale);
+    return section("picture", "Stored and new",
+                   sliderHtml(stored, "the stored picture", shown, "the new picture")) +
+           section("difference", "Difference",
+                   figureHtml(embedded(heatMap(plane, 0, most), kPictureBytes),
+                              "difference from the stored picture",
+                              "Of scene-linear values, relative, the channels together.") +
+                       scaleHtml("0", fmt::format("{:.3g}", most)));
+}
+
+std::string findingsHtml(const SceneOutcome& outcome) {
+    std::vector<Row> rows;
+    for (const Finding& finding : outcome.findings)
+        rows.push_back({escaped(finding.measure), escaped(finding.text)});
+    return rows.empty() ? paragraph("Nothing differs beyond noise.")
+                        : table({"measure", "finding"}, rows);
+}
+
+std::string statusHtml(const SceneOutcome& outcome) {
+    std::string words = fmt::format("{}. {:.2f} s.", nameOf(outcome.status), outcome.seconds);
+    if (outcome.status == SceneOutcome::Status::kWithinNoise)
+        words += fmt::format(" The furthest region is at {:.0f} % of its limit.",
+                             100 * outcome.shareOfLimit);
+    if (outcome.seenChange > 0)
+        words += fmt::format(" A change of a 16 x 16 region is seen from {:.2g} % on.",
+                             100 * outcome.seenChange);
+    return fmt::format("<p class=\"status{}\">{}</p>\n", outcome.isRight() ? "" : " bad",
+                       escaped(words));
+}
+
+std::string thumbnailHtml(EmbeddedPicture picture) {
+    if (picture.dataUri.empty()) return "";
+    picture.shownHeight =
+        std::max(1, picture.shownHeight * kThumbnailWidth / std::max(picture.shownWidth, 1));
+    picture.shownWidth = kThumbnailWidth;
+    return imageHtml(picture, "the new picture");
+}
+
+std::string link(const std::string& file, const std::string& words) {
+    return fmt::format("<a href=\"{}\">{}</a>", escaped(file), escaped(words));
+}
+
+}  // namespace
+
+CheckPages::CheckPages(fs::path folder, const Suite& suite)
+    : m_folder(std::move(folder)), m_suite(suite) {
+    std::error_code failed;
+    fs::create_directories(m_folder, failed);
+    if (failed || !fs::is_directory(m_folder))
+        throw HostError(ExitCode::kFile,
+                        fmt::format("--html {}: no folder can be made", m_folder.string()));
+}
+
+void CheckPages::add(const SceneOutcome& outcome) {
+    const SuiteScene& scene = *outcome.scene;
+    const std::string page = scene.name + ".html", report = scene.name + "_render.html";
+    EmbeddedPicture small;
+    std::string body = "<p>" + link("index.html", "All scenes") + "</p>\n" +
+                       fmt::format("<h1>{}</h1>\n", escaped(scene.name)) + statusHtml(outcome) +
+                       section("findings", "Findings", findingsHtml(outcome));
+    if (outcome.picture) {
+        const SceneDisplay display(m_suite, scene);
+        const DisplayPicture shown = display.shown(*outcome.picture);
+        small = embedded(shown, kThumbnailBytes);
+        body +=
+            picturesHtml(outcome, embedded(shown, kPictureBytes),
+                         outcome.stored ? embedded(display.shown(*outcome.stored), kPictureBytes)
+                                        : EmbeddedPicture{});
+    }
+    if (!outcome.because.empty())
+        body += section("reason", "Why the reference is as it is", paragraph(outcome.because));
+    body += section("command", "The render",
+                    codeBlock(outcome.command) + "<p>" + link(report, "Its own report") + "</p>\n");
+    writeFinishedFile(m_folder / page, wholePage(scene.name, body));
+    std::string first = outcome.findings.empty()
+                            ? ""
+                            : outcome.findings[0].measure + ": " + outcome.findings[0].text;
+    m_entries.push_back(
+        {&scene,
+         fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.2f} s</td><td>{}</td><td>{}</td>"
+                     "</tr>\n",
+                     thumbnailHtml(small), link(page, scene.name), nameOf(outcome.status),
+                     outcome.seconds, escaped(first), link(report, "report")),
+         outcome.isRight()});
+}
+
+void CheckPages::writeIndex() const {
+    const auto right = std::ranges::count_if(m_entries, &Entry::isRight);
+    const bool isGood = right == std::ssize(m_entries);
+    const std::string name = m_suite.file.filename().string();
+    std::string body = fmt::format(
+        "<h1>{}</h1>\n<p class=\"status{}\">{} of {} scenes are right.</p>"
+        "\n<table>\n<tr><th></th><th>scene</th><th>outcome</th>"
+        "<th>time</th><th>first finding</th><th></th></tr>\n",
+        escaped(name), isGood ? "" : " bad", right, m_entries.size());
+    // In the suite's order, whoever was done first.
+    for (const SuiteScene& scene : m_suite.scenes)
+        for (const Entry& entry : m_entries)
+            if (entry.scene == &scene) body += entry.row;
+    writeFinishedFile(m_folder / "index.html", wholePage(name, body + "</table>\n"));
+}
+
+}  // namespace pm::host

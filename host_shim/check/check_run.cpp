@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/check/check_run.h"
+
+#include "host_shim/app/report_command.h"
+#include "host_shim/check/reference_making.h"
+#include "host_shim/pictures/host_error.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <fstream>
+#include <limits>
+#include <string_view>
+#include <thread>
+
+namespace pm::host {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::uint64_t kOwnSeed = 1;
+constexpr std::uint64_t kFirstOtherSeed = 1001;
+
+bool isNamed(const std::vector<std::string>& options, std::string_view name) {
+    return std::ranges::any_of(options, [&](const std::string& option) {
+        return option == name || option.starts_with(std::string(name) + "=");
+    });
+}
+
+// What a program said last.
+std::string lastLine(const fs::path& file) {
+    std::ifstream stream(file);
+    std::string line, last;
+    while (std::getline(stream, line))
+        if (!line.empty()) last = line;
+    return last;
+}
+
+}  // namespace
+
+CheckRun::CheckRun(const CheckOptions& options, const Suite& suite,
+                   std::function<void(const SceneOutcome&)> told)
+    : m_options(options), m_suite(suite), m_told(std::move(told)) {
+    choose();
+}
+
+void CheckRun::choose() {
+    for (const std::string& name : m_options.only)
+        if (std::ranges::find(m_suite.scenes, name, &SuiteScene::name) == m_suite.scenes.end())
+            throw HostError(ExitCode::kUsage,
+                            fmt::format("--only '{}': the suite has {}", name, namesOf(m_suite)));
+    for (const SuiteScene& scene : m_suite.scenes) {
+        if (!m_options.only.empty() &&
+            std::ranges::find(m_options.only, scene.name) == m_options.only.end())
+            continue;
+        m_outcomes.emplace_back().scene = &scene;
+        if (scene.hasDisplay) SceneDisplay(m_suite, scene);  // its options are right
+    }
+}
+
+CheckRun::Render CheckRun::addRender(std::size_t index, std::uint64_t seed) {
+    SceneOutcome& outcome = m_outcomes[index];
+    const SuiteScene& scene = *outcome.scene;
+    const fs::path base = m_folder.path() / fmt::format("{}_{}", scene.name, seed);
+    Render render{index, base.string() + ".exr",
+                  scene.hasDisplay ? fs::path(base.string() + ".png") : fs::path()};
+    ChildTask task;
+    task.folder = m_suite.folder;
+    task.log = base.string() + ".log";
+    std::vector<std::string>& words = task.arguments;
+    words = {scene.scene.string()};
+    words.insert(words.end(), scene.options.begin(), scene.options.end());
+    words.insert(words.end(), {"--seed", std::to_string(seed)});
+    std::vector<std::string> command{"pm_host"};
+    command.insert(command.end(), words.begin(), words.end());
+    outcome.command = shellCommand(command);
+    words.insert(words.end(),
+                 {"--aov", "stderr", "-o", render.exr.string(), "-q", "--progress", "none"});
+    if (scene.hasDisplay) words.insert(words.end(), {"-o", render.png.string()});
+    if (!m_options.html.empty() && !m_options.update)
+        words.insert(
+            words.end(),
+            {"--report", (fs::absolute(m_options.html) / (scene.name + "_render.html")).string()});
+    if (!m_options.plugin.empty())
+        words.insert(words.end(), {"--plugin", fs::absolute(m_options.plugin).string()});
+    if (m_options.jobs > 1 && !isNamed(scene.options, "--threads"))
+        words.insert(
+            words.end(),
+            {"--threads", std::to_string(std::max(1u, std::thread::hardware_concurrency() /
+                                                          static_cast<unsigned>(m_options.jobs)))});
+    m_tasks.push_back(std::move(task));
+    return render;
+}
+
+bool CheckRun::ended(const ChildResult& result, std::size_t task, SceneOutcome& outcome) const {
+    using End = ChildResult::End;
+    outcome.seconds += result.seconds;
+    if (result.end == End::kExited && result.code == 0) return true;
+    if (result.end == End::kOutOfTime || result.end == End::kNotStarted) {
+        outcome.status = SceneOutcome::Status::kOutOfTime;
+        outcome.findings = {{"time", fmt::format("not done within the --time-budget of {:g} s",
+                                                 *m_options.timeBudgetSeconds)}};
+        return false;
+    }
+    outcome.status = SceneOutcome::Status::kFailed;
+    const std::string line = lastLine(m_tasks[task].log);
+    outcome.findings.push_back(
+        {"render", result.end == End::kSignalled
+                       ? fmt::format("ended by signal {}; {}", result.code, line)
+                       : fmt::format("exit code {}; {}", result.code, line)});
+    return false;
+}
+
+void CheckRun::run(const std::function<void(std::size_t, const ChildResult&)>& done) {
+    const double most = std::numeric_limits<double>::max();
+    const auto results = runChildren(
+        m_tasks, m_options.jobs,
+        std::chrono::duration<double>(m_options.timeBudgetSeconds.value_or(most)), done);
+    for (std::size_t task = 0; task < results.size(); ++task)
+        if (results[task].end == ChildResult::End::kNotStarted) done(task, results[task]);
+}
+
+// What is wrong with one scene's files keeps no other from being checked.
+void CheckRun::compare(const Render& render, SceneOutcome& outcome) const {
+    try {
+        checkScene(m_suite, render.exr, render.png, outcome);
+    } catch (const HostError& error) {
+        outcome.status = SceneOutcome::Status::kFailed;
+        outcome.findings.push_back({"files", error.what()});
+    }
+}
+
+std::vector<SceneOutcome> CheckRun::check() {
+    std::vector<Render> renders;
+    for (std::size_t i = 0; i < m_outcomes.size(); ++i)
+        renders.push_back(addRender(i, m_options.seed.value_or(kOwnSeed)));
+    run([&](std::size_t task, const ChildResult& result) {
+        SceneOutcome& outcome = m_outcomes[renders[task].outcome];
+        if (ended(result, task, outcome)) compare(renders[task], outcome);
+        m_told(outcome);
+        // Those of all scenes together may be many.
+        outcome.stored.reset();
+        outcome.picture.reset();
+    });
+    return std::move(m_outcomes);
+}
+
+std::vector<SceneOutcome> CheckRun::update() {
+    std::vector<Render> renders;
+    for (std::size_t i = 0; i < m_outcomes.size(); ++i) {
+        renders.push_back(addRender(i, kOwnSeed));
+        for (std::uint64_t other = 0; other < kOtherSeeds; ++other)
+            renders.push_back(addRender(i, kFirstOtherSeed + other));
+    }
+    std::vector<std::size_t> left(m_outcomes.size(), kOtherSeeds + 1);
+    std::vector<bool> good(m_outcomes.size(), true);
+    run([&](std::size_t task, const ChildResult& result) {
+        const std::size_t index = renders[task].outcome;
+        SceneOutcome& outcome = m_outcomes[index];
+        if (good[index]) good[index] = ended(result, task, outcome);
+        if (--left[index] > 0) return;
+        std::vector<Render> own;
+        std::ranges::copy_if(renders, std::back_inserter(own),
+                             [&](const Render& render) { return render.outcome == index; });
+        if (good[index]) store(outcome, own);
+        m_told(outcome);
+    });
+    return std::move(m_outcomes);
+}
+
+void CheckRun::store(SceneOutcome& outcome, const std::vector<Render>& renders) {
+    std::vector<RenderedFiles> files;
+    for (const Render& render : renders) files.push_back({render.exr, render.png});
+    const ReferenceFiles to = referenceFiles(m_suite, *outcome.scene);
+    const Reference made = makeReference(files, to.numbers, m_options.because);
+    storeReference(files.front(), made, to);
+    outcome.status = SceneOutcome::Status::kSame;
+    outcome.because = m_options.because;
+    outcome.seenChange = seenChange(made.window, made.regions.front());
+    for (const RenderedFiles& file : files) {
+        std::error_code ignored;
+        fs::remove(file.exr, ignored);
+        fs::remove(file.png, ignored);
+    }
+}
+
+int exitCodeOf(const std::vector<SceneOutcome>& outcomes) {
+    constexpr int kDifferent = 6;
+    int code = 0;
+    for (const SceneOutcome& outcome : outcomes) {
+        if (outcome.isRight()) continue;
+        if (outcome.status != SceneOutcome::Status::kMissing) return kDifferent;
+        code = static_cast<int>(ExitCode::kBadInput);
+    }
+    return code;
+}
+
+}  // namespace pm::host

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/check/scene_check.h"
+
+#include <string>
+#include <vector>
+
+namespace pm::host {
+
+// The outcomes as the XML that JUnit writes and continuous integration reads: a test suite of the
+// suite's name, a test case a scene.
+std::string junitXml(const Suite& suite, const std::vector<SceneOutcome>& outcomes);
+
+}  // namespace pm::host

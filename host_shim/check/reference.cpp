@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/check/reference.h"
+
+#include "host_shim/pictures/finished_file.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include <fstream>
+
+namespace pm::host {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kSchema = "pm-reference/1";
+
+// So many digits as tell a float from its neighbours.
+json numbers(const std::vector<double>& values) {
+    json list = json::array();
+    for (const double value : values) list.push_back(std::stod(fmt::format("{:.9g}", value)));
+    return list;
+}
+
+json textOf(const std::vector<RegionSpread>& spreads) {
+    json list = json::array();
+    for (const RegionSpread& spread : spreads)
+        list.push_back({{"side", spread.side},
+                        {"renders", spread.renders},
+                        {"limit", spread.limit},
+                        {"mean", numbers(spread.mean)},
+                        {"variance", numbers(spread.variance)},
+                        {"stored", numbers(spread.stored)}});
+    return list;
+}
+
+std::vector<RegionSpread> spreadsOf(const json& list, const PixelRect& window) {
+    std::vector<RegionSpread> spreads;
+    for (const json& entry : list) {
+        RegionSpread& spread = spreads.emplace_back();
+        entry.at("side").get_to(spread.side);
+        entry.at("renders").get_to(spread.renders);
+        entry.at("limit").get_to(spread.limit);
+        entry.at("mean").get_to(spread.mean);
+        entry.at("variance").get_to(spread.variance);
+        entry.at("stored").get_to(spread.stored);
+        if (spread.side < 0 || spread.renders < 3)
+            throw HostError(ExitCode::kBadInput, "regions without a side or of too few renders");
+        const RegionGrid grid(window, spread.side);
+        const auto count =
+            3 * static_cast<std::size_t>(grid.columns()) * static_cast<std::size_t>(grid.rows());
+        if (spread.mean.size() != count || spread.variance.size() != count ||
+            spread.stored.size() != count)
+            throw HostError(ExitCode::kBadInput,
+                            fmt::format("not {} values for regions of {}", count, spread.side));
+    }
+    return spreads;
+}
+
+Reference parsed(const json& text) {
+    if (text.at("schema") != kSchema)
+        throw HostError(ExitCode::kBadInput, fmt::format("'schema' must be \"{}\"", kSchema));
+    Reference reference;
+    for (const json& entry : text.at("reasons"))
+        reference.reasons.push_back({entry.at("because"), entry.at("date"), entry.at("version")});
+    const std::vector<std::int32_t> window = text.at("window");
+    if (window.size() != 4) throw HostError(ExitCode::kBadInput, "'window' must be four numbers");
+    reference.window = {window[0], window[1], window[2], window[3]};
+    if (reference.window.empty()) throw HostError(ExitCode::kBadInput, "'window' is empty");
+    reference.regions = spreadsOf(text.at("regions"), reference.window);
+    reference.codes = spreadsOf(text.at("codes"), reference.window);
+    text.at("pixelLimit").get_to(reference.pixelLimit);
+    text.at("visibleLimit").get_to(reference.visibleLimit);
+    return reference;
+}
+
+}  // namespace
+
+Reference readReference(const std::filesystem::path& file) {
+    std::ifstream stream(file, std::ios::binary);
+    if (!stream) throw HostError(ExitCode::kFile, fmt::format("{}: can't be read", file.string()));
+    try {
+        return parsed(json::parse(stream));
+    } catch (const json::exception& error) {
+        throw HostError(ExitCode::kBadInput,
+                        fmt::format("{}: no reference: {}", file.string(), error.what()));
+    } catch (const HostError& error) {
+        throw HostError(error.code(), fmt::format("{}: {}", file.string(), error.what()));
+    }
+}
+
+void writeReference(const std::filesystem::path& file, const Reference& reference) {
+    json reasons = json::array();
+    for (const Reason& reason : reference.reasons)
+        reasons.push_back(
+            {{"because", reason.because}, {"date", reason.date}, {"version", reason.version}});
+    const PixelRect& window = reference.window;
+    const json text{{"schema", kSchema},
+                    {"reasons", reasons},
+                    {"window", {window.x0, window.y0, window.x1, window.y1}},
+                    {"regions", textOf(reference.regions)},
+                    {"codes", textOf(reference.codes)},
+                    {"pixelLimit", reference.pixelLimit},
+                    {"visibleLimit", reference.visibleLimit}};
+    // A line for each part, so that a change of the reasons is seen beside those of the numbers.
+    std::string lines;
+    for (const auto& [key, value] : text.items())
+        lines += fmt::format("{}\"{}\": {}", lines.empty() ? "{" : ",\n ", key, value.dump());
+    writeFinishedFile(file, lines + "}\n");
+}
+
+}  // namespace pm::host
