@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "tests/bench/sweep.h"
+
+namespace pm::bench {
+
+std::vector<Sweep> shellSweeps() {
+    return {};
+}
+
+}  // namespace pm::bench
