@@ -43,8 +43,9 @@ SweepPoint pointOf(const Sweep& sweep, double value, const std::vector<double>& 
     point.standardError = std::sqrt(off.variance / (count - 1));
     const int seeds = static_cast<int>(count);
     point.z = test::zScore({off.mean, point.standardError, seeds}, {0, 0, seeds}, kSweepRounding);
-    // NaN is no number of standard errors.
-    if (!std::isfinite(point.measured)) point.z = std::numeric_limits<double>::infinity();
+    // NaN is no number of standard errors, and no fault is chance.
+    if (!std::isfinite(point.measured) || (sweep.isCount && point.measured > 0))
+        point.z = std::numeric_limits<double>::infinity();
     return point;
 }
 

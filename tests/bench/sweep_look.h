@@ -17,7 +17,7 @@ struct Look {
     std::uint64_t seed = 1;
     std::int32_t size = 16;    // pixels of a side
     std::uint32_t passes = 1;  // of 4 samples a pixel
-    std::uint64_t photons = 20'000;
+    std::uint64_t photons = 5'000;
     std::uint32_t estimatePhotons = 50;
 };
 
