@@ -91,8 +91,11 @@ Sweep radiances(IntegratorKind integrator) {
 // A lamp beside the receiver that turns its edge to it.
 Corners edgeOn(double angle) {
     const Vec3d foot{0.3, 0.2, -0.3}, along{0, 0, 0.6};
-    const Vec3d up{std::cos(angle + std::atan2(0.2, 0.3)), std::sin(angle + std::atan2(0.2, 0.3)), 0};
-    return {foot, foot + along, foot + along + up * 0.5, foot + up * 0.5};
+    const Vec3d up{std::cos(angle + std::atan2(0.2, 0.3)), std::sin(angle + std::atan2(0.2, 0.3)),
+                   0};
+    Corners corners = {foot, foot + along, foot + along + up * 0.5, foot + up * 0.5};
+    for (Vec3d& p : corners) p = Vec3d(Vec3f(p));  // as the mesh has them
+    return corners;
 }
 
 Sweep edges(IntegratorKind integrator) {
@@ -121,7 +124,9 @@ Sweep touching(IntegratorKind integrator) {
     sweep.values = decades(0, -7);
     sweep.against = "Lambert's formula";
     sweep.measure = [=](double height, std::uint64_t seed) {
-        test::SceneMaker maker = floorSeenAtTheOrigin(height / 2);
+        test::SceneMaker maker;
+        maker.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, maker.diffuse(Rgb(1.0f)));
+        maker.camera({0, height / 2, 0}, {0, 0, 0}, {0, 0, -1}, 0.1);
         maker.polygon(squareAt(height, 1), maker.diffuse({}, Rgb(1.0f)));
         return directOf(maker, integrator, seed);
     };
@@ -225,8 +230,7 @@ Sweep unequal(IntegratorKind integrator, bool dimAlone) {
 
 std::vector<Sweep> lightSweeps() {
     std::vector<Sweep> sweeps;
-    for (const auto& make :
-         {sizes, globes, radiances, edges, touching, foot, inside, numbers})
+    for (const auto& make : {sizes, globes, radiances, edges, touching, foot, inside, numbers})
         for (const IntegratorKind integrator : kBoth) sweeps.push_back(make(integrator));
     for (const IntegratorKind integrator : kBoth)
         for (const bool dimAlone : {false, true}) sweeps.push_back(unequal(integrator, dimAlone));

@@ -153,8 +153,7 @@ Sweep farCameraSeesTheSky(IntegratorKind integrator, bool isSphere) {
 
 std::vector<Sweep> placementSweeps() {
     std::vector<Sweep> sweeps;
-    for (const IntegratorKind integrator : kBoth)
-        sweeps.push_back(moved(integrator));
+    for (const IntegratorKind integrator : kBoth) sweeps.push_back(moved(integrator));
     for (const IntegratorKind integrator : kBoth) sweeps.push_back(scaled(integrator));
     for (const IntegratorKind integrator : kBoth) sweeps.push_back(cornersMoved(integrator));
     for (const IntegratorKind integrator : kBoth) sweeps.push_back(farObject(integrator));

@@ -60,25 +60,47 @@ Sweep outside(IntegratorKind integrator) {
 }
 
 // Glass shells in a room that shines evenly can't be seen.
+test::SceneMaker shellsInAFurnace(double thickness, int shells) {
+    test::SceneMaker maker;
+    maker.box({-2, -2, -2}, {2, 2, 2}, maker.diffuse({}, Rgb(1.0f)), true);
+    const auto outer = maker.material(test::glass());
+    const auto inner = maker.material(test::glass(1 / 1.5f));
+    for (int i = 0; i < shells; ++i) {
+        maker.sphere({}, 1 - 2 * i * thickness, outer);
+        maker.sphere({}, 1 - (2 * i + 1) * thickness, inner);
+    }
+    maker.camera({0.3, 0.4, 1.7}, {0, 0, 0}, {0, 1, 0}, 60);
+    return maker;
+}
+
 Sweep glassShells(IntegratorKind integrator, int shells) {
     Sweep sweep{.kind = "shells", .name = "nested glass shells in a furnace"};
     sweep.variant = nameOf(integrator) + ", " + std::to_string(shells);
     sweep.parameter = "thickness and distance of the shells, radii";
     sweep.values = kThin;
+    if (shells > 1) sweep.values[0] = 0.05;
     sweep.against = "invisible: 1";
+    sweep.flatFrom = 0.99e-6;
+    sweep.limit =
+        "a body of glass whose two sides are round and closer than rays can start between "
+        "swallows light.";
     sweep.measure = [=](double thickness, std::uint64_t seed) {
-        test::SceneMaker maker;
-        maker.box({-2, -2, -2}, {2, 2, 2}, maker.diffuse({}, Rgb(1.0f)), true);
-        const auto outer = maker.material(test::glass());
-        const auto inner = maker.material(test::glass(1 / 1.5f));
-        for (int i = 0; i < shells; ++i) {
-            maker.sphere({}, 1 - 2 * i * thickness / shells, outer);
-            maker.sphere({}, 1 - (2 * i + 1) * thickness / shells, inner);
-        }
-        maker.camera({0.3, 0.4, 1.7}, {0, 0, 0}, {0, 1, 0}, 60);
-        return look(maker, {integrator, seed}).beauty;
+        return look(shellsInAFurnace(thickness, shells), {integrator, seed}).beauty;
     };
     sweep.expected = [](double, std::uint64_t) { return 1.0; };
+    return sweep;
+}
+
+// Pixels of a finer frame that are not 1 there: single samples.
+Sweep shellSpecks() {
+    Sweep sweep = glassShells(IntegratorKind::kPath, 3);
+    sweep.name = "specks of nested glass shells";
+    sweep.against = "no pixel of 4096, of 4 samples, that is not 1";
+    sweep.isCount = true;
+    sweep.expected = {};
+    sweep.measure = [](double thickness, std::uint64_t seed) {
+        return look(shellsInAFurnace(thickness, 3), {IntegratorKind::kPath, seed, 64}).countOff(1);
+    };
     return sweep;
 }
 
@@ -115,8 +137,9 @@ Sweep hiddenFloor(IntegratorKind integrator) {
     sweep.values = kThin;
     sweep.against = "black: pixels of the sheet that show light";
     sweep.flatFrom = 0.99e-5;
-    sweep.limit = "surfaces so close to each other are met as if in one plane, and either may be "
-                  "the one that is seen.";
+    sweep.limit =
+        "surfaces so close to each other are met as if in one plane, and either may be "
+        "the one that is seen.";
     sweep.isCount = true;
     sweep.measure = [=](double gap, std::uint64_t seed) {
         test::SceneMaker maker = sheetOverAFloor(gap, Rgb(100.0f));
@@ -126,9 +149,10 @@ Sweep hiddenFloor(IntegratorKind integrator) {
     return sweep;
 }
 
-// Rays from within a closed mesh to its vertices, along its edges' middles and to any place of
-// them, that meet nothing.
-double pinholes(const test::SceneMaker& maker, const Vec3d& from, std::uint64_t seed) {
+// Of 20,000 rays from within a closed mesh to its vertices, or to places on its edges, those that
+// meet nothing.
+double pinholes(const test::SceneMaker& maker, const Vec3d& from, bool toVertices,
+                std::uint64_t seed) {
     const auto scene = maker.build();
     const auto& instance = maker.description.instances.front();
     const auto& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(instance.shape);
@@ -140,53 +164,62 @@ double pinholes(const test::SceneMaker& maker, const Vec3d& from, std::uint64_t 
     test::Random random(seed);
     int missed = 0;
     for (int i = 0; i < 20'000; ++i) {
-        const auto triangle = static_cast<std::size_t>(
-            static_cast<double>(random.next()) * static_cast<double>(mesh.triangles.size()));
+        const auto triangle = static_cast<std::size_t>(static_cast<double>(random.next()) *
+                                                       static_cast<double>(mesh.triangles.size()));
         const auto& corners = mesh.triangles[triangle];
         const auto first = static_cast<std::size_t>(i % 3);
         // The lower pole's vertices are not quite in one place.
         if (mesh.positions[corners[first]].y < -0.999f * std::abs(mesh.positions[0].y)) continue;
         const Vec3d a = world(corners[first]), b = world(corners[(first + 1) % 3]);
-        const double along = i % 4 == 0 ? 0 : i % 4 == 1 ? 0.5 : static_cast<double>(random.next());
+        const double along = toVertices ? 0 : 0.02 + 0.96 * static_cast<double>(random.next());
         const Vec3d way = a + (b - a) * along - from;
         Surface surface;
-        missed += !scene->intersect({Vec3f(from - scene->centre()), Vec3f(normalize(way))}, surface);
+        missed +=
+            !scene->intersect({Vec3f(from - scene->centre()), Vec3f(normalize(way))}, surface);
     }
     return missed;
 }
 
-Sweep pinholeSweep(const std::string& of, const std::string& parameter) {
+Sweep pinholeSweep(const std::string& of, const std::string& parameter, bool toVertices) {
     Sweep sweep{.kind = "shells", .name = "pinholes, " + of, .parameter = parameter};
-    sweep.against = "no ray of 20,000 through an edge or vertex that meets nothing";
+    sweep.variant = toVertices ? "vertices" : "edges";
+    sweep.against = "no ray of 20,000 that meets nothing";
     sweep.isCount = true;
     return sweep;
 }
 
-std::vector<Sweep> pinholeSweeps() {
-    Sweep fine = pinholeSweep("a fine ball", "rings of quads");
+std::vector<Sweep> pinholeSweeps(bool toVertices) {
+    Sweep fine = pinholeSweep("a fine ball", "rings of quads", toVertices);
     fine.values = {2, 4, 16, 64, 256};
-    fine.measure = [](double rings, std::uint64_t seed) {
+    fine.measure = [=](double rings, std::uint64_t seed) {
         test::SceneMaker maker;
         maker.meshSphere({}, 1, maker.diffuse({}), true, static_cast<int>(rings));
-        return pinholes(maker, {0.1, 0.05, -0.07}, seed);
+        return pinholes(maker, {0.1, 0.05, -0.07}, toVertices, seed);
     };
-    Sweep needles = pinholeSweep("needles", "a ball's height, radii");
+    Sweep needles = pinholeSweep("needles", "a ball's height, radii", toVertices);
     needles.values = decades(0, -7);
-    needles.measure = [](double height, std::uint64_t seed) {
+    needles.measure = [=](double height, std::uint64_t seed) {
         test::SceneMaker maker;
         maker.meshSphere({}, 1, maker.diffuse({}), true, 24);
         maker.description.instances.back().transform[5] = height;
-        return pinholes(maker, {0.1, 0, -0.07}, seed);
+        return pinholes(maker, {0.1, 0, -0.07}, toVertices, seed);
     };
-    Sweep huge = pinholeSweep("huge triangles", "a ball's radius, widths of what is in it");
+    Sweep huge =
+        pinholeSweep("huge triangles", "a ball's radius, widths of what is in it", toVertices);
     huge.values = decades(0, 9);
-    huge.measure = [](double radius, std::uint64_t seed) {
+    huge.measure = [=](double radius, std::uint64_t seed) {
         test::SceneMaker maker;
         maker.meshSphere({}, radius, maker.diffuse({}), true, 8);
         const Vec3d at = Vec3d{0.3, 0.2, 0.1} * radius;
         maker.meshSphere(at, 0.5, maker.diffuse({}), false, 8);
-        return pinholes(maker, at + Vec3d{0, 0.1, 0.7}, seed);
+        return pinholes(maker, at + Vec3d{0, 0.1, 0.7}, toVertices, seed);
     };
+    if (toVertices) {
+        fine.flatTo = 16;
+        needles.flatFrom = 0.99;
+        fine.limit = needles.limit =
+            "a ray aimed at a vertex to the last bit may pass between the triangles around it.";
+    }
     return {fine, needles, huge};
 }
 
@@ -218,7 +251,12 @@ std::vector<Sweep> shellSweeps() {
         for (const IntegratorKind integrator : kBoth) sweeps.push_back(make(integrator));
     for (const IntegratorKind integrator : kBoth)
         for (const int shells : {1, 5}) sweeps.push_back(glassShells(integrator, shells));
-    for (Sweep& sweep : pinholeSweeps()) sweeps.push_back(std::move(sweep));
+    sweeps.push_back(shellSpecks());
+    std::vector<Sweep> edges = pinholeSweeps(false), vertices = pinholeSweeps(true);
+    for (std::size_t i = 0; i < edges.size(); ++i) {
+        sweeps.push_back(std::move(edges[i]));
+        sweeps.push_back(std::move(vertices[i]));
+    }
     return sweeps;
 }
 
