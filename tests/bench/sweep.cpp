@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "tests/bench/sweep.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <iterator>
@@ -12,7 +14,9 @@
 namespace pm::bench {
 
 bool SweepResult::isFlat(double limit) const {
-    return !points.empty() && worst().z <= limit;
+    return std::ranges::none_of(points, [&](const SweepPoint& point) {
+        return sweep.hasToBeFlatAt(point.value) && !(point.z <= limit);
+    });
 }
 
 const SweepPoint& SweepResult::worst() const {
@@ -53,9 +57,10 @@ SweepPoint pointOf(const Sweep& sweep, double value, const std::vector<double>& 
 
 SweepResult run(const Sweep& sweep, int seeds) {
     const auto each = [&](const auto& number) {
-        std::vector<double> numbers;
-        for (int i = 0; i < seeds; ++i)
-            numbers.push_back(number(test::firstSeed() + static_cast<std::uint64_t>(i)));
+        std::vector<double> numbers(static_cast<std::size_t>(seeds));
+        tbb::parallel_for(std::size_t{0}, numbers.size(), [&](std::size_t i) {
+            numbers[i] = number(test::firstSeed() + static_cast<std::uint64_t>(i));
+        });
         return numbers;
     };
     std::vector<double> twin;

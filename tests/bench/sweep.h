@@ -55,7 +55,8 @@ struct SweepResult {
 
     // Whether no point that has to be flat is beyond so many standard errors.
     bool isFlat(double limit) const;
-    // The point that has to be flat with the largest |z|; of equals that with the largest error.
+    // The point that has to be flat with the largest z; of equals that with the largest error.
+    // Where none has to be, the first.
     const SweepPoint& worst() const;
 };
 

@@ -31,7 +31,7 @@ Sweep grazing(IntegratorKind integrator) {
         maker.box({-s, -s, -0.1}, {s, s, 0}, maker.material(test::glass()), false);
         maker.camera({5 * std::cos(angle), 0, 5 * std::sin(angle)}, {0, 0, 0}, {0, 1, 0},
                      1e-3 * degrees);
-        return look(maker, {integrator, seed, 16, 4}).beauty;
+        return look(maker, {integrator, seed, 16, manyPasses(integrator)}).beauty;
     };
     sweep.expected = [](double degrees, std::uint64_t) {
         return throughSurfaces(2, fresnel(1.5, std::sin(degrees * kPi / 180)));
@@ -44,6 +44,10 @@ Sweep critical(IntegratorKind integrator) {
     sweep.parameter = "below the critical angle by, radians";
     sweep.values = decades(-1, -6);
     sweep.against = "n^2 (1 - R), seen from within";
+    sweep.flatFrom = 0.99e-2;
+    sweep.limit =
+        "directions are floats, whose rounding of 6e-8 is a share of the angle that is left; "
+        "what is let through goes by its root.";
     const double index = 1.5;
     const auto angleAt = [=](double below) { return std::asin(1 / index) - below; };
     sweep.measure = [=](double below, std::uint64_t seed) {
@@ -58,7 +62,7 @@ Sweep critical(IntegratorKind integrator) {
         const double angle = angleAt(below);
         maker.camera({-std::sin(angle), 0, -std::cos(angle)}, {0, 0, 0}, {0, 1, 0},
                      1e-3 * below * 180 / kPi);
-        return look(maker, {integrator, seed, 16, 4}).beauty;
+        return look(maker, {integrator, seed, 16, manyPasses(integrator)}).beauty;
     };
     sweep.expected = [=](double below, std::uint64_t) {
         const double sine = index * std::sin(angleAt(below));
@@ -95,7 +99,7 @@ Sweep slabIndices(IntegratorKind integrator) {
         maker.box({-4, -4, -1}, {4, 4, -0.9},
                   maker.material(test::glass(static_cast<float>(1 + more))), false);
         maker.camera({0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 0.01);
-        return look(maker, {integrator, seed, 16, 4}).beauty;
+        return look(maker, {integrator, seed, 16, manyPasses(integrator)}).beauty;
     };
     sweep.expected = [](double more, std::uint64_t) {
         const auto n = static_cast<double>(static_cast<float>(1 + more));
@@ -120,12 +124,13 @@ Sweep chains(IntegratorKind integrator) {
     sweep.parameter = "interfaces";
     sweep.values = {2, 4, 10, 20, 50, 100};
     sweep.against = "what so many surfaces let through";
+    sweep.isLong = integrator == IntegratorKind::kPhoton;
     sweep.measure = [=](double interfaces, std::uint64_t seed) {
         test::SceneMaker maker;
         maker.quad({-5, -5, 0}, {10, 0, 0}, {0, 10, 0}, maker.diffuse({}, Rgb(1.0f)));
         addSlabs(maker, interfaces, 4);
         maker.camera({0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 0.1);
-        return look(maker, {integrator, seed}).beauty;
+        return look(maker, {integrator, seed, 16, manyPasses(integrator) / 4}).beauty;
     };
     sweep.expected = [](double interfaces, std::uint64_t) {
         return throughSurfaces(interfaces, 0.04);
@@ -137,6 +142,7 @@ Sweep photonChains() {
     Sweep sweep{.kind = "glass", .name = "chain of slabs, by photons", .variant = "photon"};
     sweep.parameter = "interfaces";
     sweep.values = {2, 4, 10, 20, 50, 100};
+    sweep.isLong = true;
     sweep.against = "the sun's light that so many surfaces let through";
     sweep.measure = [](double interfaces, std::uint64_t seed) {
         test::SceneMaker maker;

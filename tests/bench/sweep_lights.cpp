@@ -76,7 +76,7 @@ Sweep globes(IntegratorKind integrator) {
 Sweep radiances(IntegratorKind integrator) {
     Sweep sweep{.kind = "lights", .name = "radiance", .variant = nameOf(integrator)};
     sweep.parameter = "radiance of a lamp";
-    sweep.values = decades(-6, 9);
+    sweep.values = {1e-6, 1e-3, 1, 1e3, 1e6, 1e9};
     sweep.against = "the room at radiance 1, times it";
     sweep.measure = [=](double radiance, std::uint64_t seed) {
         test::SceneMaker maker = test::openRoom();
@@ -101,6 +101,8 @@ Corners edgeOn(double angle) {
 Sweep edges(IntegratorKind integrator) {
     Sweep sweep{.kind = "lights", .name = "edge-on", .variant = nameOf(integrator)};
     sweep.parameter = "angle of the lamp's plane to the receiver, radians";
+    sweep.flatFrom = 0.99e-4;
+    sweep.limit = "corners are floats about the scene's centre, and their rounding turns the lamp.";
     sweep.values = decades(-1, -7);
     sweep.against = "Lambert's formula";
     sweep.measure = [=](double angle, std::uint64_t seed) {
@@ -121,6 +123,10 @@ Sweep touching(IntegratorKind integrator) {
     Sweep sweep{.kind = "lights", .name = "lamp close over a floor"};
     sweep.variant = nameOf(integrator);
     sweep.parameter = "height over its side";
+    sweep.flatFrom = integrator == IntegratorKind::kPhoton ? 0.99e-4 : 0;
+    sweep.limit =
+        "rays of gather points start 4e-6 of the scene's radius above the surface, beyond "
+        "a lamp that is closer, and its direct light is lost.";
     sweep.values = decades(0, -7);
     sweep.against = "Lambert's formula";
     sweep.measure = [=](double height, std::uint64_t seed) {

@@ -48,6 +48,7 @@ Sweep lobesInARoom() {
     sweep.parameter = "exponent";
     sweep.values = {1, 3, 10, 30, 44.9, 45.1, 60, 100, 1e3, 1e4, 1e5, 1e6};
     sweep.against = "path tracing";
+    sweep.isLong = true;
     sweep.measure = [](double exponent, std::uint64_t seed) {
         return look(roomWithALobe(lobe(exponent, 0.8f)), {IntegratorKind::kPhoton, seed}).beauty;
     };
@@ -58,14 +59,31 @@ Sweep lobesInARoom() {
     return sweep;
 }
 
-Sweep towardsMirror(IntegratorKind integrator) {
-    Sweep sweep{.kind = "lobes", .name = "narrow lobe, mirror", .variant = nameOf(integrator)};
+// A lobe, and at 1e31 a mirror, that shows a wall with a lamp in it, at an angle.
+Sweep towardsMirror(IntegratorKind integrator, double degrees) {
+    Sweep sweep{.kind = "lobes", .name = "narrow lobe and mirror"};
+    sweep.variant = nameOf(integrator) + (degrees > 0 ? ", at 60 degrees" : "");
     sweep.parameter = "exponent";
     sweep.values = decades(3, 9);
     sweep.against = "a mirror";
+    sweep.flatFrom = degrees > 0 ? 1e30 : 0.99e5;
+    sweep.flatTo = 1.01e6;
+    sweep.limit = degrees > 0
+                      ? "the Phong lobe has a cosine that a mirror has not: it reflects 1/2 "
+                        "at 60 degrees, however narrow it is."
+                      : "a lobe's density goes by a float's cosine, 1 less some 6e-8, to "
+                        "the power of the exponent: beyond 1e7 the weights of the two ways "
+                        "to find a lamp do not add up to 1.";
     sweep.measure = [=](double exponent, std::uint64_t seed) {
-        const double of = exponent > 1e30 ? 0 : exponent;
-        return look(roomWithALobe(lobe(of, 0.8f)), {integrator, seed, 16, 4}).beauty;
+        test::SceneMaker maker;
+        const double of = exponent > 1e30 ? 0 : exponent, angle = degrees * std::numbers::pi / 180;
+        maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(lobe(of, 0.8f)));
+        maker.box({-9, -9, -9}, {9, 9, 9}, maker.diffuse({}, Rgb(1.0f)), true);
+        const Vec3d away{-std::sin(angle), 0, std::cos(angle)}, up{0, 1, 0};
+        maker.quad(away * 6 - up * 0.3 - cross(up, away) * 0.3, up * 0.6, cross(up, away) * 0.6,
+                   maker.diffuse({}, Rgb(5.0f)));
+        maker.camera({3 * std::sin(angle), 0, 3 * std::cos(angle)}, {0, 0, 0}, up, 10);
+        return look(maker, {integrator, seed, 16, 4}).beauty;
     };
     sweep.wellAt = 1e31;
     return sweep;
@@ -76,13 +94,15 @@ Sweep albedos(IntegratorKind integrator) {
     sweep.parameter = "1 less the albedo";
     sweep.values = {0.5, 0.1, 0.01, 1e-3, 1e-4};
     sweep.against = "all walls shine 1 less the albedo: 1";
-    sweep.isLong = integrator == IntegratorKind::kPhoton;
+    sweep.isLong = true;
     sweep.measure = [=](double lost, std::uint64_t seed) {
         test::SceneMaker maker;
         const auto kept = static_cast<float>(1 - lost);
         maker.box({-1, -1, -1}, {1, 1, 1}, maker.diffuse(Rgb(kept), Rgb(1 - kept)), true);
         maker.camera({0.1, 0.2, 0.3}, {1, 0.4, -0.2}, {0, 1, 0}, 60);
-        return look(maker, {.integrator = integrator, .seed = seed, .size = 4, .photons = 1000})
+        // The longer the paths, the fewer of them.
+        const std::int32_t size = integrator == IntegratorKind::kPhoton ? 4 : lost < 5e-4 ? 8 : 16;
+        return look(maker, {.integrator = integrator, .seed = seed, .size = size, .photons = 1000})
             .beauty;
     };
     sweep.expected = [](double, std::uint64_t) { return 1.0; };
@@ -94,6 +114,7 @@ Sweep tubes(IntegratorKind integrator, float reflectance) {
     Sweep sweep{.kind = "lobes", .name = "tube of mirrors"};
     sweep.variant = nameOf(integrator) + (reflectance < 1 ? ", 0.999" : ", lossless");
     sweep.parameter = "bounces";
+    sweep.isLong = integrator == IntegratorKind::kPhoton;
     sweep.values = {1, 3, 10, 30, 100, 300, 1000};
     sweep.against = "reflectance to the power of the bounces";
     sweep.measure = [=](double bounces, std::uint64_t seed) {
@@ -145,8 +166,10 @@ std::vector<Sweep> lobeSweeps() {
     std::vector<Sweep> sweeps;
     for (const IntegratorKind integrator : kBoth) sweeps.push_back(exponents(integrator));
     sweeps.push_back(lobesInARoom());
-    for (const auto& make : {towardsMirror, albedos})
-        for (const IntegratorKind integrator : kBoth) sweeps.push_back(make(integrator));
+    for (const IntegratorKind integrator : kBoth)
+        for (const double degrees : {0.0, 60.0})
+            sweeps.push_back(towardsMirror(integrator, degrees));
+    for (const IntegratorKind integrator : kBoth) sweeps.push_back(albedos(integrator));
     for (const IntegratorKind integrator : kBoth)
         for (const float reflectance : {0.999f, 1.0f})
             sweeps.push_back(tubes(integrator, reflectance));

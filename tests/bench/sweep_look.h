@@ -31,6 +31,11 @@ struct Seen {
     double countOff(double expected) const;
 };
 
+// Passes of a scene that is cheap for both: paths need more of them.
+constexpr std::uint32_t manyPasses(IntegratorKind integrator) {
+    return integrator == IntegratorKind::kPhoton ? 4 : 32;
+}
+
 Seen look(const test::SceneMaker& maker, const Look& how);
 
 // photon or path, for Sweep::variant.

@@ -76,6 +76,7 @@ test::SceneMaker withCornersMoved(double by, bool back) {
 Sweep cornersMoved(IntegratorKind integrator) {
     Sweep sweep{.kind = "placement", .name = "corners moved", .variant = nameOf(integrator)};
     sweep.parameter = "corners moved by, room widths / 2";
+    sweep.isLong = integrator == IntegratorKind::kPhoton;
     // Beyond, the floats hold no room any more.
     sweep.values = decades(0, 6);
     sweep.against = "what the rounded corners make, moved back to the origin";

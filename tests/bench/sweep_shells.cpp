@@ -78,7 +78,8 @@ Sweep glassShells(IntegratorKind integrator, int shells) {
     sweep.variant = nameOf(integrator) + ", " + std::to_string(shells);
     sweep.parameter = "thickness and distance of the shells, radii";
     sweep.values = kThin;
-    if (shells > 1) sweep.values[0] = 0.05;
+    if (shells > 1) sweep.values = {0.05, 1e-3, 1e-5, 1e-6, 1e-7};
+    sweep.isLong = integrator == IntegratorKind::kPhoton && shells > 1;
     sweep.against = "invisible: 1";
     sweep.flatFrom = 0.99e-6;
     sweep.limit =
@@ -96,6 +97,8 @@ Sweep shellSpecks() {
     Sweep sweep = glassShells(IntegratorKind::kPath, 3);
     sweep.name = "specks of nested glass shells";
     sweep.against = "no pixel of 4096, of 4 samples, that is not 1";
+    sweep.flatFrom = 0.99e-2;
+    sweep.limit = "a ray along the rim may miss one of two surfaces that are close.";
     sweep.isCount = true;
     sweep.expected = {};
     sweep.measure = [](double thickness, std::uint64_t seed) {
