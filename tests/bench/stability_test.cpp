@@ -5,6 +5,9 @@
 
 #include <cctype>
 #include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <string>
 
 #include "tests/bench/sweep.h"
@@ -78,6 +81,24 @@ TEST(SweepHarness, RefusesWhatIsNoNumberAndAnyFault) {
     EXPECT_FALSE(run(sweep, 2).isFlat(5));
     sweep.measure = [](double, std::uint64_t) { return 0.0; };
     EXPECT_TRUE(run(sweep, 2).isFlat(5));
+}
+
+TEST(SweepPage, HasThePlotsThePointsAndTheLimits) {
+    Sweep sweep{.kind = "kind", .name = "a name", .values = decades(0, 4)};
+    sweep.flatTo = 100;
+    sweep.limit = "why it ends.";
+    sweep.expected = [](double, std::uint64_t) { return 1.0; };
+    sweep.measure = [](double value, std::uint64_t) { return value > 100 ? 2.0 : 1.0; };
+    const auto folder = std::filesystem::path(::testing::TempDir()) / "sweep_page";
+    std::filesystem::create_directories(folder);
+    const SweepResult result = run(sweep, 2);
+    writeSweepPage(folder / "page.md", {&result, 1});
+    EXPECT_TRUE(std::filesystem::exists(folder / "images/page/kind_a-name.svg"));
+    EXPECT_TRUE(std::filesystem::exists(folder / "lab/page.csv"));
+    std::ifstream page(folder / "page.md");
+    const std::string text{std::istreambuf_iterator<char>(page), {}};
+    EXPECT_NE(text.find("images/page/kind_a-name.svg"), std::string::npos);
+    EXPECT_NE(text.find("why it ends. Beyond 1 to 100"), std::string::npos) << text;
 }
 
 }  // namespace

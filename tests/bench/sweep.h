@@ -29,14 +29,17 @@ struct Sweep {
     std::optional<double> wellAt{};
     bool isCount = false;  // of faults, of which there are to be none
 
-    // Within these it is to be flat; beyond is the limit, in words.
+    // Within these, and at flatAlso, it is to be flat; beyond is the limit, in words.
     double flatFrom = -std::numeric_limits<double>::infinity();
     double flatTo = std::numeric_limits<double>::infinity();
+    std::optional<double> flatAlso{};
     std::string limit{};
     // Too slow for the suite.
     bool isLong = false;
 
-    bool hasToBeFlatAt(double value) const { return value >= flatFrom && value <= flatTo; }
+    bool hasToBeFlatAt(double value) const {
+        return (value >= flatFrom && value <= flatTo) || value == flatAlso;
+    }
 };
 
 struct SweepPoint {

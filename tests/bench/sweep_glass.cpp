@@ -166,6 +166,10 @@ Sweep waterInGlass(IntegratorKind integrator, bool isBox, bool overlaps) {
     sweep.values = decades(-1, -7);
     sweep.values.push_back(1e-30);
     sweep.against = "invisible in a furnace: 1";
+    sweep.flatFrom = 0.99e-6;
+    sweep.flatAlso = 1e-30;
+    sweep.limit = "two surfaces closer than rays can start between swallow light, unless they "
+                  "coincide.";
     sweep.measure = [=](double gap, std::uint64_t seed) {
         test::SceneMaker maker;
         maker.box({-2, -2, -2}, {2, 2, 2}, maker.diffuse({}, Rgb(1.0f)), true);
