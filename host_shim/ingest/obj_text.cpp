@@ -117,9 +117,10 @@ class ObjScan {
         m_out.cleaned.append(word).append(" ").append(rest).append("\n");
     }
 
-    void leaveOut(const std::string& what) {
+    void leaveOut(const std::string& what) { leaveOut(what, m_lines.number()); }
+    void leaveOut(const std::string& what, std::uint64_t line) {
         auto& entry = m_leftOut[what];
-        if (entry.first++ == 0) entry.second = m_lines.number();
+        if (entry.first++ == 0) entry.second = line;
     }
 
     void leaveOutUnknown(std::string_view word) {
@@ -251,9 +252,9 @@ class ObjScan {
         for (const ForwardReference& reference : m_forward) {
             const std::uint64_t count = m_out.counts[reference.kind];
             if (count == 0 && reference.kind > 0) {
-                auto& [times, line] = m_leftOut[fmt::format(
-                    "corners' {}s, of which there are none,", kKinds[reference.kind])];
-                if (times++ == 0) line = reference.line;
+                leaveOut(
+                    fmt::format("corners' {}s, of which there are none,", kKinds[reference.kind]),
+                    reference.line);
                 continue;
             }
             if (reference.index > static_cast<std::int64_t>(count)) {

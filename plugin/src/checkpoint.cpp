@@ -4,6 +4,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cstring>
@@ -115,10 +116,9 @@ void Checkpoint::take(bool resume) {
 
 Checkpoint::~Checkpoint() {
     const bool isEmpty = m_isNew && m_file && m_end == m_sumsEnd;
-    const std::string name = m_file ? m_file->name() : std::string();
+    const std::shared_ptr<const OwnedFile> file = m_file;
     close(std::atomic<bool>(true));
-    std::error_code ignored;
-    if (isEmpty) fs::remove(name, ignored);
+    if (isEmpty) ::unlink(file->name().c_str());
 }
 
 void Checkpoint::open(const std::string& file) {
@@ -337,11 +337,15 @@ void Checkpoint::close(const std::atomic<bool>& cancelled) noexcept {
     m_off = true;
     if (!m_file) return;
     try {
-        if (!cancelled) m_disk.give([file = m_file] { file->sync(); });
-        m_disk.waitUntilIdle(cancelled);
-        throwTroubleOfDisk();
-    } catch (const std::exception& error) {
-        m_trouble = error.what();
+        try {
+            if (!cancelled) m_disk.give([file = m_file] { file->sync(); });
+            m_disk.waitUntilIdle(cancelled);
+            throwTroubleOfDisk();
+        } catch (const std::exception& error) {
+            m_trouble = error.what();
+        }
+    } catch (...) {
+        // No memory for the text.
     }
     // A sync that is on its way keeps the file open, but not from others.
     m_file->unlock();

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "plugin/src/temporary_file.h"
 
-#include <filesystem>
-#include <system_error>
+#include <unistd.h>
+
 #include <utility>
 
 namespace pm::plugin {
@@ -17,8 +17,8 @@ TemporaryFile::~TemporaryFile() {
 }
 
 void TemporaryFile::remove() noexcept {
-    std::error_code ignored;
-    if (std::exchange(m_isThere, false)) std::filesystem::remove(m_file->name(), ignored);
+    // Not through a path of the library's, which takes memory.
+    if (std::exchange(m_isThere, false)) ::unlink(m_file->name().c_str());
 }
 
 void TemporaryFile::append(std::span<const std::byte> bytes) {

@@ -187,7 +187,7 @@ TEST(GatherPoints, TheSameBitsInAnyOrder) {
         EXPECT_EQ(alone, renderInOrder(scene, tiles, crop));
         // Rectangles of one pixel, and an overscan before all.
         tiles = squares(kSize, kSize, 1);
-        std::ranges::rotate(tiles, tiles.begin() + 1000);
+        std::rotate(tiles.begin(), tiles.begin() + 1000, tiles.end());
         tiles.insert(tiles.begin(), {-9, -9, kSize + 9, kSize + 9});
         EXPECT_EQ(alone, renderInOrder(scene, tiles, crop));
     }
