@@ -98,7 +98,7 @@ TEST(SweepPage, HasThePlotsThePointsAndTheLimits) {
     std::ifstream page(folder / "page.md");
     const std::string text{std::istreambuf_iterator<char>(page), {}};
     EXPECT_NE(text.find("images/page/kind_a-name.svg"), std::string::npos);
-    EXPECT_NE(text.find("why it ends. Beyond 1 to 100"), std::string::npos) << text;
+    EXPECT_NE(text.find("Why it ends. Flat: 1 to 100."), std::string::npos) << text;
 }
 
 }  // namespace

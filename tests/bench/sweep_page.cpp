@@ -78,11 +78,13 @@ LogPlot plotOf(std::span<const SweepResult> results) {
 std::string rangeOf(const SweepResult& result) {
     double low = std::numeric_limits<double>::infinity(), high = -low;
     for (const SweepPoint& p : result.points)
-        if (result.sweep.hasToBeFlatAt(p.value)) {
+        if (result.sweep.hasToBeFlatAt(p.value) && p.value != result.sweep.flatAlso) {
             low = std::min(low, p.value);
             high = std::max(high, p.value);
         }
-    return fmt::format("{:.3g} to {:.3g}", low, high);
+    const std::string also =
+        result.sweep.flatAlso ? fmt::format(" and {:.3g}", *result.sweep.flatAlso) : "";
+    return low > high ? "nowhere" : fmt::format("{:.3g} to {:.3g}{}", low, high, also);
 }
 
 std::string rowOf(const SweepResult& result, double limit) {
@@ -105,11 +107,13 @@ std::string limitOf(const SweepResult& result) {
             (!worst || !(std::abs(p.error) <= std::abs(worst->error))))
             worst = &p;
     if (!worst) return "";
-    return fmt::format("- **{}, {}{}{}**: {} Beyond {}: off by {:.2g} +- {:.1g} at {:.3g}.\n",
-                       result.sweep.kind, result.sweep.name,
-                       result.sweep.variant.empty() ? "" : ", ", result.sweep.variant,
-                       result.sweep.limit, rangeOf(result), std::abs(worst->error),
-                       worst->standardError, worst->value);
+    const Sweep& sweep = result.sweep;
+    const std::string reason =
+        static_cast<char>(std::toupper(sweep.limit[0])) + sweep.limit.substr(1);
+    return fmt::format("- **{}, {}{}{}**: {} Flat: {}. {} {:.2g} +- {:.1g} at {:.3g}.\n",
+                       sweep.kind, sweep.name, sweep.variant.empty() ? "" : ", ", sweep.variant,
+                       reason, rangeOf(result), sweep.isCount ? "Faults:" : "Off by",
+                       std::abs(worst->error), worst->standardError, worst->value);
 }
 
 constexpr const char* kIntroduction =
