@@ -48,12 +48,16 @@ std::string tickText(double value) {
 // Calls f(value, whether it has a number) for the axis's grid lines.
 template <typename F>
 void forTicks(const Axis& axis, const F& f) {
-    const bool all = axis.high - axis.low < 2.5;
+    const double decades = axis.high - axis.low;
+    const bool all = decades < 2.5;
+    const int everyDecade = decades > 9 ? 2 : 1;  // numbers need room
     for (int decade = static_cast<int>(std::floor(axis.low)); decade <= axis.high; ++decade)
         for (int digit = 1; digit < 10; ++digit) {
             const double value = std::pow(10.0, decade) * digit;
             if (std::log10(value) < axis.low || std::log10(value) > axis.high) continue;
-            f(value, digit == 1 || (all && (digit == 2 || digit == 5)));
+            if (digit > 1 && decades > 6) continue;
+            f(value,
+              (digit == 1 && decade % everyDecade == 0) || (all && (digit == 2 || digit == 5)));
         }
 }
 
