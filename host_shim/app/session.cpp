@@ -16,6 +16,7 @@
 #include "host_shim/ingest/lamps.h"
 #include "host_shim/ingest/obj_reader.h"
 #include "host_shim/pictures/compare.h"
+#include "host_shim/pictures/display_compare.h"
 #include "host_shim/pictures/picture_io.h"
 
 #include <fmt/format.h>
@@ -140,7 +141,20 @@ void Session::checkBeforeReading() {
     if (!m_options.log.empty()) m_log.openFile(m_options.log);
 }
 
+void Session::readDisplayReference() {
+    m_displayReference = readDisplayPicture(m_options.reference);
+    const PixelRect window = dataWindowOf(m_options);
+    if (m_displayReference->width != window.width() ||
+        m_displayReference->height != window.height())
+        throw HostError(ExitCode::kBadInput,
+                        fmt::format("{}: the reference is {}x{}, the picture {}x{}; they must be "
+                                    "the same (--size)",
+                                    m_options.reference.string(), m_displayReference->width,
+                                    m_displayReference->height, window.width(), window.height()));
+}
+
 void Session::readReference(const ColourPipeline& colour) {
+    if (isDisplayReference(m_options)) return readDisplayReference();
     m_reference = readExr(m_options.reference);
     for (const char* channel : {"R", "G", "B"}) {
         if (m_reference->find(channel) == nullptr) {
@@ -248,7 +262,9 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
     phase("renderCallSeconds", [&] { status = run.run(); });
     m_statistics.library = run.statistics();
     if (m_options.photonsOnly) return finishPhotons(status);
-    return tiles ? finishTiles(status, *tiles) : finish(run, status, colour, display);
+    const int code = tiles ? finishTiles(status, *tiles) : finish(run, status, colour, display);
+    const int ofSamples = judgeSamples();
+    return code != 0 ? code : ofSamples;
 }
 
 void Session::writeStatistics() {

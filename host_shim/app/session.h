@@ -32,6 +32,7 @@ class Session {
     int render();
     void checkBeforeReading();
     void readReference(const ColourPipeline& colour);
+    void readDisplayReference();
     void buildScene(const ColourPipeline& colour, MaterialBuilder& materials,
                     std::optional<PluginScene>& scene);
     void noteMaterialFiles(const SceneData& data);
@@ -72,6 +73,10 @@ class Session {
     void writeOutput(const std::filesystem::path& file, const Picture& picture,
                      const std::optional<DisplayTransform>& display);
     int compareWithReference(const Picture& picture);
+    int compareWithDisplayReference(const Picture& picture, const DisplayTransform& display);
+    int judgeAgainstLimit(const std::string& name, std::optional<double> value);
+    // Tells of samples that are no light; the exit code, which is 3 with --strict.
+    int judgeSamples();
     void printPixel(const Picture& picture) const;
     void writeStatistics();
     void writeReport();
@@ -84,6 +89,7 @@ class Session {
     Statistics m_statistics;
     Report m_report;  // gathers only where one is wanted
     std::optional<Picture> m_reference;
+    std::optional<DisplayPicture> m_displayReference;  // in place of it
     std::optional<Picture> m_pilot;      // of the scene as it is rendered; see pilot()
     Exposure m_exposure;                 // of display pictures
     std::optional<CameraPose> m_camera;  // nothing before the scene is read, and of merges

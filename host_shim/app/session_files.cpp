@@ -5,6 +5,7 @@
 #include "host_shim/pictures/picture_io.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace pm::host {
@@ -40,8 +41,13 @@ std::vector<fs::path> otherOutputs(const Options& options) {
     return files;
 }
 
+bool isDisplayReference(const Options& options) {
+    constexpr std::array kEndings{".png", ".jpg", ".jpeg", ".tif", ".tiff"};
+    return std::ranges::find(kEndings, lowerCaseExtension(options.reference)) != kEndings.end();
+}
+
 bool wantsDisplay(const Options& options) {
-    return !options.report.empty() ||
+    return !options.report.empty() || isDisplayReference(options) ||
            std::ranges::any_of(options.outputs, [](const fs::path& file) {
                return isDisplayReferred(pictureFormat(file));
            });

@@ -17,7 +17,10 @@ std::vector<std::filesystem::path> inputsOf(const Options& options, const SceneD
 // checkpoint.
 std::vector<std::filesystem::path> otherOutputs(const Options& options);
 
-// Whether something that it writes goes through display and view.
+// Whether --reference names a display picture, by its extension; an EXR has any other.
+bool isDisplayReference(const Options& options);
+
+// Whether something that it writes or compares goes through display and view.
 bool wantsDisplay(const Options& options);
 
 // All files that it writes.

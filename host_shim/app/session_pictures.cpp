@@ -6,8 +6,10 @@
 #include "host_shim/app/interrupt.h"
 #include "host_shim/app/outputs.h"
 #include "host_shim/app/picture_assembly.h"
+#include "host_shim/app/report_command.h"
 #include "host_shim/colour/display_picture.h"
 #include "host_shim/pictures/compare.h"
+#include "host_shim/pictures/display_compare.h"
 #include "host_shim/pictures/picture_io.h"
 
 #include <fmt/format.h>
@@ -60,6 +62,7 @@ int Session::finish(const PictureSource& source, PmrStatus status, const ColourP
     noteEnd();
     lookForLight(picture);
     if (m_options.onlyPixel) printPixel(picture);
+    if (m_displayReference) return compareWithDisplayReference(picture, display.value());
     return m_reference ? compareWithReference(picture) : 0;
 }
 
@@ -139,14 +142,43 @@ int Session::compareWithReference(const Picture& picture) {
         std::fputs(fmt::format("relMSE {}\n", *report.relMse).c_str(), stdout);
         m_statistics.referenceRelMse = report.relMse;
     }
+    return judgeAgainstLimit("relMSE", report.relMse);
+}
+
+int Session::compareWithDisplayReference(const Picture& picture, const DisplayTransform& display) {
+    const DisplayDifference difference = compareDisplay(
+        asCodes(*m_displayReference), asCodes(makeDisplayPicture(picture, display).picture));
+    std::fputs(fmt::format("code difference {}\n", describe(difference)).c_str(), stdout);
+    m_statistics.referenceCodes = difference;
+    return judgeAgainstLimit("rms code difference", difference.rms);
+}
+
+int Session::judgeAgainstLimit(const std::string& name, std::optional<double> value) {
     if (!m_options.errorLimit) return 0;
-    if (report.relMse && *report.relMse <= *m_options.errorLimit) return 0;
+    if (value && *value <= *m_options.errorLimit) return 0;
     m_statistics.stopReason = "error limit";
-    m_statistics.error = report.relMse ? fmt::format("relMSE {} is above the limit {}",
-                                                     *report.relMse, *m_options.errorLimit)
-                                       : "a value is not finite";
+    m_statistics.error =
+        value ? fmt::format("{} {} is above the limit {}", name, *value, *m_options.errorLimit)
+              : "a value is not finite";
     m_log.message(Level::kError, m_statistics.error);
     return kErrorLimitPassed;
+}
+
+int Session::judgeSamples() {
+    const auto bad = m_statistics.badSamples();
+    if (!bad) return 0;
+    Arguments words = ofOnePixel(m_statistics.commandLine);
+    words.insert(words.end(), {"--only-pixel", fmt::format("{},{}", bad->x, bad->y)});
+    const std::string text = fmt::format("samples that are no light count as black: {}; alone: {}",
+                                         bad->text, shellCommand(words));
+    if (!m_options.strict) {
+        warn(Warning::kBadSamples, text);
+        return 0;
+    }
+    m_statistics.stopReason = "bad samples";
+    m_statistics.error = text;
+    m_log.message(Level::kError, text);
+    return static_cast<int>(ExitCode::kBadInput);
 }
 
 void Session::printPixel(const Picture& picture) const {

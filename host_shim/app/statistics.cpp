@@ -95,6 +95,24 @@ std::string Statistics::photonMapText() const {
                        static_cast<double>(map.value("fileBytes", std::uint64_t{0})) / 1e6);
 }
 
+std::optional<BadSampleNote> Statistics::badSamples() const {
+    const Json json = parsed(library);
+    const auto bad = json.find("badSamples");
+    if (bad == json.end()) return std::nullopt;
+    BadSampleNote note;
+    for (const auto& [kind, count] : bad->at("counts").items())
+        note.text +=
+            fmt::format("{}{} {}", note.text.empty() ? "" : ", ", count.get<std::uint64_t>(), kind);
+    const Json& first = bad->at("first");
+    note.x = first.at("x").get<std::int64_t>();
+    note.y = first.at("y").get<std::int64_t>();
+    note.text += fmt::format(
+        "; the first is {} ({}) at pixel {},{}, pass {}, sample {}",
+        first.at("fault").get<std::string>(), first.at("part").get<std::string>(), note.x, note.y,
+        first.at("pass").get<std::uint64_t>(), first.at("sample").get<std::uint64_t>());
+    return note;
+}
+
 std::string Statistics::toJson(const Log& log) const {
     Json all = parsed(library);
     Json mine;
@@ -116,6 +134,11 @@ std::string Statistics::toJson(const Log& log) const {
     mine["stopReason"] = stopReason;
     mine["error"] = error;
     if (referenceRelMse) mine["relMseReference"] = *referenceRelMse;
+    if (referenceCodes)
+        mine["referenceCodes"] = {{"rms", referenceCodes->rms},
+                                  {"mean", referenceCodes->mean},
+                                  {"most", referenceCodes->most},
+                                  {"visiblePixels", referenceCodes->visiblePixels}};
     mine["exitCode"] = exitCode;
     const Json warnings = warningList(log, all);
     join(mine, all);

@@ -4,9 +4,11 @@
 
 #include "host_shim/app/log.h"
 #include "host_shim/ingest/scene_data.h"
+#include "host_shim/pictures/display_compare.h"
 
 #include <nlohmann/json_fwd.hpp>
 
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <optional>
@@ -14,6 +16,12 @@
 #include <vector>
 
 namespace pm::host {
+
+// Samples that were NaN, infinite or negative, and count as black.
+struct BadSampleNote {
+    std::string text;       // how many of each kind, and where the first was
+    std::int64_t x{}, y{};  // its pixel
+};
 
 // What is written as --stats: one JSON object, "schema": "pm-stats/1". Units stand in the key
 // names; keys are only ever added.
@@ -33,6 +41,7 @@ struct Statistics {
     std::string stopReason{"failed"};
     std::string error;
     std::optional<double> referenceRelMse;
+    std::optional<DisplayDifference> referenceCodes;  // of a display picture
     std::string library;  // the plugin's own statistics, JSON, empty when there was no render
     int exitCode{1};
 
@@ -44,6 +53,8 @@ struct Statistics {
     std::string libraryStopReason() const;
     // Of a photon map that was written, for people.
     std::string photonMapText() const;
+    // None where there were no bad samples.
+    std::optional<BadSampleNote> badSamples() const;
     std::string toJson(const Log& log) const;
 };
 

@@ -55,7 +55,7 @@ void CheckRun::choose() {
             std::ranges::find(m_options.only, scene.name) == m_options.only.end())
             continue;
         m_outcomes.emplace_back().scene = &scene;
-        if (scene.hasDisplay) SceneDisplay(m_suite, scene);  // its options are right
+        checkOptions(m_suite, scene);
     }
 }
 
@@ -147,13 +147,14 @@ std::vector<SceneOutcome> CheckRun::check() {
 }
 
 std::vector<SceneOutcome> CheckRun::update() {
+    const auto others = static_cast<std::size_t>(m_options.seeds);
     std::vector<Render> renders;
     for (std::size_t i = 0; i < m_outcomes.size(); ++i) {
         renders.push_back(addRender(i, kOwnSeed));
-        for (std::uint64_t other = 0; other < kOtherSeeds; ++other)
+        for (std::uint64_t other = 0; other < others; ++other)
             renders.push_back(addRender(i, kFirstOtherSeed + other));
     }
-    std::vector<std::size_t> left(m_outcomes.size(), kOtherSeeds + 1);
+    std::vector<std::size_t> left(m_outcomes.size(), others + 1);
     std::vector<bool> good(m_outcomes.size(), true);
     run([&](std::size_t task, const ChildResult& result) {
         const std::size_t index = renders[task].outcome;
@@ -177,7 +178,7 @@ void CheckRun::store(SceneOutcome& outcome, const std::vector<Render>& renders) 
     storeReference(files.front(), made, to);
     outcome.status = SceneOutcome::Status::kSame;
     outcome.because = m_options.because;
-    outcome.seenChange = seenChange(made.window, made.regions.front());
+    outcome.seenChange = seenChange(made.regions.front());
     for (const RenderedFiles& file : files) {
         std::error_code ignored;
         fs::remove(file.exr, ignored);

@@ -22,7 +22,7 @@ class CheckRun {
     // In the suite's order; of the scenes that --only names. Errors: kUsage for a name that the
     // suite has not, and those of the references' files.
     std::vector<SceneOutcome> check();
-    // Renders each scene with its own seed and with eight others, and stores picture and numbers.
+    // Renders each scene with its own seed and with others, and stores picture and numbers.
     // A scene of which a render fails keeps what it had.
     std::vector<SceneOutcome> update();
 

@@ -11,9 +11,6 @@
 
 namespace pm::host {
 
-// Renders of other seeds that a reference is measured by.
-inline constexpr std::size_t kOtherSeeds = 8;
-
 struct RenderedFiles {
     std::filesystem::path exr, png;  // png may be empty
 };

@@ -9,48 +9,53 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 namespace pm::host {
 namespace {
 
 constexpr std::array<const char*, 3> kChannels{"R", "G", "B"};
 
-// Of each region the mean variance of it and those that touch it.
-std::vector<double> smoothed(const RegionGrid& grid, const std::vector<double>& variance) {
-    std::vector<double> result(variance.size());
-    for (std::int32_t row = 0; row < grid.rows(); ++row) {
-        for (std::int32_t column = 0; column < grid.columns(); ++column) {
-            for (std::size_t c = 0; c < 3; ++c) {
-                double sum = 0;
-                int count = 0;
-                for (std::int32_t y = std::max(0, row - 1); y <= std::min(grid.rows() - 1, row + 1);
-                     ++y) {
-                    for (std::int32_t x = std::max(0, column - 1);
-                         x <= std::min(grid.columns() - 1, column + 1); ++x) {
-                        sum += variance[static_cast<std::size_t>(y * grid.columns() + x) * 3 + c];
-                        ++count;
-                    }
-                }
-                result[static_cast<std::size_t>(row * grid.columns() + column) * 3 + c] =
-                    sum / count;
-            }
-        }
-    }
-    return result;
-}
-
 // Floats that were summed in another order may differ by that of the value.
 constexpr double kRounding = 1e-6;
-constexpr double kLeastLimit = 7.0;
+// Of one picture: that chance alone brings any of its regions beyond the limit.
+constexpr double kFalseAlarm = 1e-6;
 constexpr double kBeyondOwn = 1.5;
 
+// The probability that |T| > t, T Student's with so many degrees of freedom; by the finite series
+// of Abramowitz and Stegun 26.7.3 and 26.7.4.
+double tailOfStudent(double t, std::int32_t degrees) {
+    const double theta = std::atan(t / std::sqrt(degrees));
+    const double cosine = std::cos(theta), square = cosine * cosine;
+    const bool isOdd = degrees % 2 != 0;
+    double term = isOdd ? cosine : 1.0, sum = degrees == 1 ? 0.0 : term;
+    for (std::int32_t k = isOdd ? 3 : 2; k <= degrees - 2; k += 2) {
+        term *= square * (k - 1.0) / k;
+        sum += term;
+    }
+    const double part = std::sin(theta) * sum;
+    return 1 - (isOdd ? 2 / std::numbers::pi * (theta + part) : part);
+}
+
+// Beyond which one of `count` numbers as Student's t is found with the probability.
+double limitOfStudent(double probability, std::size_t count, std::int32_t degrees) {
+    const double each = probability / static_cast<double>(count);
+    double low = 0, high = 1;
+    while (high < 1e6 && tailOfStudent(high, degrees) > each) high *= 2;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = (low + high) / 2;
+        (tailOfStudent(middle, degrees) > each ? low : high) = middle;
+    }
+    return high;
+}
+
 // Of a render's mean against that of the others.
-std::vector<double> variancesOf(const RegionGrid& grid, const RegionSpread& spread) {
-    std::vector<double> result = smoothed(grid, spread.variance);
+std::vector<double> variancesOf(const RegionSpread& spread) {
+    std::vector<double> result = spread.variance;
     const double ofMean = 1.0 + 1.0 / spread.renders;
     for (std::size_t i = 0; i < result.size(); ++i) {
         const double rounding = kRounding * spread.mean[i];
-        result[i] = std::max(spread.variance[i], result[i]) * ofMean + rounding * rounding;
+        result[i] = result[i] * ofMean + rounding * rounding;
     }
     return result;
 }
@@ -126,7 +131,8 @@ RegionSpread spreadOf(const PixelRect& window, std::int32_t side,
         throw HostError(ExitCode::kInternal, "a spread is of three renders at least");
     RegionSpread spread;
     spread.side = side;
-    spread.limit = kLeastLimit;
+    spread.limit = limitOfStudent(kFalseAlarm, means.front().size(),
+                                  static_cast<std::int32_t>(means.size()) - 1);
     for (std::size_t one = 0; one < means.size(); ++one) {
         measure(spread, means, one);
         const double z = std::abs(furthestRegion(window, spread, means[one]).z);
@@ -140,7 +146,7 @@ RegionSpread spreadOf(const PixelRect& window, std::int32_t side,
 RegionFinding furthestRegion(const PixelRect& window, const RegionSpread& spread,
                              const std::vector<double>& means, double floor) {
     const RegionGrid grid(window, spread.side);
-    const std::vector<double> variances = variancesOf(grid, spread);
+    const std::vector<double> variances = variancesOf(spread);
     RegionFinding found;
     for (std::size_t i = 0; i < means.size(); ++i) {
         const double mean = spread.mean[i], off = means[i] - mean;
@@ -169,8 +175,8 @@ RegionFinding mostChangedRegion(const PixelRect& window, std::int32_t side,
     return found;
 }
 
-double seenChange(const PixelRect& window, const RegionSpread& spread) {
-    const std::vector<double> variances = variancesOf(RegionGrid(window, spread.side), spread);
+double seenChange(const RegionSpread& spread) {
+    const std::vector<double> variances = variancesOf(spread);
     std::vector<double> changes;
     for (std::size_t i = 0; i < variances.size(); ++i)
         if (spread.mean[i] > 0)

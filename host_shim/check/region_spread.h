@@ -50,9 +50,10 @@ struct RegionSpread {
     double limit{};
 };
 
-// means: of each render, the one that is kept first. The limit is 7, or half as much again as any
-// of the renders is off by from the others where that is more: over 10^5 regions of five scenes
-// with 8 renders the furthest was 6.6. Errors: kInternal for fewer than 3 renders.
+// means: of each render, the one that is kept first. The limit is what chance alone passes in one
+// of 10^6 pictures, by Student's t with the renders less one as degrees of freedom and corrected
+// for the number of regions; or half as much again as any of the renders is off by from the others
+// where that is more. Errors: kInternal for fewer than 3 renders.
 RegionSpread spreadOf(const PixelRect& window, std::int32_t side,
                       const std::vector<std::vector<double>>& means);
 
@@ -63,9 +64,8 @@ struct RegionFinding {
     double relative{};  // of the mean, signed
 };
 
-// The region of a new render with the same settings that is off by most standard errors. A region's
-// variance is taken as no smaller than the mean of those around it: of some renders alone it may
-// come out far too small. floor: what is no difference, in the values' unit.
+// The region of a new render with the same settings that is off by most standard errors. floor:
+// what is no difference, in the values' unit.
 RegionFinding furthestRegion(const PixelRect& window, const RegionSpread& spread,
                              const std::vector<double>& means, double floor = 0);
 
@@ -75,7 +75,7 @@ RegionFinding mostChangedRegion(const PixelRect& window, std::int32_t side,
 
 // The relative change of one region that is beyond the limit, of the regions that are not black the
 // median; 0 when all are.
-double seenChange(const PixelRect& window, const RegionSpread& spread);
+double seenChange(const RegionSpread& spread);
 
 // "region 16,32 to 32,48: G is 2.03 % brighter".
 std::string describe(const RegionFinding& finding);

@@ -102,6 +102,17 @@ ReferenceFiles referenceFiles(const Suite& suite, const SuiteScene& scene) {
     return {file(".exr"), file(".png"), file(".json")};
 }
 
+void checkOptions(const Suite& suite, const SuiteScene& scene) {
+    parsedOptions(suite, scene);
+    if (!scene.hasDisplay) return;
+    try {
+        SceneDisplay(suite, scene);
+    } catch (const HostError& error) {
+        throw HostError(error.code(), fmt::format("{}: scene '{}': {}", suite.file.string(),
+                                                  scene.name, error.what()));
+    }
+}
+
 SceneDisplay::SceneDisplay(const Suite& suite, const SuiteScene& scene) {
     const Options options = parsedOptions(suite, scene);
     m_transform = ColourPipeline(options.colour).displayTransform();

@@ -34,6 +34,10 @@ struct ReferenceFiles {
 };
 ReferenceFiles referenceFiles(const Suite& suite, const SuiteScene& scene);
 
+// Errors: kBadInput naming the scene, for options that pm_host does not take, and for a display
+// picture that can't be had.
+void checkOptions(const Suite& suite, const SuiteScene& scene);
+
 // The display and view that a scene's options ask for, with its exposure. Errors: kBadInput naming
 // the scene, for options that pm_host does not take.
 class SceneDisplay {

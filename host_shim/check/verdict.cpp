@@ -216,7 +216,7 @@ Verdict comparePictures(const Picture& stored, const Picture& picture, const Ref
     if (!verdict.findings.empty()) return verdict;
     compareBits(stored, picture, verdict);
     const PixelRect& window = picture.dataWindow;
-    verdict.seenChange = reference.regions.empty() ? 0 : seenChange(window, reference.regions[0]);
+    verdict.seenChange = reference.regions.empty() ? 0 : seenChange(reference.regions[0]);
     if (verdict.isSameBuild || verdict.hasSameBits) return verdict;
     const Beauty beauty = beautyOf(picture);
     compareRegions(

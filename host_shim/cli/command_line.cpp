@@ -239,6 +239,8 @@ void readCheck(const Typed& typed, CheckOptions& check) {
     check.only = typed.onlyScenes;
     if (!typed.jobs.empty())
         check.jobs = static_cast<int>(integerValue("--jobs", typed.jobs, 1, 1024));
+    if (!typed.seeds.empty())
+        check.seeds = static_cast<int>(integerValue("--seeds", typed.seeds, 4, 64));
     if (!typed.timeBudget.empty())
         check.timeBudgetSeconds = numberValue("--time-budget", typed.timeBudget, 0, 1e9);
     if (!typed.seed.empty())
@@ -246,8 +248,8 @@ void readCheck(const Typed& typed, CheckOptions& check) {
             integerValue("--seed", typed.seed, 0, std::numeric_limits<std::int64_t>::max()));
     if (check.update && check.because.empty())
         throw HostError(ExitCode::kUsage, "--update wants --because TEXT: why references change");
-    if (!check.update && !check.because.empty())
-        throw HostError(ExitCode::kUsage, "--because is of --update");
+    if (!check.update && (!check.because.empty() || !typed.seeds.empty()))
+        throw HostError(ExitCode::kUsage, "--because and --seeds are of --update");
     if (check.update && check.seed)
         throw HostError(ExitCode::kUsage,
                         "--update and --seed: references have seeds of their own");

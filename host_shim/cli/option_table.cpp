@@ -129,6 +129,9 @@ void addRenderOptions(CLI::App& app, Typed& typed, Options& options, const Setti
     addText(app, "--isa", options.isa, "NAME",
             "instruction set, for the same bits on unlike machines: best, sse2, sse4.2, avx, avx2, "
             "avx512 (best)");
+    app.add_flag("--strict", options.strict,
+                 "exit 3 when a sample was NaN, infinite or negative; the picture is written, with "
+                 "black in its place");
 }
 
 void addPieceOptions(CLI::App& app, Typed& typed, Options& options) {
@@ -175,11 +178,13 @@ void addTextureOptions(CLI::App& app, Typed& typed) {
 }
 
 void addReportOptions(CLI::App& app, Typed& typed, Options& options) {
-    app.add_option("--reference", options.reference, "EXR to report relMSE against")
+    app.add_option("--reference", options.reference,
+                   "EXR to report relMSE against, or a display picture, compared in codes of 255")
         ->type_name("FILE")
         ->check(valueFault);
     addText(app, "--error-limit", typed.errorLimit, "X",
-            "exit 6 when the relMSE against --reference is above, or a value is not finite");
+            "exit 6 when the relMSE against --reference (of a display picture the rms code "
+            "difference) is above, or a value is not finite");
     addText(app, "--stats", options.statistics, "FILE", "statistics as JSON; - = standard output");
     app.add_option("--log", options.log, "all messages, also to a file")
         ->type_name("FILE")
@@ -255,6 +260,9 @@ void addAllOfCheck(CLI::App& app, Typed& typed, Options& options) {
             "another seed than the references', for a look at the noise");
     app.add_flag("--update", check.update, "make the references anew; wants --because");
     addText(app, "--because", check.because, "TEXT", "why; kept with the references");
+    addText(app, "--seeds", typed.seeds, "N",
+            "of --update: other seeds that a scene is rendered with to measure its noise, 4 to 64; "
+            "of fewer less is found (16)");
     app.add_option("--junit", check.junit, "the outcome as JUnit's XML")
         ->type_name("FILE")
         ->check(valueFault);

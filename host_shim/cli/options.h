@@ -39,6 +39,7 @@ struct CheckOptions {
     std::filesystem::path suite;
     bool update{};                  // references are made anew
     std::string because;            // why; not empty then
+    int seeds{16};                  // others that a reference is measured by
     std::vector<std::string> only;  // names of scenes; empty: all
     int jobs{1};                    // renders at once
     std::optional<double> timeBudgetSeconds;
@@ -70,6 +71,7 @@ struct Options {
     std::string statistics;  // file, "-" = standard output, empty = none
     std::filesystem::path log;
     std::filesystem::path report;  // a page, empty = none
+    bool strict{};                 // bad samples are an error
     bool explain{};
     std::string list;  // empty, views, looks, spaces, aovs, orders or settings
     bool version{};

@@ -20,6 +20,7 @@ enum class Warning : int {
     kCamera = 1009,         // the camera was changed
     kOutput = 1010,         // something of an output could not be had
     kBlackPicture = 1011,   // surfaces are seen, and no light on them
+    kBadSamples = 1012,     // some are NaN, infinite or negative and count as black
 };
 
 using WarningSink = std::function<void(Warning code, const std::string& text)>;

@@ -25,7 +25,8 @@ struct DisplayDifference {
     std::int32_t x{}, y{};
     int channel{};  // 0 to 2
     // Pixels whose difference an eye sees, by Hector Yee's measure (OpenImageIO's compare_Yee at
-    // 100 cd/m2 and 45 degrees across the picture).
+    // 100 cd/m2 and 45 degrees across the picture; of OpenImageIO 2.4 it is by hue and saturation
+    // alone).
     std::int64_t visiblePixels{};
 };
 

@@ -176,8 +176,8 @@ void FrameRenderer::Impl::renderCell(std::uint32_t pass, const PixelCell& cell, 
         local.counters.pathsCut += s.pathsCut;
         local.throughputStepsCut += static_cast<std::uint64_t>(
             std::clamp(static_cast<double>(s.throughputCut), 0.0, 1e3) / kThroughputStep);
-        if (!PixelSums::accepts(s)) {
-            ++local.counters.badSamples;
+        if (const auto fault = PixelSums::faultOf(s)) {
+            local.counters.badSamples.add({pass, cell.y, cell.x, index, *fault});
             continue;
         }
         const double depth =
@@ -267,7 +267,7 @@ void FrameRenderer::renderRegion(std::uint32_t pass, const Rect& region,
     const std::lock_guard lock(m_impl->mutex);
     m_impl->counters.cameraSamples += local.counters.cameraSamples;
     m_impl->counters.rays += local.counters.rays;
-    m_impl->counters.badSamples += local.counters.badSamples;
+    m_impl->counters.badSamples.add(local.counters.badSamples);
     m_impl->counters.pathsCut += local.counters.pathsCut;
     m_impl->throughputStepsCut += local.throughputStepsCut;
 }
@@ -298,11 +298,12 @@ RenderCounters FrameRenderer::counters() const {
 
 std::vector<Notice> FrameRenderer::takeNotices() {
     const std::lock_guard lock(m_impl->mutex);
-    if (m_impl->counters.badSamples > 0 && !m_impl->badValuesReported) {
+    if (m_impl->counters.badSamples.total() > 0 && !m_impl->badValuesReported) {
         m_impl->badValuesReported = true;
-        m_impl->notices.push_back({NoticeCode::kBadValues,
-                                   "some samples were NaN or infinite and count as black; their "
-                                   "number is in the statistics"});
+        m_impl->notices.push_back(
+            {NoticeCode::kBadValues,
+             "some samples were NaN, infinite or negative and count as black; "
+             "their number and the first are in the statistics"});
     }
     if (m_impl->counters.pathsCut > 0 && !m_impl->cutsReported) {
         m_impl->cutsReported = true;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "integrator/transport/bad_samples.h"
 #include "integrator/transport/channel_layout.h"
 #include "integrator/transport/plan.h"
 #include "integrator/transport/render_settings.h"
@@ -43,8 +44,8 @@ SampleRun fixedSamples(const RenderSettings& settings, std::int32_t x, std::int3
 // What happened while rendering; summed over all passes, independent of thread timing.
 struct RenderCounters {
     std::uint64_t cameraSamples = 0;
-    std::uint64_t rays = 0;        // of any kind, photons' included
-    std::uint64_t badSamples = 0;  // NaN or infinite, replaced by 0
+    std::uint64_t rays = 0;  // of any kind, photons' included
+    BadSamples badSamples;   // replaced by 0
     std::uint64_t photonsEmitted = 0;
     std::uint64_t photonsStoredGlobal = 0;
     std::uint64_t photonsStoredCaustic = 0;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 
 #include "integrator/sampling/sampler.h"
 
@@ -29,11 +30,33 @@ float contributionOf(const SampleRadiance& s) {
     return static_cast<float>(1 + (combineBits(s.firstShape, s.firstMaterial) >> 40));
 }
 
+bool has(SampleFault fault, const Rgb& c) {
+    return std::ranges::any_of(std::array{c.r, c.g, c.b}, [fault](float value) {
+        return fault == SampleFault::kNan ? std::isnan(value) : std::isinf(value);
+    });
+}
+
 }  // namespace
 
-bool PixelSums::accepts(const SampleRadiance& s) {
-    return isFinite(s.emission) && isFinite(s.direct) && isFinite(s.caustic) &&
-           isFinite(s.indirect) && isFinite(s.biasProbe);
+std::optional<FaultySample> PixelSums::faultOf(const SampleRadiance& s) {
+    const Rgb all = s.emission + s.direct + s.caustic + s.indirect;
+    const auto isGood = [](const Rgb& c) { return isFinite(c) && c.r + c.g + c.b >= 0.0f; };
+    if (isGood(s.emission) && isGood(s.direct) && isGood(s.caustic) && isGood(s.indirect) &&
+        isFinite(all) && isFinite(s.biasProbe))
+        return std::nullopt;
+    const std::array<std::pair<const Rgb*, PathClass>, 6> parts{
+        {{&s.emission, PathClass::kEmission},
+         {&s.direct, PathClass::kDirect},
+         {&s.caustic, PathClass::kCaustic},
+         {&s.indirect, PathClass::kIndirect},
+         {&s.biasProbe, PathClass::kIndirect},
+         {&all, PathClass::kEmission}}};
+    for (const auto fault : {SampleFault::kNan, SampleFault::kInfinite})
+        for (const auto& [colour, part] : parts)
+            if (has(fault, *colour)) return FaultySample{fault, part};
+    const auto* negative =
+        std::ranges::find_if_not(parts, [&](const auto& part) { return isGood(*part.first); });
+    return FaultySample{SampleFault::kNegative, negative->second};
 }
 
 bool PixelSums::FirstHit::isUnlike(const FirstHit& other) const {

@@ -4,7 +4,9 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 
+#include "integrator/transport/bad_samples.h"
 #include "integrator/transport/channel_layout.h"
 #include "integrator/transport/direct_light.h"
 
@@ -14,8 +16,10 @@ namespace pm {
 // pixel's floats that come of them.
 class PixelSums {
   public:
-    // Whether the sample may be added: no part of it is NaN or infinite.
-    static bool accepts(const SampleRadiance& sample);
+    // Why the sample may not be added: a part of its radiance or all together is NaN, infinite or
+    // negative. A colour outside of the space's gamut has channels below 0, so R + G + B is looked
+    // at.
+    static std::optional<FaultySample> faultOf(const SampleRadiance& sample);
 
     // depth: of where the sample's path first met something, along the view axis, scene units.
     // isSeen: adaptive renders decide by it, see ChannelLayout::seen.

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "plugin/src/call_error.h"
 #include "plugin/src/identity.h"
@@ -37,7 +38,7 @@ const char* stopText(std::int32_t reason) {
 Json countersJson(const RenderCounters& c) {
     return {{"cameraSamples", c.cameraSamples},
             {"rays", c.rays},
-            {"badSamples", c.badSamples},
+            {"badSamples", c.badSamples.total()},
             {"photonsEmitted", c.photonsEmitted},
             {"photonsStoredGlobal", c.photonsStoredGlobal},
             {"photonsStoredCaustic", c.photonsStoredCaustic},
@@ -48,6 +49,22 @@ Json countersJson(const RenderCounters& c) {
             {"fluxAbsorbedW", c.fluxAbsorbed},
             {"fluxEscapedW", c.fluxEscaped},
             {"fluxLostW", c.fluxLost}};
+}
+
+Json badSamplesJson(const BadSamples& bad) {
+    constexpr std::array<const char*, kSampleFaults> kFaults{"NaN", "infinite", "negative"};
+    constexpr std::array<const char*, 4> kParts{"emission", "direct", "caustic", "indirect"};
+    Json json;
+    for (std::size_t i = 0; i < kSampleFaults; ++i)
+        if (bad.counts[i] > 0) json["counts"][kFaults[i]] = bad.counts[i];
+    const BadSamples::Place& first = *bad.first;
+    json["first"] = {{"x", first.x},
+                     {"y", first.y},
+                     {"pass", first.pass},
+                     {"sample", first.sample},
+                     {"fault", kFaults[static_cast<std::size_t>(first.what.fault)]},
+                     {"part", kParts[static_cast<std::size_t>(first.what.part)]}};
+    return json;
 }
 
 Json bucketJson(const RenderWork& work, const RenderWork::Progress& progress) {
@@ -175,6 +192,7 @@ std::string Render::statisticsJson() const {
         {"mapSeconds", counters.mapSeconds},       {"beginPassSeconds", progress.photonSeconds},
         {"renderSeconds", progress.bucketSeconds}, {"totalSeconds", end.totalSeconds}};
     json["counters"] = countersJson(counters);
+    if (counters.badSamples.total() > 0) json["badSamples"] = badSamplesJson(counters.badSamples);
     json["counters"]["textureFailures"] = m_scene->textureFailures();
     json["counters"]["triangles"] = running->scene().triangleCount();
     json["buckets"] = bucketJson(*running, progress);

@@ -41,7 +41,7 @@ double Seen::countOff(double expected) const {
     const double allowed = kSweepRounding * std::max(expected, 1e-30);
     const auto off = std::ranges::count_if(
         pixels, [&](double pixel) { return !(std::abs(pixel - expected) <= allowed); });
-    return static_cast<double>(off) + static_cast<double>(counters.badSamples);
+    return static_cast<double>(off) + static_cast<double>(counters.badSamples.total());
 }
 
 Seen look(const test::SceneMaker& maker, const Look& how) {

@@ -124,7 +124,7 @@ Sweep brightSample() {
         SampleRadiance sample;
         const auto add = [&](float radiance) {
             sample.indirect = Rgb(radiance);
-            if (PixelSums::accepts(sample)) sums.add(sample, 0, false);
+            if (!PixelSums::faultOf(sample)) sums.add(sample, 0, false);
         };
         const auto samples = static_cast<std::uint32_t>(count);
         for (std::uint32_t i = 0; i < samples; ++i) add(i == samples / 2 ? 1e8f : 1.0f);
@@ -189,7 +189,7 @@ Sweep lostFlux() {
         maker.box({-0.7, -1, -0.5}, {-0.2, 0, 0}, maker.material(test::glass()), false);
         const auto counters =
             look(placed(maker, 1, Vec3d{1, 0.7, -0.4} * by), {.seed = seed}).counters;
-        return static_cast<double>(counters.photonsLost + counters.badSamples);
+        return static_cast<double>(counters.photonsLost + counters.badSamples.total());
     };
     return sweep;
 }

@@ -5,6 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <utility>
 #include <vector>
 
 namespace pm::test {
@@ -65,6 +68,58 @@ TEST(PixelSums, seeEdgesBySamplesThatDecideAlone) {
     SampleRadiance other = hit({0.1f, 0, 0});
     other.firstShape = 4;
     EXPECT_FALSE(showsEdge({hit({0, 0, 0}), other}, false));
+}
+
+std::optional<FaultySample> faultOf(const Rgb& value, PathClass part) {
+    SampleRadiance sample = hit({});
+    sample.of(part) = value;
+    return PixelSums::faultOf(sample);
+}
+
+TEST(SampleFaults, AreNamedByTheirKindAndPart) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    for (const PathClass part :
+         {PathClass::kEmission, PathClass::kDirect, PathClass::kCaustic, PathClass::kIndirect}) {
+        EXPECT_EQ(faultOf(Rgb(0, 1, 1e30f), part), std::nullopt);
+        EXPECT_EQ(faultOf(Rgb(0, std::nanf(""), kInfinity), part),
+                  (FaultySample{SampleFault::kNan, part}));
+        EXPECT_EQ(faultOf(Rgb(0, 0, kInfinity), part),
+                  (FaultySample{SampleFault::kInfinite, part}));
+        EXPECT_EQ(faultOf(Rgb(0, -kInfinity, 0), part),
+                  (FaultySample{SampleFault::kInfinite, part}));
+        EXPECT_EQ(faultOf(Rgb(0.1f, -0.2f, 0), part), (FaultySample{SampleFault::kNegative, part}));
+    }
+}
+
+// Colours outside of the gamut have channels below 0 and are light all the same.
+TEST(SampleFaults, WideColoursAreNone) {
+    EXPECT_EQ(faultOf(Rgb(-0.1f, 0.6f, 0.04f), PathClass::kDirect), std::nullopt);
+}
+
+TEST(SampleFaults, PartsThatOverflowTogetherAreOne) {
+    SampleRadiance sample = hit({});
+    sample.emission = sample.direct = Rgb(3e38f);
+    EXPECT_EQ(PixelSums::faultOf(sample),
+              (FaultySample{SampleFault::kInfinite, PathClass::kEmission}));
+    sample = hit({});
+    sample.biasProbe = Rgb(-1.0f);  // a difference
+    EXPECT_EQ(PixelSums::faultOf(sample), std::nullopt);
+}
+
+TEST(SampleFaults, AreCountedAndTheFirstIsKept) {
+    const FaultySample nan{SampleFault::kNan, PathClass::kDirect};
+    const FaultySample negative{SampleFault::kNegative, PathClass::kCaustic};
+    BadSamples a, b;
+    a.add({1, 5, 3, 0, nan});
+    a.add({0, 9, 3, 2, negative});
+    b.add({0, 9, 2, 7, nan});
+    for (auto [one, other] : {std::pair{a, b}, std::pair{b, a}}) {
+        one.add(other);
+        EXPECT_EQ(one.total(), 3u);
+        EXPECT_EQ(one.counts[0], 2u);
+        EXPECT_EQ(one.counts[2], 1u);
+        EXPECT_EQ(*one.first, (BadSamples::Place{0, 9, 2, 7, nan}));
+    }
 }
 
 }  // namespace

@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// pm_host check on suites of one or two small scenes.
+#include "host_shim/check/reference.h"
+#include "tests/robust/host_process.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+namespace pm::host::test {
+namespace {
+
+void brighten(Picture& picture, const PixelRect& rect, float factor) {
+    for (const char* name : {"R", "G", "B"})
+        for (Channel& channel : picture.channels) {
+            if (channel.name != name) continue;
+            for (std::int32_t y = rect.y0; y < rect.y1; ++y)
+                for (std::int32_t x = rect.x0; x < rect.x1; ++x)
+                    channel.values[static_cast<std::size_t>(y * picture.width + x)] *= factor;
+        }
+}
+
+class Check : public HostProcess {
+  protected:
+    void SetUp() override {
+        HostProcess::SetUp();
+        write("suite.json", suiteOf({"plain"}));
+    }
+    static std::string suiteOf(const std::vector<std::string>& names,
+                               const std::string& more = "\"display\": true") {
+        std::string scenes;
+        for (const std::string& name : names)
+            scenes += fmt::format("{}{{\"name\": \"{}\", \"scene\": \"box.obj\", {}}}",
+                                  scenes.empty() ? "" : ", ", name, more);
+        return fmt::format(
+            "{{\"schema\": \"pm-suite/1\", \"options\": [\"--size\", \"32x32\", \"--passes\", "
+            "\"24\", "
+            "\"--photons\", \"1000\", \"--aa\", \"2\", \"--exposure\", \"-2\"], \"scenes\": [{}]}}",
+            scenes);
+    }
+    Outcome check(std::vector<std::string> more = {}) const {
+        more.insert(more.begin(), {"check", "suite.json"});
+        return run(more);
+    }
+    // Once for all tests: it is 17 renders.
+    void makeReferences() const {
+        static const fs::path& kept = *new fs::path(m_folder.string() + "_references");
+        if (!fs::exists(kept)) {
+            const Outcome made = check({"--update", "--because", "The first.", "--jobs", "2"});
+            ASSERT_EQ(made.exitCode, 0) << made.out << made.err;
+            fs::copy(path("references"), kept);
+            std::atexit([] {
+                std::error_code ignored;
+                fs::remove_all(kept, ignored);
+            });
+        } else {
+            fs::copy(kept, path("references"));
+        }
+    }
+    static void expectHas(const std::string& text, const std::string& part) {
+        EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
+    }
+};
+
+TEST_F(Check, MissingReferencesAreThree) {
+    const Outcome outcome = check();
+    EXPECT_EQ(outcome.exitCode, 3) << outcome.out << outcome.err;
+    expectHas(outcome.out, "plain: NO REFERENCE");
+    expectHas(outcome.out, "references/plain.exr");
+}
+
+TEST_F(Check, UntouchedIsZeroAndTheBrightenedBlockIsNamed) {
+    makeReferences();
+    const Outcome same = check();
+    EXPECT_EQ(same.exitCode, 0) << same.out << same.err;
+    expectHas(same.out, "plain: same bits");
+    // Other seeds, so other bits: still right.
+    for (int seed = 2; seed < 8; ++seed) {
+        const Outcome other = check({"--seed", std::to_string(seed)});
+        EXPECT_EQ(other.exitCode, 0) << seed << other.out << other.err;
+        expectHas(other.out, "plain: within noise");
+    }
+    const fs::path file = path("references") / "plain.exr";
+    Picture picture = readExr(file);
+    brighten(picture, {16, 16, 32, 32}, 1.02f);
+    writeExr(file, picture);
+    const Outcome edited = check();
+    EXPECT_EQ(edited.exitCode, 6);
+    expectHas(edited.out, "plain: DIFFERENT");
+    expectHas(edited.out, "region 16,16 to 32,32");
+    fs::remove(file);
+    EXPECT_EQ(check().exitCode, 3);
+}
+
+// What the scene itself does: a wall that reflects 5 % more.
+TEST_F(Check, AChangeOfTheSceneIsFound) {
+    makeReferences();
+    write("box.mtl", "newmtl light\nKd 0 0 0\nKe 5 5 5\nnewmtl wall\nKd 0.525 0.5 0.5\n");
+    const Outcome changed = check();
+    EXPECT_EQ(changed.exitCode, 6) << changed.out;
+    expectHas(changed.out, "R is ");
+    expectHas(changed.out, "% brighter");
+    expectHas(changed.out, "standard errors (limit");
+}
+
+TEST_F(Check, AnotherViewIsFoundByTheDisplayPictureAlone) {
+    makeReferences();
+    write("suite.json",
+          suiteOf({"plain"}, "\"display\": true, \"options\": [\"--exposure\", \"-1.9\"]"));
+    const Outcome changed = check();
+    EXPECT_EQ(changed.exitCode, 6) << changed.out;
+    expectHas(changed.out, "display transform:");
+    EXPECT_EQ(changed.out.find("region:"), std::string::npos) << changed.out;
+}
+
+TEST_F(Check, ReasonsAreKept) {
+    const Outcome refused = check({"--update"});
+    EXPECT_EQ(refused.exitCode, 2);
+    expectHas(refused.err, "--because");
+    makeReferences();
+    ASSERT_EQ(check({"--update", "--because", "Walls are warmer."}).exitCode, 0);
+    const Reference reference = readReference(path("references") / "plain.json");
+    ASSERT_EQ(reference.reasons.size(), 2u);
+    EXPECT_EQ(reference.reasons[0].because, "The first.");
+    EXPECT_EQ(reference.reasons[1].because, "Walls are warmer.");
+    EXPECT_EQ(reference.regions.size(), 2u);
+    EXPECT_EQ(reference.regions[0].renders, 17);
+}
+
+TEST_F(Check, JUnitAndPages) {
+    makeReferences();
+    write("suite.json", suiteOf({"plain", "absent"}));
+    const Outcome outcome = check({"--junit", "junit.xml", "--html", "pages", "--jobs", "2"});
+    EXPECT_EQ(outcome.exitCode, 3) << outcome.out << outcome.err;
+    const std::string junit = readText(path("junit.xml"));
+    expectHas(junit, "<testsuite name=\"suite\" tests=\"2\" failures=\"1\" errors=\"0\"");
+    expectHas(junit, "<testcase classname=\"suite\" name=\"absent\"");
+    expectHas(junit, "<failure type=\"NO REFERENCE\"");
+    const std::string index = readText(path("pages") / "index.html");
+    expectHas(index, "1 of 2 scenes are right");
+    expectHas(index, "href=\"plain.html\"");
+    expectHas(index, "data:image/png;base64,");
+    const std::string page = readText(path("pages") / "plain.html");
+    expectHas(page, "the stored picture");
+    expectHas(page, "The first.");
+    expectHas(page, "href=\"plain_render.html\"");
+    EXPECT_TRUE(fs::exists(path("pages") / "plain_render.html"));
+}
+
+TEST_F(Check, OnlyAndTheTimeBudget) {
+    write("suite.json", suiteOf({"one", "two"}));
+    const Outcome one = check({"--only", "two"});
+    EXPECT_EQ(one.exitCode, 3);
+    EXPECT_EQ(one.out.find("one:"), std::string::npos) << one.out;
+    const Outcome none = check({"--only", "three"});
+    EXPECT_EQ(none.exitCode, 2);
+    expectHas(none.err, "one, two");
+    const Outcome late = check({"--time-budget", "0"});
+    EXPECT_EQ(late.exitCode, 6);
+    expectHas(late.out, "two: OUT OF TIME");
+}
+
+TEST_F(Check, AFailedRenderIsToldWithWhatItSaid) {
+    makeReferences();
+    fs::remove(path("box.obj"));
+    const Outcome outcome = check();
+    EXPECT_EQ(outcome.exitCode, 6);
+    expectHas(outcome.out, "plain: FAILED");
+    expectHas(outcome.out, "exit code 4");
+    expectHas(outcome.out, "box.obj");
+}
+
+TEST_F(Check, BadSuitesAreRefused) {
+    const auto refused = [&](const std::string& text, const std::string& part) {
+        write("suite.json", text);
+        const Outcome outcome = check();
+        EXPECT_EQ(outcome.exitCode, 3) << text;
+        expectHas(outcome.err, part);
+        expectHas(outcome.err, "suite.json");
+    };
+    refused("{", "no JSON");
+    refused("{\"schema\": \"pm-suite/2\", \"scenes\": []}", "pm-suite/1");
+    refused("{\"schema\": \"pm-suite/1\", \"scenes\": []}", "at least one");
+    refused(suiteOf({"a", "a"}), "twice");
+    refused(suiteOf({"a b"}), "letters, digits");
+    refused(suiteOf({"a"}, "\"colour\": 1"), "no 'colour'; allowed are name, scene");
+    refused(suiteOf({"a"}, "\"options\": [\"-o\", \"x.exr\"]"), "for the check itself");
+    refused(suiteOf({"a"}, "\"display\": true, \"options\": [\"--view\", \"none\"]"), "none");
+    refused(suiteOf({"a"}, "\"options\": [\"--pases\", \"3\"]"), "--pases");
+    EXPECT_EQ(run({"check", "none.json"}).exitCode, 4);
+    EXPECT_EQ(run({"check"}).exitCode, 2);
+}
+
+}  // namespace
+}  // namespace pm::host::test
