@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 
+#include "integrator/scene/close_spheres.h"
 #include "integrator/scene/coincident_faces.h"
 #include "integrator/scene/copied_faces.h"
 #include "integrator/scene/huge_triangles.h"
@@ -44,6 +45,7 @@ class Scene::Builder {
         for (std::uint32_t i = 0; i < m_scene.m_shapes.size(); ++i) findLights(i);
         m_scene.lookAtTextures(m_cancel);
         m_scene.m_coincident = CoincidentFaces::find(m_scene, m_scene.m_notices, m_cancel);
+        lookForCloseSpheres();
         addPointLights(m_scene.m_description, m_scene.m_centre, m_scene.m_lights, m_scene.m_beams);
         m_scene.m_nearLightCount = m_scene.m_lights.size();
         addDirectionalLights(m_scene.m_description, m_scene.m_halfSize, m_scene.m_lights,
@@ -306,6 +308,21 @@ class Scene::Builder {
         }
         m_cancel.throwIfSet("building the scene");
         m_scene.m_tracer.commit(m_cancel);
+    }
+
+    void lookForCloseSpheres() {
+        std::vector<GlassSphere> spheres;
+        for (const ShapeRecord& record : m_scene.m_shapes)
+            if (!record.mesh &&
+                m_scene.material(record.materials[0]).kind == MaterialKind::kDielectric)
+                spheres.push_back({record.sphere.centre, record.sphere.radius});
+        if (const std::size_t count = countCloseSpheres(std::move(spheres)); count > 0)
+            m_scene.m_notices.push_back(
+                {NoticeCode::kDegenerateGeometry,
+                 fmt::format("{} spheres of glass lie in others, closer to their surface than rays "
+                             "can tell: light through both is lost; leave a gap of a millionth of "
+                             "the radius",
+                             count)});
     }
 
     bool findSheets() const {

@@ -3,6 +3,7 @@
 // The sweeps of docs/stability.md at three values each: both ends and the middle.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cctype>
 #include <cmath>
 #include <filesystem>
@@ -10,8 +11,10 @@
 #include <iterator>
 #include <string>
 
+#include "integrator/scene/scene.h"
 #include "tests/bench/sweep.h"
 #include "tests/bench/sweep_page.h"
+#include "tests/integrator/rooms.h"
 
 namespace pm::bench {
 
@@ -52,6 +55,34 @@ INSTANTIATE_TEST_SUITE_P(Sweeps, Stability, ::testing::ValuesIn(shortSweeps()),
                                  if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
                              return name;
                          });
+
+// Beyond the limit of what rays tell apart a scene is warned of, and not before.
+bool isWarnedOf(const test::SceneMaker& maker) {
+    return std::ranges::any_of(maker.build()->notices(), [](const Notice& notice) {
+        return notice.code == NoticeCode::kDegenerateGeometry;
+    });
+}
+
+TEST(StabilityLimit, GlassCloserThanRaysCanTellIsWarnedOf) {
+    const auto spheres = [](double gap) {
+        test::SceneMaker maker;
+        maker.sphere({}, 1, maker.material(test::glass()));
+        maker.sphere({}, 1 - gap, maker.material(test::glass(1 / 1.5f)));
+        return maker;
+    };
+    const auto blocks = [](double gap) {
+        test::SceneMaker maker;
+        maker.box(Vec3d(-0.5), Vec3d(0.5), maker.material(test::glass(1 / 1.5f)), false);
+        maker.box(Vec3d(-0.5 + gap), Vec3d(0.5 - gap), maker.material(test::glass(1.33f)), false);
+        return maker;
+    };
+    EXPECT_TRUE(isWarnedOf(spheres(1e-7)));
+    EXPECT_TRUE(isWarnedOf(blocks(1e-7)));
+    for (const double gap : {0.1, 1e-3, 1e-5, 1e-6}) {
+        EXPECT_FALSE(isWarnedOf(spheres(gap))) << gap;
+        EXPECT_FALSE(isWarnedOf(blocks(gap))) << gap;
+    }
+}
 
 // The harness itself: what drifts is found, noise alone is not.
 TEST(SweepHarness, FindsADrift) {

@@ -19,6 +19,8 @@ struct Sweep {
     std::string parameter{};  // of the plot's axis
     std::vector<double> values{};
     std::string against{};  // what it is held against, in words
+    // Users of other renderers met it: repository and number of the issue.
+    std::string reported{};
 
     // What one render shows, or a number of faults; renders of unlike seeds are independent.
     using Number = std::function<double(double value, std::uint64_t seed)>;

@@ -78,6 +78,7 @@ Sweep indices(IntegratorKind integrator) {
     sweep.values = decades(-6, -1);
     for (const double more : {0.5, 1.0, 2.0, 3.0}) sweep.values.push_back(more);
     sweep.against = "invisible: 1";
+    sweep.reported = "yocto-gl#452, ChameleonRT#3";
     sweep.measure = [=](double more, std::uint64_t seed) {
         test::SceneMaker maker;
         maker.box({-2, -2, -2}, {2, 2, 2}, maker.diffuse({}, Rgb(1.0f)), true);
@@ -104,6 +105,28 @@ Sweep slabIndices(IntegratorKind integrator) {
     sweep.expected = [](double more, std::uint64_t) {
         const auto n = static_cast<double>(static_cast<float>(1 + more));
         return 2 * n / (n * n + 1);
+    };
+    return sweep;
+}
+
+// A lamp within a block of glass, seen from straight above: its radiance is spread over the wider
+// cone outside.
+Sweep lampsInGlass(IntegratorKind integrator) {
+    Sweep sweep{.kind = "glass", .name = "index, lamp in a block", .variant = nameOf(integrator)};
+    sweep.parameter = "index - 1";
+    sweep.values = {1e-6, 1e-4, 1e-2, 0.1, 0.33, 0.5, 1, 2, 3};
+    sweep.against = "what the surface lets through, over the square of the index";
+    sweep.measure = [=](double more, std::uint64_t seed) {
+        test::SceneMaker maker;
+        maker.box({-4, -4, -1}, {4, 4, 1},
+                  maker.material(test::glass(static_cast<float>(1 + more))), false);
+        maker.quad({-3, -3, 0}, {6, 0, 0}, {0, 6, 0}, maker.diffuse({}, Rgb(1.0f)));
+        maker.camera({0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 0.01);
+        return look(maker, {integrator, seed, 16, manyPasses(integrator)}).beauty;
+    };
+    sweep.expected = [](double more, std::uint64_t) {
+        const auto n = static_cast<double>(static_cast<float>(1 + more));
+        return (1 - fresnel(n, 1)) / (n * n);
     };
     return sweep;
 }
@@ -195,7 +218,7 @@ Sweep waterInGlass(IntegratorKind integrator, bool isBox, bool overlaps) {
 
 std::vector<Sweep> glassSweeps() {
     std::vector<Sweep> sweeps;
-    for (const auto& make : {grazing, critical, indices, slabIndices, chains})
+    for (const auto& make : {grazing, critical, indices, slabIndices, lampsInGlass, chains})
         for (const IntegratorKind integrator : kBoth) sweeps.push_back(make(integrator));
     sweeps.push_back(photonChains());
     for (const bool overlaps : {false, true})

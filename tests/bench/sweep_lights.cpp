@@ -43,6 +43,7 @@ Sweep sizes(IntegratorKind integrator) {
     sweep.parameter = "lamp's side over its height";
     sweep.values = decades(-6, 3);
     sweep.against = "Lambert's formula";
+    sweep.reported = "pbrt-v4#211";
     const auto radiance = [](double side) { return 1 / (kPi * side * side); };
     sweep.measure = [=](double side, std::uint64_t seed) {
         test::SceneMaker maker = floorSeenAtTheOrigin();
@@ -105,6 +106,7 @@ Sweep edges(IntegratorKind integrator) {
     sweep.limit = "corners are floats about the scene's centre, and their rounding turns the lamp.";
     sweep.values = decades(-1, -7);
     sweep.against = "Lambert's formula";
+    sweep.reported = "pbrt-v4#134";
     sweep.measure = [=](double angle, std::uint64_t seed) {
         test::SceneMaker maker = floorSeenAtTheOrigin();
         // So narrow that the floor's points see it at the same angle.

@@ -94,6 +94,7 @@ Sweep albedos(IntegratorKind integrator) {
     sweep.parameter = "1 less the albedo";
     sweep.values = {0.5, 0.1, 0.01, 1e-3, 1e-4};
     sweep.against = "all walls shine 1 less the albedo: 1";
+    sweep.reported = "yocto-gl#1235";
     sweep.isLong = true;
     sweep.measure = [=](double lost, std::uint64_t seed) {
         test::SceneMaker maker;
@@ -141,6 +142,7 @@ Sweep bentNormals() {
     sweep.parameter = "shading to geometric normal, degrees";
     sweep.values = {1, 10, 30, 50, 70, 80, 85, 89};
     sweep.against = "path tracing";
+    sweep.reported = "pbrt-v3#78, mitsuba3#444";
     const auto room = [](double degrees) {
         test::SceneMaker maker;
         const double angle = degrees * std::numbers::pi / 180;
@@ -160,6 +162,38 @@ Sweep bentNormals() {
     return sweep;
 }
 
+// A ball of so few rings with smooth normals in sunlight from the side: rows of pixels where it
+// grows brighter away from the light.
+double brightenings(double rings, std::uint64_t seed) {
+    test::SceneMaker maker;
+    maker.meshSphere({}, 1, maker.diffuse(Rgb(0.8f)), false, static_cast<int>(rings));
+    maker.sun({-1, 0, 0}, Rgb(3.0f), 0);
+    maker.camera({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 20);
+    constexpr std::int32_t kSize = 48;
+    const Seen seen = look(maker, {IntegratorKind::kPath, seed, kSize, 16});
+    double rows = 0;
+    for (std::int32_t y = kSize / 3; y < 2 * kSize / 3; ++y) {
+        const double* row = seen.pixels.data() + static_cast<std::ptrdiff_t>(y) * kSize;
+        bool grows = false;
+        // From where the light is at right angles to the view on; 0.02 is pixels' noise.
+        for (std::int32_t x = kSize / 3; x + 1 < 2 * kSize / 3; ++x)
+            grows = grows || row[x] > row[x + 1] + 0.02;
+        rows += grows ? 1 : 0;
+    }
+    return rows;
+}
+
+Sweep terminator() {
+    Sweep sweep{.kind = "lobes", .name = "coarse ball with smooth normals", .variant = "path"};
+    sweep.parameter = "rings of quads";
+    sweep.values = {4, 8, 16, 32, 64};
+    sweep.against = "no row of pixels that grows brighter away from the sun";
+    sweep.reported = "mitsuba3#885, appleseed#2736, ospray#75";
+    sweep.isCount = true;
+    sweep.measure = brightenings;
+    return sweep;
+}
+
 }  // namespace
 
 std::vector<Sweep> lobeSweeps() {
@@ -174,6 +208,7 @@ std::vector<Sweep> lobeSweeps() {
         for (const float reflectance : {0.999f, 1.0f})
             sweeps.push_back(tubes(integrator, reflectance));
     sweeps.push_back(bentNormals());
+    sweeps.push_back(terminator());
     return sweeps;
 }
 

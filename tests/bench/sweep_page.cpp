@@ -70,8 +70,10 @@ LogPlot plotOf(std::span<const SweepResult> results) {
         plot.lines.push_back(std::move(error));
         if (!first.isCount) plot.lines.push_back(std::move(noise));
     }
-    plot.level = kSweepRounding;
-    plot.levelName = "rounding";
+    if (!first.isCount) {
+        plot.level = kSweepRounding;
+        plot.levelName = "rounding";
+    }
     return plot;
 }
 
@@ -92,8 +94,10 @@ std::string rowOf(const SweepResult& result, double limit) {
     const auto largest = std::ranges::max(result.points, {}, [&](const SweepPoint& p) {
         return result.sweep.hasToBeFlatAt(p.value) ? std::abs(p.error) : -1;
     });
-    return fmt::format("| {} {} | {} | {} | {:.2g} at {:.3g} | {:.2g} | {:.1f} | {} |\n",
-                       result.sweep.name, result.sweep.variant, result.sweep.against,
+    const std::string reported =
+        result.sweep.reported.empty() ? "" : " (" + result.sweep.reported + ")";
+    return fmt::format("| {} {} | {}{} | {} | {:.2g} at {:.3g} | {:.2g} | {:.1f} | {} |\n",
+                       result.sweep.name, result.sweep.variant, result.sweep.against, reported,
                        rangeOf(result), std::abs(largest.error), largest.value,
                        largest.standardError, worst.z,
                        result.isFlat(limit) ? "flat" : "**not flat**");
@@ -131,7 +135,8 @@ constexpr const char* kIntroduction =
     "no\n"
     "numbers, flux lost) count them; there are to be none. Where an error is drawn at 1e-9 there "
     "is\n"
-    "none. All points are in [lab/{}.csv](lab/{}.csv).\n";
+    "none. In parentheses: issues in which users of other renderers met the case. All points are "
+    "in [lab/{}.csv](lab/{}.csv).\n";
 
 }  // namespace
 

@@ -51,6 +51,7 @@ Sweep nearest(int dimensions) {
     sweep.parameter = "photons";
     sweep.values = {0, 1, 2, 49, 50, 51, 1e3, 1e5};
     sweep.against = "found more or fewer than there are";
+    sweep.reported = "cgal#3077, ponca#148";
     sweep.isCount = true;
     sweep.measure = [=](double count, std::uint64_t seed) {
         const PhotonMap map = mapOf(count, dimensions, seed);

@@ -29,6 +29,7 @@ Sweep moved(IntegratorKind integrator) {
     sweep.parameter = "moved by, room widths / 2";
     sweep.values = decades(0, 8);
     sweep.against = "a closed room with a lamp and glass, at the origin";
+    sweep.reported = "pbrt-v3#265";
     sweep.measure = [=](double by, std::uint64_t seed) {
         return look(placed(closedRoom(), 1, Vec3d{1, 0.7, -0.4} * by), {integrator, seed}).beauty;
     };
@@ -41,6 +42,7 @@ Sweep scaled(IntegratorKind integrator) {
     sweep.parameter = "scale";
     sweep.values = decades(-6, 6);
     sweep.against = "the same room at scale 1";
+    sweep.reported = "mitsuba3#1236, appleseed#2718";
     sweep.measure = [=](double by, std::uint64_t seed) {
         return look(placed(closedRoom(), by, {}), {integrator, seed}).beauty;
     };
@@ -117,6 +119,7 @@ Sweep farCameraSeesADisc(bool isSphere) {
     sweep.parameter = "camera's distance, radii";
     sweep.values = {1.1, 10, 1e2, 1e3, 1e4, 1e5, 1e6};
     sweep.against = isSphere ? "share of the frame that a ball covers" : "the same from 100 radii";
+    sweep.reported = "mitsuba3#512, pytracer#22";
     sweep.measure = [=](double distance, std::uint64_t seed) {
         test::SceneMaker maker;
         const auto shining = maker.diffuse({}, Rgb(1.0f));

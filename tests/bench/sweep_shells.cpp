@@ -50,6 +50,7 @@ Sweep outside(IntegratorKind integrator) {
     sweep.parameter = "thickness of a box's walls, half widths";
     sweep.values = kThin;
     sweep.against = "the same with walls of 0.5";
+    sweep.reported = "mitsuba#145";
     sweep.measure = [=](double thickness, std::uint64_t seed) {
         test::SceneMaker maker = boxInARoom(thickness);
         maker.camera({2.5, 1.8, 3}, {0, 0.1, 0}, {0, 1, 0}, 50);
@@ -187,6 +188,7 @@ Sweep pinholeSweep(const std::string& of, const std::string& parameter, bool toV
     Sweep sweep{.kind = "shells", .name = "pinholes, " + of, .parameter = parameter};
     sweep.variant = toVertices ? "vertices" : "edges";
     sweep.against = "no ray of 20,000 that meets nothing";
+    sweep.reported = "embree#174";
     sweep.isCount = true;
     return sweep;
 }
@@ -226,12 +228,50 @@ std::vector<Sweep> pinholeSweeps(bool toVertices) {
     return {fine, needles, huge};
 }
 
+// A shining sliver, seen from so little above its plane: light beside the strip that it covers.
+double streaks(double angle, std::uint64_t seed) {
+    test::SceneMaker maker;
+    const auto lamp = maker.diffuse({}, Rgb(1.0f));
+    maker.polygon({{0, 0, 0}, {11.2, 0, 0}, {9.7, 0, 1.4}}, lamp);
+    maker.polygon({{0, 0, 0}, {9.7, 0, 1.4}, {11.2, 0, 0}}, lamp);
+    const double distance = 40;
+    maker.camera({7, distance * std::sin(angle), distance * std::cos(angle)}, {7, 0, 0.5},
+                 {0, 1, 0}, 20);
+    constexpr std::int32_t kSize = 64;
+    const Seen seen = look(maker, {IntegratorKind::kPath, seed, kSize});
+    // Of the height of the frame, and a pixel.
+    const double half = 1.4 * std::sin(angle) / (distance * std::tan(kPi / 18)) * kSize / 2 + 1.5;
+    double off = 0;
+    for (std::int32_t y = 0; y < kSize; ++y)
+        for (std::int32_t x = 0; x < kSize; ++x)
+            off += std::abs(y + 0.5 - kSize / 2) > half &&
+                           seen.pixels[static_cast<std::size_t>(y * kSize + x)] > 0
+                       ? 1
+                       : 0;
+    return off;
+}
+
+Sweep slivers() {
+    Sweep sweep{.kind = "shells", .name = "a sliver at a grazing angle", .variant = "path"};
+    sweep.parameter = "angle to its plane, radians";
+    sweep.values = decades(-1, -7);
+    sweep.values.push_back(1e-8);
+    sweep.against = "no light beside it";
+    sweep.reported = "embree#387";
+    sweep.isCount = true;
+    sweep.measure = [](double angle, std::uint64_t seed) {
+        return streaks(angle > 1e-8 ? angle : 0, seed);
+    };
+    return sweep;
+}
+
 // What stands on a ground so large, in sunlight.
 Sweep hugeGround(IntegratorKind integrator) {
     Sweep sweep{.kind = "shells", .name = "a huge ground", .variant = nameOf(integrator)};
     sweep.parameter = "its side, sizes of what stands on it";
     sweep.values = decades(3, 9);
     sweep.against = "the same on a ground of side 1000";
+    sweep.reported = "embree#416, mitsuba2#171";
     sweep.measure = [=](double side, std::uint64_t seed) {
         test::SceneMaker maker;
         const auto grey = maker.diffuse(Rgb(0.5f));
@@ -255,6 +295,7 @@ std::vector<Sweep> shellSweeps() {
     for (const IntegratorKind integrator : kBoth)
         for (const int shells : {1, 5}) sweeps.push_back(glassShells(integrator, shells));
     sweeps.push_back(shellSpecks());
+    sweeps.push_back(slivers());
     std::vector<Sweep> edges = pinholeSweeps(false), vertices = pinholeSweeps(true);
     for (std::size_t i = 0; i < edges.size(); ++i) {
         sweeps.push_back(std::move(edges[i]));

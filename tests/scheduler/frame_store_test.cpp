@@ -194,6 +194,40 @@ TEST(FrameStore, negativeStridesAndPixelsOutside) {
     EXPECT_EQ(frame.standardError(0, 9), std::nullopt);
 }
 
+// Pixels of a pass have an error in common here: means over many of them have that error still,
+// which standard errors taken as independent don't know, and differences of halves do.
+TEST(FrameStore, HalfDifferencesKeepWhatPixelsHaveInCommon) {
+    constexpr std::int32_t kPixels = 500;
+    constexpr double kCommon = 0.2, kOwn = 0.5;
+    std::mt19937 random(11);
+    double squares = 0;
+    constexpr int kFrames = 400;
+    for (int i = 0; i < kFrames; ++i) {
+        FrameStore frame({0, 0, kPixels, 1}, 3, 0);
+        const std::vector<float> weights(kPixels, 1.0f);
+        for (std::uint32_t pass = 0; pass < 7; ++pass) {  // four even ones and three odd
+            const double common = std::normal_distribution<double>(1, kCommon)(random);
+            std::normal_distribution<double> own(common, kOwn);
+            std::vector<float> pixels(3 * kPixels);
+            for (float& p : pixels) p = static_cast<float>(own(random));
+            frame.addPass(pass, frame.window(), pixels, weights);
+        }
+        std::vector<float> halves(3 * kPixels);
+        frame.readHalfDifference(frame.window(), halves.data(), 3 * sizeof(float), 0);
+        double mean = 0;
+        for (std::size_t x = 0; x < kPixels; ++x) mean += static_cast<double>(halves[3 * x]);
+        squares += mean / kPixels * mean / kPixels;
+    }
+    const double expected = (kCommon * kCommon + kOwn * kOwn / kPixels) / 7;
+    // Four standard errors of a variance of so many.
+    EXPECT_NEAR(squares / kFrames, expected, 4 * std::sqrt(2.0 / kFrames) * expected);
+    FrameStore one({0, 0, 1, 1}, 3, 0);
+    one.addPass(0, one.window(), std::vector<float>(3, 1.0f), std::vector<float>(1, 1.0f));
+    float values[3] = {9, 9, 9};
+    one.readHalfDifference(one.window(), values, 0, 0);
+    EXPECT_EQ(values[0], 0.0f);
+}
+
 TEST(FrameStore, partsOfThePassMakeTheWhole) {
     const auto passes = randomPasses(4, 0.0f);
     const FrameStore whole = filledStore(passes);
