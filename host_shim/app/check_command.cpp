@@ -3,12 +3,12 @@
 #include "host_shim/app/check_command.h"
 
 #include "host_shim/app/outputs.h"
-#include "host_shim/app/plain_text.h"
 #include "host_shim/check/check_page.h"
 #include "host_shim/check/check_run.h"
 #include "host_shim/check/junit.h"
 #include "host_shim/ingest/warnings.h"
 #include "host_shim/pictures/finished_file.h"
+#include "host_shim/process/plain_text.h"
 
 #include <fmt/format.h>
 

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/log.h"
 
-#include "host_shim/app/plain_text.h"
 #include "host_shim/pictures/host_error.h"
+#include "host_shim/process/plain_text.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/material_builder.h"
 
-#include "host_shim/app/interrupt.h"
+#include "host_shim/process/interrupt.h"
 
 #include <fmt/format.h>
 

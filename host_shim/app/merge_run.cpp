@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/merge_run.h"
 
-#include "host_shim/app/interrupt.h"
 #include "host_shim/pictures/host_error.h"
+#include "host_shim/process/interrupt.h"
 
 #include <fmt/format.h>
 

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/pilot.h"
 
-#include "host_shim/app/interrupt.h"
 #include "host_shim/app/picture_assembly.h"
 #include "host_shim/app/render_run.h"
 #include "host_shim/colour/exposure.h"
+#include "host_shim/process/interrupt.h"
 
 #include <algorithm>
 #include <cmath>

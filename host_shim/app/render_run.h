@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/app/bucket_times.h"
 #include "host_shim/app/log.h"
 #include "host_shim/app/picture_source.h"
 #include "host_shim/app/progress.h"
 #include "host_shim/app/scene_builder.h"
 #include "host_shim/cli/options.h"
+#include "host_shim/report/bucket_times.h"
 
 #include <exception>
 #include <string>

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/report.h"
 
-#include "host_shim/app/report_charts.h"
-#include "host_shim/app/report_command.h"
-#include "host_shim/app/report_html.h"
+#include "host_shim/report/report_charts.h"
+#include "host_shim/report/report_command.h"
+#include "host_shim/report/report_html.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/app/bucket_times.h"
 #include "host_shim/app/picture_source.h"
-#include "host_shim/app/report_pictures.h"
 #include "host_shim/colour/display_transform.h"
 #include "host_shim/pictures/picture.h"
+#include "host_shim/report/bucket_times.h"
+#include "host_shim/report/report_pictures.h"
 
 #include <array>
 #include <string>

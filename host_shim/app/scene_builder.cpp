@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/scene_builder.h"
 
-#include "host_shim/app/interrupt.h"
 #include "host_shim/app/scene_memory.h"
+#include "host_shim/process/interrupt.h"
 
 #include <fmt/format.h>
 

@@ -3,11 +3,9 @@
 #include "host_shim/app/session.h"
 
 #include "host_shim/app/guarded.h"
-#include "host_shim/app/interrupt.h"
 #include "host_shim/app/material_rules.h"
 #include "host_shim/app/outputs.h"
 #include "host_shim/app/picture_assembly.h"
-#include "host_shim/app/plain_text.h"
 #include "host_shim/app/scene_builder.h"
 #include "host_shim/app/scene_memory.h"
 #include "host_shim/app/session_files.h"
@@ -18,6 +16,8 @@
 #include "host_shim/pictures/compare.h"
 #include "host_shim/pictures/display_compare.h"
 #include "host_shim/pictures/picture_io.h"
+#include "host_shim/process/interrupt.h"
+#include "host_shim/process/plain_text.h"
 
 #include <fmt/format.h>
 

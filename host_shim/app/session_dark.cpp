@@ -3,10 +3,10 @@
 // A Session that made a black picture: why, and what helps.
 #include "host_shim/app/session.h"
 
-#include "host_shim/app/interrupt.h"
 #include "host_shim/app/picture_assembly.h"
 #include "host_shim/ingest/obj_reader.h"
 #include "host_shim/ingest/room_view.h"
+#include "host_shim/process/interrupt.h"
 
 #include <fmt/format.h>
 

@@ -4,11 +4,11 @@
 // see by, and exposure.
 #include "host_shim/app/session.h"
 
-#include "host_shim/app/interrupt.h"
 #include "host_shim/app/pilot.h"
 #include "host_shim/cli/option_values.h"
 #include "host_shim/ingest/outside_view.h"
 #include "host_shim/ingest/room_view.h"
+#include "host_shim/process/interrupt.h"
 
 #include <fmt/format.h>
 

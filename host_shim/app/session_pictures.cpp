@@ -3,14 +3,14 @@
 // A Session whose render has ended: its pictures are written and compared.
 #include "host_shim/app/session.h"
 
-#include "host_shim/app/interrupt.h"
 #include "host_shim/app/outputs.h"
 #include "host_shim/app/picture_assembly.h"
-#include "host_shim/app/report_command.h"
 #include "host_shim/colour/display_picture.h"
 #include "host_shim/pictures/compare.h"
 #include "host_shim/pictures/display_compare.h"
 #include "host_shim/pictures/picture_io.h"
+#include "host_shim/process/interrupt.h"
+#include "host_shim/report/report_command.h"
 
 #include <fmt/format.h>
 

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/statistics.h"
 
-#include "host_shim/app/plain_text.h"
+#include "host_shim/process/plain_text.h"
 
 #include <fmt/format.h>
 #include <unistd.h>

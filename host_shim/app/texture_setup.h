@@ -3,8 +3,8 @@
 #pragma once
 
 #include "host_shim/app/log.h"
-#include "host_shim/app/temporary_folder.h"
 #include "host_shim/cli/options.h"
+#include "host_shim/process/temporary_folder.h"
 #include "host_shim/textures/texture_preparation.h"
 
 #include <memory>

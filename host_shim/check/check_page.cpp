@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/check/check_page.h"
 
-#include "host_shim/app/report_html.h"
-#include "host_shim/app/report_pictures.h"
 #include "host_shim/pictures/finished_file.h"
+#include "host_shim/report/report_html.h"
+#include "host_shim/report/report_pictures.h"
 
 #include <fmt/format.h>
 

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/check/check_run.h"
 
-#include "host_shim/app/report_command.h"
 #include "host_shim/check/reference_making.h"
 #include "host_shim/pictures/host_error.h"
+#include "host_shim/report/report_command.h"
 
 #include <fmt/format.h>
 

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/app/temporary_folder.h"
-#include "host_shim/check/child_process.h"
 #include "host_shim/check/scene_check.h"
 #include "host_shim/cli/options.h"
+#include "host_shim/process/child_process.h"
+#include "host_shim/process/temporary_folder.h"
 
 #include <functional>
 #include <vector>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/check/junit.h"
 
-#include "host_shim/app/report_html.h"
+#include "host_shim/report/report_html.h"
 
 #include <fmt/format.h>
 

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <charconv>
 #include <fstream>
 
 namespace pm::host {
@@ -19,7 +20,12 @@ constexpr const char* kSchema = "pm-reference/1";
 // So many digits as tell a float from its neighbours.
 json numbers(const std::vector<double>& values) {
     json list = json::array();
-    for (const double value : values) list.push_back(std::stod(fmt::format("{:.9g}", value)));
+    for (const double value : values) {
+        const std::string text = fmt::format("{:.9g}", value);
+        double kept = 0;
+        std::from_chars(text.data(), text.data() + text.size(), kept);
+        list.push_back(kept);
+    }
     return list;
 }
 

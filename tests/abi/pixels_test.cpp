@@ -16,7 +16,8 @@ constexpr PmrRectangle kWhole = {0, 0, kWidth, kHeight};
 
 class Pixels : public ::testing::Test {
   protected:
-    Pixels() : m_render(m_host.makeRender({{"layers", "albedo,N,Z,stderr,samples,aalevel"}})) {}
+    Pixels()
+        : m_render(m_host.makeRender({{"layers", "albedo,N,Z,stderr,halfdiff,samples,aalevel"}})) {}
     ~Pixels() override { EXPECT_EQ(PMR_OK, api().destroyRender(m_render)); }
     void finish() {
         ASSERT_EQ(PMR_OK, api().startRender(m_render));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Names come from files and may hold anything: none of it reaches what a terminal or a page obeys.
-#include "host_shim/app/plain_text.h"
+#include "host_shim/process/plain_text.h"
 #include "tests/robust/host_process.h"
 
 #include <nlohmann/json.hpp>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/app/plain_text.h"
+#include "host_shim/process/plain_text.h"
 
 #include <fmt/format.h>
 

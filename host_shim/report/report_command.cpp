@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/app/report_command.h"
+#include "host_shim/report/report_command.h"
 
 #include <algorithm>
 #include <set>

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/app/report_charts.h"
+#include "host_shim/report/report_charts.h"
 
-#include "host_shim/app/report_html.h"
+#include "host_shim/report/report_html.h"
 
 #include <fmt/format.h>
 

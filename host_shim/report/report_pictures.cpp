@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/app/report_pictures.h"
+#include "host_shim/report/report_pictures.h"
 
-#include "host_shim/app/report_html.h"
 #include "host_shim/pictures/picture_io.h"
+#include "host_shim/report/report_html.h"
 
 #include <fmt/format.h>
 

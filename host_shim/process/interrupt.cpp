@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/app/interrupt.h"
+#include "host_shim/process/interrupt.h"
 
 #include <signal.h>
 #include <time.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/app/bucket_times.h"
+#include "host_shim/report/bucket_times.h"
 
 #include <algorithm>
 

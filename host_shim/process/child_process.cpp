@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/check/child_process.h"
+#include "host_shim/process/child_process.h"
 
-#include "host_shim/app/interrupt.h"
 #include "host_shim/pictures/host_error.h"
+#include "host_shim/process/interrupt.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/app/temporary_folder.h"
+#include "host_shim/process/temporary_folder.h"
 
 #include "host_shim/pictures/host_error.h"
 

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/app/bucket_times.h"
-#include "host_shim/app/report_pictures.h"
 #include "host_shim/pictures/picture.h"
+#include "host_shim/report/bucket_times.h"
+#include "host_shim/report/report_pictures.h"
 
 #include <optional>
 #include <string>
