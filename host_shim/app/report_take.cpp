@@ -90,17 +90,8 @@ void Report::takeReference(const Picture& picture, const Picture& reference,
                            const DisplayTransform& display) {
     const Picture same = cropped(reference, m_window);
     m_reference = embedded(makeDisplayPicture(same, display).picture, kPictureBytes);
-    Plane plane{m_window.width(), m_window.height(), {}};
-    plane.values.resize(static_cast<std::size_t>(m_window.area()));
-    const auto wanted = beauty(same), got = beauty(picture);
-    for (std::size_t i = 0; i < plane.values.size(); ++i) {
-        double sum = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double r = wanted[c][i], x = got[c][i];
-            sum += relative(x - r, r);
-        }
-        plane.values[i] = static_cast<float>(std::sqrt(sum / 3));
-    }
+    const Plane plane =
+        relativeDifference(m_window.width(), m_window.height(), beauty(same), beauty(picture));
     m_mostDifference = quantile(plane, kShareOfScale);
     m_difference = embedded(heatMap(plane, 0, m_mostDifference), kDifferenceBytes);
 }

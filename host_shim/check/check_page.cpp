@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
+#include <array>
 
 namespace pm::host {
 namespace {
@@ -21,19 +21,13 @@ constexpr std::size_t kThumbnailBytes = 30'000;
 constexpr int kThumbnailWidth = 160;
 constexpr double kShareOfScale = 0.99;  // above all is shown alike
 
-// Relative, with the guard of relMSE; channels taken together.
 Plane differenceOf(const Picture& stored, const Picture& picture) {
     const Beauty a = beautyOf(stored), b = beautyOf(picture);
-    Plane plane{a.window.width(), a.window.height(), {}};
-    for (std::size_t i = 0; i < a.values[0].size(); ++i) {
-        double sum = 0;
-        for (std::size_t c = 0; c < 3; ++c) {
-            const double r = a.values[c][i], x = b.values[c][i];
-            sum += (x - r) * (x - r) / (r * r + 0.01);
-        }
-        plane.values.push_back(static_cast<float>(std::sqrt(sum / 3)));
-    }
-    return plane;
+    const auto planes = [](const Beauty& beauty) {
+        return std::array{beauty.values[0].data(), beauty.values[1].data(),
+                          beauty.values[2].data()};
+    };
+    return relativeDifference(a.window.width(), a.window.height(), planes(a), planes(b));
 }
 
 bool haveOneShape(const SceneOutcome& outcome) {
@@ -113,13 +107,12 @@ void CheckPages::add(const SceneOutcome& outcome) {
     std::string body = "<p>" + link("../index.html", "All scenes") + "</p>\n" +
                        fmt::format("<h1>{}</h1>\n", escaped(scene.name)) + statusHtml(outcome) +
                        section("findings", "Findings", findingsHtml(outcome));
-    if (outcome.picture && hasDisplay(m_suite, scene)) {
-        const SceneDisplay display(m_suite, scene);
-        const DisplayPicture shown = display.shown(*outcome.picture);
+    if (const auto display = outcome.picture ? findDisplay(m_suite, scene) : std::nullopt) {
+        const DisplayPicture shown = display->shown(*outcome.picture);
         small = embedded(shown, kThumbnailBytes);
         body +=
             picturesHtml(outcome, embedded(shown, kPictureBytes),
-                         outcome.stored ? embedded(display.shown(*outcome.stored), kPictureBytes)
+                         outcome.stored ? embedded(display->shown(*outcome.stored), kPictureBytes)
                                         : EmbeddedPicture{});
     }
     if (!outcome.because.empty())

@@ -73,19 +73,15 @@ CheckRun::Render CheckRun::addRender(std::size_t index, std::uint64_t seed) {
     task.folder = m_suite.folder;
     task.log = base.string() + ".log";
     std::vector<std::string>& words = task.arguments;
-    words = {scene.scene.string()};
-    words.insert(words.end(), scene.options.begin(), scene.options.end());
-    words.insert(words.end(), {"--seed", std::to_string(seed)});
+    words = wordsOf(scene, seed);
     m_commands.push_back(commandOf(scene, seed));
     if (outcome.command.empty()) outcome.command = m_commands.back();
     words.insert(words.end(),
                  {"--aov", "stderr", "-o", render.exr.string(), "-q", "--progress", "none"});
     if (scene.hasDisplay) words.insert(words.end(), {"-o", render.png.string()});
-    if (!m_options.html.empty() && !m_options.update && hasDisplay(m_suite, scene))
+    if (!m_options.html.empty() && !m_options.update && findDisplay(m_suite, scene))
         words.insert(words.end(),
                      {"--report", reportPage(fs::absolute(m_options.html), scene).string()});
-    if (!m_options.plugin.empty())
-        words.insert(words.end(), {"--plugin", fs::absolute(m_options.plugin).string()});
     if (m_options.jobs > 1 && !isNamed(scene.options, "--threads"))
         words.insert(
             words.end(),
@@ -95,13 +91,19 @@ CheckRun::Render CheckRun::addRender(std::size_t index, std::uint64_t seed) {
     return render;
 }
 
-std::string CheckRun::commandOf(const SuiteScene& scene, std::uint64_t seed) const {
-    std::vector<std::string> words{"pm_host", scene.scene.string()};
+std::vector<std::string> CheckRun::wordsOf(const SuiteScene& scene, std::uint64_t seed) const {
+    std::vector<std::string> words{scene.scene.string()};
     words.insert(words.end(), scene.options.begin(), scene.options.end());
-    words.insert(words.end(),
-                 {"--seed", std::to_string(seed), "-o", "/tmp/" + scene.name + ".exr"});
+    words.insert(words.end(), {"--seed", std::to_string(seed)});
     if (!m_options.plugin.empty())
         words.insert(words.end(), {"--plugin", fs::absolute(m_options.plugin).string()});
+    return words;
+}
+
+std::string CheckRun::commandOf(const SuiteScene& scene, std::uint64_t seed) const {
+    std::vector<std::string> words = wordsOf(scene, seed);
+    words.insert(words.begin(), "pm_host");
+    words.insert(words.end(), {"-o", "/tmp/" + scene.name + ".exr"});
     return fmt::format("cd {} && {}", shellCommand({m_suite.folder.string()}), shellCommand(words));
 }
 

@@ -35,6 +35,7 @@ class CheckRun {
     Render addRender(std::size_t outcome, std::uint64_t seed);
     // What to type to repeat a task's render.
     std::string commandOf(const SuiteScene& scene, std::uint64_t seed) const;
+    std::vector<std::string> wordsOf(const SuiteScene& scene, std::uint64_t seed) const;
     void clean(const Render& render) const;
     // Runs work on one scene's files; what is wrong there keeps no other from being done.
     static void guard(SceneOutcome& outcome, const std::function<void()>& work);

@@ -138,12 +138,11 @@ SceneDisplay::SceneDisplay(const Suite& suite, const SuiteScene& scene) {
     m_transform->setExposureStops(options.exposure.stops);
 }
 
-bool hasDisplay(const Suite& suite, const SuiteScene& scene) {
+std::optional<SceneDisplay> findDisplay(const Suite& suite, const SuiteScene& scene) {
     try {
-        SceneDisplay(suite, scene);
-        return true;
+        return SceneDisplay(suite, scene);
     } catch (const HostError&) {
-        return false;
+        return std::nullopt;
     }
 }
 

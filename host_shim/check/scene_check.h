@@ -49,8 +49,8 @@ class SceneDisplay {
     std::optional<DisplayTransform> m_transform;
 };
 
-// Whether there is a display and view that a scene's pictures can be shown by.
-bool hasDisplay(const Suite& suite, const SuiteScene& scene);
+// Nothing where there is no display and view that a scene's pictures can be shown by.
+std::optional<SceneDisplay> findDisplay(const Suite& suite, const SuiteScene& scene);
 
 // In a folder of pages: a scene's own, and the report of its render.
 std::filesystem::path scenePage(const std::filesystem::path& folder, const SuiteScene& scene);

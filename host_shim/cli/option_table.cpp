@@ -48,18 +48,24 @@ void addText(CLI::App& app, const std::string& name, std::string& target,
     app.add_option(name, target, help)->type_name(placeholder)->take_last()->check(valueFault);
 }
 
+// An option that may be given again, each time with one more value.
+CLI::Option* addList(CLI::App& app, const std::string& name, std::vector<std::string>& target,
+                     const std::string& placeholder, const std::string& help) {
+    return app.add_option(name, target, help)
+        ->type_name(placeholder)
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
+        ->check(valueFault);
+}
+
 void addOutputOptions(CLI::App& app, Typed& typed, Options& options, bool isMerge) {
     const std::string picture =
         "picture to write, may be repeated: .exr is scene-linear, .png .jpg .tif go through "
         "display and view";
-    app.add_option("-o,--output", typed.outputs,
-                   picture + (isMerge ? ""
-                                      : ", .pmpart is a part for pm_host merge (SCENE.exr in the "
-                                        "working folder)"))
-        ->type_name("FILE")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->check(valueFault);
+    addList(app, "-o,--output", typed.outputs, "FILE",
+            picture + (isMerge ? ""
+                               : ", .pmpart is a part for pm_host merge (SCENE.exr in the "
+                                 "working folder)"));
     addText(app, "--frame", typed.frame, "N",
             std::string("fills #### and %04d in ") + (isMerge ? "PART" : "SCENE") + " and outputs");
     app.add_flag("--make-output-path", options.makeOutputPath, "make missing output folders");
@@ -86,22 +92,15 @@ void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
             "which groups become Catmull-Clark limit surfaces (tagged)");
     addText(app, "--mtl-dialect", typed.mtlDialect, "NAME",
             "which program's MTL it is: " + allDialectNames() + " (by the headers of the files)");
-    app.add_option("--search-path", typed.searchPaths,
-                   "where libraries and textures are looked for that are not found beside the "
-                   "scene; may be repeated")
-        ->type_name("DIR")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->check(valueFault);
+    addList(app, "--search-path", typed.searchPaths, "DIR",
+            "where libraries and textures are looked for that are not found beside the scene; may "
+            "be repeated");
     addUntrusted(app, options);
     addText(app, "--camera-light", typed.cameraLight, "auto|on|off",
             "a point light at the camera; auto: where the scene has no light, or where no --eye is "
             "given and its own light reaches nothing that is seen (auto)");
-    app.add_option("--aov", typed.layers, "extra channels in the EXR, see --list aovs")
-        ->type_name("NAME[,NAME]")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->check(valueFault);
+    addList(app, "--aov", typed.layers, "NAME[,NAME]",
+            "extra channels in the EXR, see --list aovs");
 }
 
 void replaceAll(std::string& text, std::string_view from, std::string_view to) {
@@ -164,11 +163,8 @@ void addColourOptions(CLI::App& app, Typed& typed, Options& options) {
         "of display pictures, from -20 to 20; auto: measured on a small picture of the whole "
         "frame (auto; 0 with --view, --ocio, $OCIO, --crop, --buckets, --frame or --reference)");
     addText(app, "--look", colour.look, "NAME", "look to apply before the view (none)");
-    app.add_option("--context", typed.context, "variable of the config, may be repeated")
-        ->type_name("KEY=VALUE")
-        ->expected(1)
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->check(valueFault);
+    addList(app, "--context", typed.context, "KEY=VALUE",
+            "variable of the config, may be repeated");
 }
 
 void addTextureOptions(CLI::App& app, Typed& typed) {
@@ -247,12 +243,9 @@ void addAllOfCheck(CLI::App& app, Typed& typed, Options& options) {
     app.set_help_flag();
     app.option_defaults()->always_capture_default(false);
     addText(app, "SUITE", typed.checkSuite, "FILE.json", "the suite: scenes and their options");
-    app.add_option("--only", typed.onlyScenes, "scenes to check; may be repeated (all)")
-        ->type_name("NAME[,NAME]")
-        ->expected(1)
-        ->delimiter(',')
-        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
-        ->check(valueFault);
+    addList(app, "--only", typed.onlyScenes, "NAME[,NAME]",
+            "scenes to check; may be repeated (all)")
+        ->delimiter(',');
     addText(app, "--jobs", typed.jobs, "N",
             "scenes rendered at once, which share the threads; 1 to 1024 (1)");
     addText(app, "--time-budget", typed.timeBudget, "SECONDS",

@@ -76,11 +76,7 @@ DisplayPicture readDisplayPicture(const std::filesystem::path& path) {
 
 DisplayPicture asCodes(const DisplayPicture& picture) {
     DisplayPicture result = picture;
-    for (float& value : result.values) {
-        // The comparison is false for NaN.
-        const float clamped = value > 0.0f ? std::min(value, 1.0f) : 0.0f;
-        value = std::floor(clamped * kFullCode + 0.5f) / kFullCode;
-    }
+    for (float& value : result.values) value = codeOf(value, kFullCode) / kFullCode;
     return result;
 }
 

@@ -51,10 +51,8 @@ DisplayPicture overBlack(const DisplayPicture& picture) {
 template <typename Code>
 std::vector<Code> quantize(const std::vector<float>& values, float largest) {
     std::vector<Code> codes(values.size());
-    std::transform(values.begin(), values.end(), codes.begin(), [largest](float value) {
-        // The comparison is false for NaN, which becomes 0.
-        const float clamped = value > 0.0f ? std::min(value, 1.0f) : 0.0f;
-        return static_cast<Code>(std::floor(clamped * largest + 0.5f));
+    std::ranges::transform(values, codes.begin(), [largest](float value) {
+        return static_cast<Code>(codeOf(value, largest));
     });
     return codes;
 }

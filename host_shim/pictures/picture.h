@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -49,6 +51,13 @@ struct Picture {
 
     const Channel* find(std::string_view name) const;  // nullptr when there is none
 };
+
+// The code of a display value, of codes from 0 to `largest`: clamped, NaN as 0.
+inline float codeOf(float value, float largest) {
+    // The comparison is false for NaN.
+    const float clamped = value > 0.0f ? std::min(value, 1.0f) : 0.0f;
+    return std::floor(clamped * largest + 0.5f);
+}
 
 // A picture as a display shows it: fractions of full code in [0,1], rows from the top.
 struct DisplayPicture {

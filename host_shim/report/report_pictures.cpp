@@ -97,6 +97,22 @@ DisplayPicture heatMap(const Plane& plane, float least, float most) {
     return picture;
 }
 
+Plane relativeDifference(std::int32_t width, std::int32_t height,
+                         const std::array<const float*, 3>& reference,
+                         const std::array<const float*, 3>& picture) {
+    Plane plane{width, height, {}};
+    plane.values.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    for (std::size_t i = 0; i < plane.values.size(); ++i) {
+        double sum = 0;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double r = reference[c][i], x = picture[c][i];
+            sum += (x - r) * (x - r) / (r * r + 0.01);
+        }
+        plane.values[i] = static_cast<float>(std::sqrt(sum / 3));
+    }
+    return plane;
+}
+
 float quantile(const Plane& plane, double share) {
     std::vector<float> finite;
     std::ranges::copy_if(plane.values, std::back_inserter(finite),

@@ -4,6 +4,7 @@
 
 #include "host_shim/pictures/picture.h"
 
+#include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -32,6 +33,12 @@ EmbeddedPicture embedded(const DisplayPicture& picture, std::size_t mostBytes);
 // Colours from dark blue (least and below) over green to yellow (most and above); what is not
 // finite is red.
 DisplayPicture heatMap(const Plane& plane, float least, float most);
+
+// Of each pixel what a picture is off by from a reference, as relMSE counts it: the root of the
+// mean over the channels of (x - r)^2 / (r^2 + 0.01).
+Plane relativeDifference(std::int32_t width, std::int32_t height,
+                         const std::array<const float*, 3>& reference,
+                         const std::array<const float*, 3>& picture);
 
 // The value that a share of the finite ones, in [0,1], does not exceed; 0 without any.
 float quantile(const Plane& plane, double share);
