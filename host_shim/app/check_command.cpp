@@ -2,17 +2,19 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/check_command.h"
 
-#include "host_shim/app/outputs.h"
 #include "host_shim/check/check_page.h"
 #include "host_shim/check/check_run.h"
 #include "host_shim/check/junit.h"
 #include "host_shim/ingest/warnings.h"
 #include "host_shim/pictures/finished_file.h"
+#include "host_shim/process/outputs.h"
 #include "host_shim/process/plain_text.h"
 
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <cstdlib>
+#include <string_view>
 
 namespace pm::host {
 namespace {
@@ -57,11 +59,35 @@ void warnOfNoise(const SceneOutcome& outcome, Log& log) {
                                 outcome.scene->name, 100 * outcome.seenChange));
 }
 
+// The renders work in the suite's folder; what the environment names is relative to this one.
+void keepNamesOfEnvironment() {
+    for (const char* name : {"PM_PLUGIN_PATH", "OCIO"}) {
+        const char* const value = std::getenv(name);
+        if (value == nullptr || *value == '\0' || std::string_view(value).starts_with("ocio://"))
+            continue;
+        setenv(name, std::filesystem::absolute(value).c_str(), 1);
+    }
+}
+
+std::vector<std::filesystem::path> filesOf(const Suite& suite) {
+    std::vector<std::filesystem::path> files{suite.file};
+    for (const SuiteScene& scene : suite.scenes) {
+        const ReferenceFiles references = referenceFiles(suite, scene);
+        files.insert(files.end(),
+                     {scene.scene, references.picture, references.display, references.numbers});
+    }
+    return files;
+}
+
 }  // namespace
 
 int runCheckCommand(const CheckOptions& options, Log& log) {
+    keepNamesOfEnvironment();
     const Suite suite = readSuite(options.suite);
-    if (!options.junit.empty()) checkOutputs({}, {options.junit}, false);
+    if (!options.junit.empty()) {
+        checkOutputs({}, {options.junit}, false);
+        checkNotInputs({options.junit}, filesOf(suite));
+    }
     std::optional<CheckPages> pages;
     if (!options.html.empty()) pages.emplace(options.html, suite);
     CheckRun run(options, suite, [&](const SceneOutcome& outcome) {

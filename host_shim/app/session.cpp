@@ -4,7 +4,6 @@
 
 #include "host_shim/app/guarded.h"
 #include "host_shim/app/material_rules.h"
-#include "host_shim/app/outputs.h"
 #include "host_shim/app/picture_assembly.h"
 #include "host_shim/app/scene_builder.h"
 #include "host_shim/app/scene_memory.h"
@@ -17,6 +16,7 @@
 #include "host_shim/pictures/display_compare.h"
 #include "host_shim/pictures/picture_io.h"
 #include "host_shim/process/interrupt.h"
+#include "host_shim/process/outputs.h"
 #include "host_shim/process/plain_text.h"
 
 #include <fmt/format.h>

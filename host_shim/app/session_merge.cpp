@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 // Session::merge: pm_host merge PART... -o FILE.
 #include "host_shim/app/merge_run.h"
-#include "host_shim/app/outputs.h"
 #include "host_shim/app/picture_assembly.h"
 #include "host_shim/app/session.h"
 #include "host_shim/app/session_files.h"
 #include "host_shim/cli/option_values.h"
 #include "host_shim/pictures/picture_io.h"
 #include "host_shim/process/interrupt.h"
+#include "host_shim/process/outputs.h"
 
 #include <fmt/format.h>
 

@@ -3,13 +3,13 @@
 // A Session whose render has ended: its pictures are written and compared.
 #include "host_shim/app/session.h"
 
-#include "host_shim/app/outputs.h"
 #include "host_shim/app/picture_assembly.h"
 #include "host_shim/colour/display_picture.h"
 #include "host_shim/pictures/compare.h"
 #include "host_shim/pictures/display_compare.h"
 #include "host_shim/pictures/picture_io.h"
 #include "host_shim/process/interrupt.h"
+#include "host_shim/process/outputs.h"
 #include "host_shim/report/report_command.h"
 
 #include <fmt/format.h>
@@ -146,11 +146,14 @@ int Session::compareWithReference(const Picture& picture) {
 }
 
 int Session::compareWithDisplayReference(const Picture& picture, const DisplayTransform& display) {
-    const DisplayDifference difference = compareDisplay(
-        asCodes(*m_displayReference), asCodes(makeDisplayPicture(picture, display).picture));
+    const DisplayResult shown = makeDisplayPicture(picture, display);
+    const DisplayDifference difference =
+        compareDisplay(asCodes(*m_displayReference), asCodes(shown.picture));
     std::fputs(fmt::format("code difference {}\n", describe(difference)).c_str(), stdout);
     m_statistics.referenceCodes = difference;
-    return judgeAgainstLimit("rms code difference", difference.rms);
+    const bool isBad = shown.cleaning.nanCount + shown.cleaning.infiniteCount > 0;
+    return judgeAgainstLimit("rms code difference",
+                             isBad ? std::nullopt : std::optional(difference.rms));
 }
 
 int Session::judgeAgainstLimit(const std::string& name, std::optional<double> value) {
@@ -169,6 +172,11 @@ int Session::judgeSamples() {
     if (!bad) return 0;
     Arguments words = ofOnePixel(m_statistics.commandLine);
     words.insert(words.end(), {"--only-pixel", fmt::format("{},{}", bad->x, bad->y)});
+    if (m_options.crop) {  // the pixel may be beyond the frame
+        const PixelRect& crop = *m_options.crop;
+        words.insert(words.end(),
+                     {"--crop", fmt::format("{},{},{},{}", crop.x0, crop.y0, crop.x1, crop.y1)});
+    }
     const std::string text = fmt::format("samples that are no light count as black: {}; alone: {}",
                                          bad->text, shellCommand(words));
     if (!m_options.strict) {

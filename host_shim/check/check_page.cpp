@@ -92,21 +92,28 @@ std::string link(const std::string& file, const std::string& words) {
 
 CheckPages::CheckPages(fs::path folder, const Suite& suite)
     : m_folder(std::move(folder)), m_suite(suite) {
-    std::error_code failed;
-    fs::create_directories(m_folder, failed);
-    if (failed || !fs::is_directory(m_folder))
-        throw HostError(ExitCode::kFile,
-                        fmt::format("--html {}: no folder can be made", m_folder.string()));
+    std::error_code failed, ignored;
+    for (const SuiteScene& scene : m_suite.scenes) {
+        for (const fs::path& page : {scenePage(m_folder, scene), reportPage(m_folder, scene)}) {
+            fs::create_directories(page.parent_path(), failed);
+            if (failed || !fs::is_directory(page.parent_path()))
+                throw HostError(ExitCode::kFile,
+                                fmt::format("--html {}: no folder can be made", m_folder.string()));
+            fs::remove(page, ignored);  // of an earlier check
+        }
+    }
 }
 
 void CheckPages::add(const SceneOutcome& outcome) {
     const SuiteScene& scene = *outcome.scene;
-    const std::string page = scene.name + ".html", report = scene.name + "_render.html";
+    const bool hasReport = fs::exists(reportPage(m_folder, scene));
+    const std::string page = "scene/" + scene.name + ".html",
+                      report = "render/" + scene.name + ".html";
     EmbeddedPicture small;
-    std::string body = "<p>" + link("index.html", "All scenes") + "</p>\n" +
+    std::string body = "<p>" + link("../index.html", "All scenes") + "</p>\n" +
                        fmt::format("<h1>{}</h1>\n", escaped(scene.name)) + statusHtml(outcome) +
                        section("findings", "Findings", findingsHtml(outcome));
-    if (outcome.picture) {
+    if (outcome.picture && hasDisplay(m_suite, scene)) {
         const SceneDisplay display(m_suite, scene);
         const DisplayPicture shown = display.shown(*outcome.picture);
         small = embedded(shown, kThumbnailBytes);
@@ -117,8 +124,10 @@ void CheckPages::add(const SceneOutcome& outcome) {
     }
     if (!outcome.because.empty())
         body += section("reason", "Why the reference is as it is", paragraph(outcome.because));
-    body += section("command", "The render",
-                    codeBlock(outcome.command) + "<p>" + link(report, "Its own report") + "</p>\n");
+    body +=
+        section("command", "The render",
+                codeBlock(outcome.command) +
+                    (hasReport ? "<p>" + link("../" + report, "Its own report") + "</p>\n" : ""));
     writeFinishedFile(m_folder / page, wholePage(scene.name, body));
     std::string first = outcome.findings.empty()
                             ? ""
@@ -128,7 +137,7 @@ void CheckPages::add(const SceneOutcome& outcome) {
          fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.2f} s</td><td>{}</td><td>{}</td>"
                      "</tr>\n",
                      thumbnailHtml(small), link(page, scene.name), nameOf(outcome.status),
-                     outcome.seconds, escaped(first), link(report, "report")),
+                     outcome.seconds, escaped(first), hasReport ? link(report, "report") : ""),
          outcome.isRight()});
 }
 

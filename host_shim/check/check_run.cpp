@@ -3,7 +3,8 @@
 #include "host_shim/check/check_run.h"
 
 #include "host_shim/check/reference_making.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/process/interrupt.h"
+#include "host_shim/process/outputs.h"
 #include "host_shim/report/report_command.h"
 
 #include <fmt/format.h>
@@ -28,13 +29,16 @@ bool isNamed(const std::vector<std::string>& options, std::string_view name) {
     });
 }
 
-// What a program said last.
+// What a program said last, of errors if there are any.
 std::string lastLine(const fs::path& file) {
+    constexpr std::string_view kOurs = "pm_host: ", kWarning = "pm_host: warning: ";
     std::ifstream stream(file);
-    std::string line, last;
-    while (std::getline(stream, line))
+    std::string line, last, error;
+    while (std::getline(stream, line)) {
         if (!line.empty()) last = line;
-    return last;
+        if (line.starts_with(kOurs) && !line.starts_with(kWarning)) error = line;
+    }
+    return error.empty() ? last : error;
 }
 
 }  // namespace
@@ -72,16 +76,14 @@ CheckRun::Render CheckRun::addRender(std::size_t index, std::uint64_t seed) {
     words = {scene.scene.string()};
     words.insert(words.end(), scene.options.begin(), scene.options.end());
     words.insert(words.end(), {"--seed", std::to_string(seed)});
-    std::vector<std::string> command{"pm_host"};
-    command.insert(command.end(), words.begin(), words.end());
-    outcome.command = shellCommand(command);
+    m_commands.push_back(commandOf(scene, seed));
+    if (outcome.command.empty()) outcome.command = m_commands.back();
     words.insert(words.end(),
                  {"--aov", "stderr", "-o", render.exr.string(), "-q", "--progress", "none"});
     if (scene.hasDisplay) words.insert(words.end(), {"-o", render.png.string()});
-    if (!m_options.html.empty() && !m_options.update)
-        words.insert(
-            words.end(),
-            {"--report", (fs::absolute(m_options.html) / (scene.name + "_render.html")).string()});
+    if (!m_options.html.empty() && !m_options.update && hasDisplay(m_suite, scene))
+        words.insert(words.end(),
+                     {"--report", reportPage(fs::absolute(m_options.html), scene).string()});
     if (!m_options.plugin.empty())
         words.insert(words.end(), {"--plugin", fs::absolute(m_options.plugin).string()});
     if (m_options.jobs > 1 && !isNamed(scene.options, "--threads"))
@@ -91,6 +93,22 @@ CheckRun::Render CheckRun::addRender(std::size_t index, std::uint64_t seed) {
                                                           static_cast<unsigned>(m_options.jobs)))});
     m_tasks.push_back(std::move(task));
     return render;
+}
+
+std::string CheckRun::commandOf(const SuiteScene& scene, std::uint64_t seed) const {
+    std::vector<std::string> words{"pm_host", scene.scene.string()};
+    words.insert(words.end(), scene.options.begin(), scene.options.end());
+    words.insert(words.end(),
+                 {"--seed", std::to_string(seed), "-o", "/tmp/" + scene.name + ".exr"});
+    if (!m_options.plugin.empty())
+        words.insert(words.end(), {"--plugin", fs::absolute(m_options.plugin).string()});
+    return fmt::format("cd {} && {}", shellCommand({m_suite.folder.string()}), shellCommand(words));
+}
+
+void CheckRun::clean(const Render& render) const {
+    std::error_code ignored;
+    fs::remove(render.exr, ignored);
+    if (!render.png.empty()) fs::remove(render.png, ignored);
 }
 
 bool CheckRun::ended(const ChildResult& result, std::size_t task, SceneOutcome& outcome) const {
@@ -104,6 +122,7 @@ bool CheckRun::ended(const ChildResult& result, std::size_t task, SceneOutcome& 
         return false;
     }
     outcome.status = SceneOutcome::Status::kFailed;
+    outcome.command = m_commands[task];
     const std::string line = lastLine(m_tasks[task].log);
     outcome.findings.push_back(
         {"render", result.end == End::kSignalled
@@ -121,11 +140,12 @@ void CheckRun::run(const std::function<void(std::size_t, const ChildResult&)>& d
         if (results[task].end == ChildResult::End::kNotStarted) done(task, results[task]);
 }
 
-// What is wrong with one scene's files keeps no other from being checked.
-void CheckRun::compare(const Render& render, SceneOutcome& outcome) const {
+void CheckRun::guard(SceneOutcome& outcome, const std::function<void()>& work) {
     try {
-        checkScene(m_suite, render.exr, render.png, outcome);
-    } catch (const HostError& error) {
+        work();
+    } catch (const Interrupted&) {
+        throw;
+    } catch (const std::exception& error) {
         outcome.status = SceneOutcome::Status::kFailed;
         outcome.findings.push_back({"files", error.what()});
     }
@@ -137,7 +157,10 @@ std::vector<SceneOutcome> CheckRun::check() {
         renders.push_back(addRender(i, m_options.seed.value_or(kOwnSeed)));
     run([&](std::size_t task, const ChildResult& result) {
         SceneOutcome& outcome = m_outcomes[renders[task].outcome];
-        if (ended(result, task, outcome)) compare(renders[task], outcome);
+        const Render& render = renders[task];
+        if (ended(result, task, outcome))
+            guard(outcome, [&] { checkScene(m_suite, render.exr, render.png, outcome); });
+        clean(render);
         m_told(outcome);
         // Those of all scenes together may be many.
         outcome.stored.reset();
@@ -150,6 +173,10 @@ std::vector<SceneOutcome> CheckRun::update() {
     const auto others = static_cast<std::size_t>(m_options.seeds);
     std::vector<Render> renders;
     for (std::size_t i = 0; i < m_outcomes.size(); ++i) {
+        // Before the first ray: they can be written, and what is there can be read.
+        const ReferenceFiles files = referenceFiles(m_suite, *m_outcomes[i].scene);
+        checkOutputs({files.picture, files.display}, {files.numbers}, true);
+        if (fs::exists(files.numbers)) readReference(files.numbers);
         renders.push_back(addRender(i, kOwnSeed));
         for (std::uint64_t other = 0; other < others; ++other)
             renders.push_back(addRender(i, kFirstOtherSeed + other));
@@ -164,7 +191,8 @@ std::vector<SceneOutcome> CheckRun::update() {
         std::vector<Render> own;
         std::ranges::copy_if(renders, std::back_inserter(own),
                              [&](const Render& render) { return render.outcome == index; });
-        if (good[index]) store(outcome, own);
+        if (good[index]) guard(outcome, [&] { store(outcome, own); });
+        for (const Render& render : own) clean(render);
         m_told(outcome);
     });
     return std::move(m_outcomes);
@@ -179,11 +207,6 @@ void CheckRun::store(SceneOutcome& outcome, const std::vector<Render>& renders) 
     outcome.status = SceneOutcome::Status::kSame;
     outcome.because = m_options.because;
     outcome.seenChange = seenChange(made.regions.front());
-    for (const RenderedFiles& file : files) {
-        std::error_code ignored;
-        fs::remove(file.exr, ignored);
-        fs::remove(file.png, ignored);
-    }
 }
 
 int exitCodeOf(const std::vector<SceneOutcome>& outcomes) {

@@ -33,7 +33,11 @@ class CheckRun {
     };
     void choose();
     Render addRender(std::size_t outcome, std::uint64_t seed);
-    void compare(const Render& render, SceneOutcome& outcome) const;
+    // What to type to repeat a task's render.
+    std::string commandOf(const SuiteScene& scene, std::uint64_t seed) const;
+    void clean(const Render& render) const;
+    // Runs work on one scene's files; what is wrong there keeps no other from being done.
+    static void guard(SceneOutcome& outcome, const std::function<void()>& work);
     // Whether the render came to an end; else the outcome says why not.
     bool ended(const ChildResult& result, std::size_t task, SceneOutcome& outcome) const;
     void run(const std::function<void(std::size_t task, const ChildResult&)>& done);
@@ -45,6 +49,7 @@ class CheckRun {
     TemporaryFolder m_folder;
     std::vector<SceneOutcome> m_outcomes;
     std::vector<ChildTask> m_tasks;
+    std::vector<std::string> m_commands;  // that repeat them
 };
 
 // The exit code: 6 when any scene differs, fails or is out of time, else 3 when a reference is

@@ -2,12 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/check/reference.h"
 
-#include "host_shim/pictures/finished_file.h"
+#include "host_shim/pictures/host_error.h"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <fstream>
 
 namespace pm::host {
@@ -53,6 +55,10 @@ std::vector<RegionSpread> spreadsOf(const json& list, const PixelRect& window) {
         entry.at("stored").get_to(spread.stored);
         if (spread.side < 0 || spread.renders < 3)
             throw HostError(ExitCode::kBadInput, "regions without a side or of too few renders");
+        if (!(spread.limit > 0) || !std::isfinite(spread.limit) ||
+            !std::ranges::all_of(spread.variance, [](double v) { return v >= 0; }))
+            throw HostError(ExitCode::kBadInput,
+                            "a limit or a variance that is no positive number");
         const RegionGrid grid(window, spread.side);
         const auto count =
             3 * static_cast<std::size_t>(grid.columns()) * static_cast<std::size_t>(grid.rows());
@@ -76,6 +82,8 @@ Reference parsed(const json& text) {
     if (reference.window.empty()) throw HostError(ExitCode::kBadInput, "'window' is empty");
     reference.regions = spreadsOf(text.at("regions"), reference.window);
     reference.codes = spreadsOf(text.at("codes"), reference.window);
+    if (!std::ranges::equal(reference.regions, kRegionSides, {}, &RegionSpread::side))
+        throw HostError(ExitCode::kBadInput, "'regions' are not those of 16 pixels and the whole");
     text.at("pixelLimit").get_to(reference.pixelLimit);
     text.at("visibleLimit").get_to(reference.visibleLimit);
     return reference;
@@ -96,7 +104,7 @@ Reference readReference(const std::filesystem::path& file) {
     }
 }
 
-void writeReference(const std::filesystem::path& file, const Reference& reference) {
+std::string textOf(const Reference& reference) {
     json reasons = json::array();
     for (const Reason& reason : reference.reasons)
         reasons.push_back(
@@ -112,8 +120,9 @@ void writeReference(const std::filesystem::path& file, const Reference& referenc
     // A line for each part, so that a change of the reasons is seen beside those of the numbers.
     std::string lines;
     for (const auto& [key, value] : text.items())
-        lines += fmt::format("{}\"{}\": {}", lines.empty() ? "{" : ",\n ", key, value.dump());
-    writeFinishedFile(file, lines + "}\n");
+        lines += fmt::format("{}\"{}\": {}", lines.empty() ? "{" : ",\n ", key,
+                             value.dump(-1, ' ', false, json::error_handler_t::replace));
+    return lines + "}\n";
 }
 
 }  // namespace pm::host

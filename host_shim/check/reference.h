@@ -31,7 +31,7 @@ inline constexpr std::int32_t kRegionSides[] = {16, 0};
 
 // Errors: kFile when it can't be read; kBadInput when it is no reference, with what is wrong.
 Reference readReference(const std::filesystem::path& file);
-// Errors: kFile.
-void writeReference(const std::filesystem::path& file, const Reference& reference);
+// The file's text; bytes of a reason that are no UTF-8 are replaced.
+std::string textOf(const Reference& reference);
 
 }  // namespace pm::host

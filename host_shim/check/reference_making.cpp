@@ -14,6 +14,8 @@
 #include <ctime>
 #include <fstream>
 #include <iterator>
+#include <memory>
+#include <utility>
 
 namespace pm::host {
 namespace {
@@ -104,14 +106,16 @@ Reference makeReference(const std::vector<RenderedFiles>& renders, const fs::pat
 
 void storeReference(const RenderedFiles& kept, const Reference& reference,
                     const ReferenceFiles& files) {
-    std::error_code failed;
-    fs::create_directories(files.picture.parent_path(), failed);
-    if (failed)
-        throw HostError(ExitCode::kFile, fmt::format("{}: {}", files.picture.parent_path().string(),
-                                                     failed.message()));
-    writeFinishedFile(files.picture, bytesOf(kept.exr));
-    if (!kept.png.empty()) writeFinishedFile(files.display, bytesOf(kept.png));
-    writeReference(files.numbers, reference);
+    std::vector<std::pair<fs::path, std::string>> contents{{files.picture, bytesOf(kept.exr)},
+                                                           {files.numbers, textOf(reference)}};
+    if (!kept.png.empty()) contents.emplace_back(files.display, bytesOf(kept.png));
+    // All or none: only what is on the disk as a whole takes the names.
+    std::vector<std::unique_ptr<FinishedFile>> written;
+    for (const auto& [file, bytes] : contents) {
+        written.push_back(std::make_unique<FinishedFile>(file));
+        written.back()->write(bytes);
+    }
+    for (const auto& file : written) file->commit();
 }
 
 }  // namespace pm::host

@@ -21,6 +21,8 @@ constexpr double kRounding = 1e-6;
 // Of one picture: that chance alone brings any of its regions beyond the limit.
 constexpr double kFalseAlarm = 1e-6;
 constexpr double kBeyondOwn = 1.5;
+// Where all other renders agree to the bit any difference is beyond all limits.
+constexpr double kMostLimit = 100;
 
 // The probability that |T| > t, T Student's with so many degrees of freedom; by the finite series
 // of Abramowitz and Stegun 26.7.3 and 26.7.4.
@@ -47,6 +49,11 @@ double limitOfStudent(double probability, std::size_t count, std::int32_t degree
         (tailOfStudent(middle, degrees) > each ? low : high) = middle;
     }
     return high;
+}
+
+PixelRect regionOf(const RegionGrid& grid, std::size_t value) {
+    const auto region = static_cast<std::int32_t>(value / 3);
+    return grid.rect(region % grid.columns(), region / grid.columns());
 }
 
 // Of a render's mean against that of the others.
@@ -138,6 +145,7 @@ RegionSpread spreadOf(const PixelRect& window, std::int32_t side,
         const double z = std::abs(furthestRegion(window, spread, means[one]).z);
         spread.limit = std::max(spread.limit, kBeyondOwn * z);
     }
+    spread.limit = std::min(spread.limit, kMostLimit);
     measure(spread, means, means.size());
     spread.stored = means.front();
     return spread;
@@ -153,9 +161,8 @@ RegionFinding furthestRegion(const PixelRect& window, const RegionSpread& spread
         const double beyond = std::copysign(std::max(std::abs(off) - floor, 0.0), off);
         const double z = beyond == 0 ? 0 : beyond / std::sqrt(variances[i]);
         if (i != 0 && std::abs(z) <= std::abs(found.z)) continue;
-        const auto region = static_cast<std::int32_t>(i / 3);
-        found = RegionFinding{grid.rect(region % grid.columns(), region / grid.columns()),
-                              static_cast<int>(i % 3), z, mean != 0 ? off / mean : 0};
+        found = {regionOf(grid, i), static_cast<int>(i % 3), z, mean != 0 ? off / mean : 0};
+        if (std::isnan(z)) break;  // nothing is farther off
     }
     return found;
 }
@@ -168,9 +175,8 @@ RegionFinding mostChangedRegion(const PixelRect& window, std::int32_t side,
         const double off = got[i] - wanted[i];
         const double relative = wanted[i] != 0 ? off / std::abs(wanted[i]) : off;
         if (i != 0 && std::abs(relative) <= std::abs(found.relative)) continue;
-        const auto region = static_cast<std::int32_t>(i / 3);
-        found = RegionFinding{grid.rect(region % grid.columns(), region / grid.columns()),
-                              static_cast<int>(i % 3), 0, relative};
+        found = {regionOf(grid, i), static_cast<int>(i % 3), 0, relative};
+        if (std::isnan(relative)) break;
     }
     return found;
 }

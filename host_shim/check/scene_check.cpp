@@ -13,6 +13,24 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kCodeRounding = 1e-3;  // codes are floats here
+
+// What a scene's options may not ask for: the check renders one whole picture of it.
+void refuseWhatIsNoPicture(const Options& options, const SuiteScene& scene) {
+    const auto refuse = [](const std::string& what) {
+        throw HostError(ExitCode::kBadInput, what +
+                                                 " is not for a suite: whole pictures are "
+                                                 "rendered, to files of the check's own");
+    };
+    if (options.help || options.version || options.explain || !options.list.empty())
+        refuse("what prints and stops");
+    if (options.photonsOnly) refuse("--photons-only");
+    if (!options.checkpoint.empty()) refuse("--checkpoint");
+    if (options.onlyPixel) refuse("--only-pixel");
+    const fs::path own = scene.scene.stem().string() + ".exr";
+    if (!options.part.empty() || options.outputs != std::vector<fs::path>{own}) refuse("-o");
+}
+
 Options parsedOptions(const Suite& suite, const SuiteScene& scene) {
     std::vector<std::string> words{scene.scene.string()};
     words.insert(words.end(), scene.options.begin(), scene.options.end());
@@ -21,6 +39,7 @@ Options parsedOptions(const Suite& suite, const SuiteScene& scene) {
         if (options.exposure.kind == ExposureOption::Kind::kAuto)
             throw HostError(ExitCode::kBadInput,
                             "--exposure auto: a suite's pictures are of one exposure; give STOPS");
+        refuseWhatIsNoPicture(options, scene);
         std::string& config = options.colour.ocioFile;
         if (!config.empty() && !config.starts_with("ocio://"))
             config = (suite.folder / config).string();
@@ -42,7 +61,7 @@ std::string list(const std::vector<fs::path>& files) {
 void compareTransform(const DisplayPicture& wanted, const DisplayPicture& stored, double codeLimit,
                       Verdict& verdict) {
     const DisplayDifference difference = compareDisplay(stored, wanted);
-    if (difference.most > codeLimit)
+    if (difference.most > codeLimit + kCodeRounding)
         verdict.findings.push_back(
             {"display transform",
              fmt::format("display and view make another picture of the stored one: {} (limit {:g})",
@@ -52,8 +71,8 @@ void compareTransform(const DisplayPicture& wanted, const DisplayPicture& stored
 void compareDisplays(const Suite& suite, const SceneOutcome& outcome, const fs::path& png,
                      const Reference& reference, Verdict& verdict) {
     const SuiteScene& scene = *outcome.scene;
-    const DisplayPicture stored = readDisplayPicture(referenceFiles(suite, scene).display);
-    const DisplayPicture picture = readDisplayPicture(png);
+    const DisplayPicture stored = asCodes(readDisplayPicture(referenceFiles(suite, scene).display));
+    const DisplayPicture picture = asCodes(readDisplayPicture(png));
     if (stored.width != picture.width || stored.height != picture.height) {
         verdict.findings.push_back(
             {"size", fmt::format("display picture {}x{} in place of {}x{}", picture.width,
@@ -64,7 +83,7 @@ void compareDisplays(const Suite& suite, const SceneOutcome& outcome, const fs::
                      scene.codeLimit, verdict);
     const DisplayDifference difference = compareDisplay(stored, picture);
     if (verdict.isSameBuild) {
-        if (difference.most > scene.codeLimit)
+        if (difference.most > scene.codeLimit + kCodeRounding)
             verdict.findings.push_back(
                 {"display codes",
                  fmt::format("{} (limit {:g})", describe(difference), scene.codeLimit)});
@@ -119,6 +138,23 @@ SceneDisplay::SceneDisplay(const Suite& suite, const SuiteScene& scene) {
     m_transform->setExposureStops(options.exposure.stops);
 }
 
+bool hasDisplay(const Suite& suite, const SuiteScene& scene) {
+    try {
+        SceneDisplay(suite, scene);
+        return true;
+    } catch (const HostError&) {
+        return false;
+    }
+}
+
+fs::path scenePage(const fs::path& folder, const SuiteScene& scene) {
+    return folder / "scene" / (scene.name + ".html");
+}
+
+fs::path reportPage(const fs::path& folder, const SuiteScene& scene) {
+    return folder / "render" / (scene.name + ".html");
+}
+
 DisplayPicture SceneDisplay::shown(const Picture& picture) const {
     return makeDisplayPicture(picture, *m_transform).picture;
 }
@@ -127,8 +163,9 @@ void checkScene(const Suite& suite, const fs::path& exr, const fs::path& png,
                 SceneOutcome& outcome) {
     const ReferenceFiles files = referenceFiles(suite, *outcome.scene);
     std::vector<fs::path> missing;
+    std::error_code ignored;
     for (const fs::path& file : {files.picture, files.numbers, files.display})
-        if (!fs::exists(file) && (outcome.scene->hasDisplay || file != files.display))
+        if (!fs::exists(file, ignored) && (outcome.scene->hasDisplay || file != files.display))
             missing.push_back(file);
     outcome.picture = readExr(exr);
     if (!missing.empty()) {

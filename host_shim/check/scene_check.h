@@ -49,6 +49,13 @@ class SceneDisplay {
     std::optional<DisplayTransform> m_transform;
 };
 
+// Whether there is a display and view that a scene's pictures can be shown by.
+bool hasDisplay(const Suite& suite, const SuiteScene& scene);
+
+// In a folder of pages: a scene's own, and the report of its render.
+std::filesystem::path scenePage(const std::filesystem::path& folder, const SuiteScene& scene);
+std::filesystem::path reportPage(const std::filesystem::path& folder, const SuiteScene& scene);
+
 // A render against its references. exr, png: the new files; png only where the scene has a display
 // picture.
 void checkScene(const Suite& suite, const std::filesystem::path& exr,

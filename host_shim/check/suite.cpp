@@ -22,13 +22,22 @@ using nlohmann::json;
 constexpr std::string_view kOwnOptions[] = {"-o",     "--output", "--reference", "--stats",
                                             "--seed", "--report", "--log",       "--progress"};
 
+constexpr std::size_t kMostNameLength = 100;
+
+std::string lowerCase(std::string text) {
+    for (char& c : text)
+        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
+    return text;
+}
+
 class SuiteReader {
   public:
     explicit SuiteReader(const fs::path& file) { m_suite.file = file; }
 
     Suite read() {
         std::ifstream stream(m_suite.file, std::ios::binary);
-        if (!stream)
+        std::error_code ignored;
+        if (!stream || fs::is_directory(m_suite.file, ignored))
             throw HostError(ExitCode::kFile,
                             fmt::format("{}: can't be read", m_suite.file.string()));
         json text;
@@ -89,8 +98,13 @@ class SuiteReader {
                    c == '_' || c == '-';
         });
         if (!isPlain) fail(fmt::format("{}: 'name' is of letters, digits, _ and - only", where));
-        if (std::ranges::find(m_suite.scenes, scene.name, &SuiteScene::name) !=
-            m_suite.scenes.end())
+        if (scene.name.size() > kMostNameLength)
+            fail(fmt::format("{}: 'name' has at most {} letters", where, kMostNameLength));
+        // References of both have to find room on any file system.
+        const auto isAlike = [&](const SuiteScene& other) {
+            return lowerCase(other.name) == lowerCase(scene.name);
+        };
+        if (std::ranges::any_of(m_suite.scenes, isAlike))
             fail(fmt::format("{}: the name '{}' is there twice", where, scene.name));
         scene.scene = m_suite.folder / text(entry, "scene", where);
         scene.options = common;

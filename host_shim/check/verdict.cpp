@@ -108,7 +108,7 @@ void compareWithNumbers(const Picture& stored, const Reference& reference,
         const auto means = RegionGrid(stored.dataWindow, spread.side).means(beauty);
         const RegionFinding found =
             mostChangedRegion(stored.dataWindow, spread.side, spread.stored, means);
-        if (std::abs(found.relative) <= kStoredRounding) continue;
+        if (std::abs(found.relative) <= kStoredRounding) continue;  // false for NaN
         findings.push_back(
             {"reference",
              fmt::format("the stored picture was changed since it was made: {}", describe(found))});
@@ -153,7 +153,7 @@ void compareRegions(const PixelRect& window, const std::vector<RegionSpread>& sp
     for (const RegionSpread& spread : spreads) {
         const RegionFinding found = furthestRegion(window, spread, meansOf(spread.side), floor);
         verdict.shareOfLimit = std::max(verdict.shareOfLimit, std::abs(found.z) / spread.limit);
-        if (std::abs(found.z) > spread.limit)
+        if (!(std::abs(found.z) <= spread.limit))
             verdict.findings.push_back(
                 {measure, fmt::format("{}, {:.1f} standard errors (limit {:.1f})", describe(found),
                                       std::abs(found.z), spread.limit)});

@@ -130,7 +130,8 @@ void addRenderOptions(CLI::App& app, Typed& typed, Options& options, const Setti
             "instruction set, for the same bits on unlike machines: best, sse2, sse4.2, avx, avx2, "
             "avx512 (best)");
     app.add_flag("--strict", options.strict,
-                 "exit 3 when a sample was NaN, infinite or negative; the picture is written, with "
+                 "exit 3 when a sample of this run was NaN, infinite or negative; the picture is "
+                 "written, with "
                  "black in its place");
 }
 

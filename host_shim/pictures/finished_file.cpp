@@ -129,9 +129,13 @@ void FinishedFile::takeOver(const std::filesystem::path& name) const {
     ::fchmod(m_file, replaced.st_mode & 0777u);
 }
 
+void FinishedFile::write(std::string_view bytes) {
+    if (const int error = writeAll(m_file, bytes)) fail(m_final, error);
+}
+
 void writeFinishedFile(const std::filesystem::path& path, std::string_view bytes) {
     FinishedFile finished(path);
-    if (const int error = writeAll(finished.descriptor(), bytes)) fail(path, error);
+    finished.write(bytes);
     finished.commit();
 }
 

@@ -30,6 +30,8 @@ class FinishedFile {
     const std::filesystem::path& temporaryPath() const { return m_temporary; }
     // The temporary file, open for reading and writing.
     int descriptor() const { return m_file; }
+    // Adds to it. Errors: kFile.
+    void write(std::string_view bytes);
     // Syncs the temporary file, renames it and syncs the folder. Errors: kFile.
     void commit();
     // The same under another name in the same folder.

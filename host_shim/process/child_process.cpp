@@ -11,6 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
 #include <cstring>
 #include <map>
@@ -22,7 +23,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto kGlance = std::chrono::milliseconds(5);  // between looks at who has ended
-constexpr const char* kOwnProgram = "/proc/self/exe";
+constexpr auto kPatience = std::chrono::seconds(3);     // with those that are to end
 
 // posix_spawn's list of what is done before the program begins.
 class SpawnActions {
@@ -49,8 +50,9 @@ pid_t start(const ChildTask& task) {
     posix_spawn_file_actions_adddup2(actions.get(), STDOUT_FILENO, STDERR_FILENO);
     posix_spawn_file_actions_addchdir_np(actions.get(), task.folder.c_str());
     pid_t child = 0;
+    const std::string program = std::filesystem::read_symlink("/proc/self/exe").string();
     const int failed =
-        posix_spawn(&child, kOwnProgram, actions.get(), nullptr, argv.data(), environ);
+        posix_spawn(&child, program.c_str(), actions.get(), nullptr, argv.data(), environ);
     if (failed != 0)
         throw HostError(ExitCode::kInternal,
                         fmt::format("pm_host can't be started: {}", std::strerror(failed)));
@@ -60,11 +62,9 @@ pid_t start(const ChildTask& task) {
 // Those that run; what is left of them when this ends is killed.
 class Crowd {
   public:
-    ~Crowd() {
-        for (const auto& [child, entry] : m_running) kill(child, SIGKILL);
-        for (const auto& [child, entry] : m_running) waitpid(child, nullptr, 0);
-    }
-    Crowd() = default;
+    ~Crowd() { endAll(); }
+    // Whoever started us may have it ignored; then there would be nothing to wait for.
+    Crowd() { std::signal(SIGCHLD, SIG_DFL); }
     Crowd(const Crowd&) = delete;
     Crowd& operator=(const Crowd&) = delete;
 
@@ -77,7 +77,11 @@ class Crowd {
         std::vector<std::pair<std::size_t, ChildResult>> list;
         for (auto at = m_running.begin(); at != m_running.end();) {
             int status = 0;
-            if (waitpid(at->first, &status, WNOHANG) != at->first) {
+            const pid_t ended = waitpid(at->first, &status, WNOHANG);
+            if (ended < 0 && errno != EINTR)
+                throw HostError(ExitCode::kInternal, fmt::format("a child can't be waited for: {}",
+                                                                 std::strerror(errno)));
+            if (ended != at->first) {
                 ++at;
                 continue;
             }
@@ -86,12 +90,18 @@ class Crowd {
         }
         return list;
     }
-    // Ends all; what they were doing is lost.
+    // Ends all; what they were doing is lost. They have a while to clear up.
     std::vector<std::pair<std::size_t, ChildResult>> endAll() {
-        for (const auto& [child, entry] : m_running) kill(child, SIGKILL);
+        for (const auto& [child, entry] : m_running) kill(child, SIGTERM);
+        const auto patience = Clock::now() + kPatience;
         std::vector<std::pair<std::size_t, ChildResult>> list;
         for (const auto& [child, entry] : m_running) {
-            waitpid(child, nullptr, 0);
+            while (waitpid(child, nullptr, WNOHANG) == 0 && Clock::now() < patience)
+                std::this_thread::sleep_for(kGlance);
+            if (kill(child, 0) == 0) {
+                kill(child, SIGKILL);
+                waitpid(child, nullptr, 0);
+            }
             ChildResult result = resultOf(0, entry.start);
             result.end = ChildResult::End::kOutOfTime;
             list.emplace_back(entry.index, result);

@@ -167,7 +167,9 @@ void FrameRenderer::Impl::renderCell(std::uint32_t pass, const PixelCell& cell, 
         local.throughputStepsCut += static_cast<std::uint64_t>(
             std::clamp(static_cast<double>(s.throughputCut), 0.0, 1e3) / kThroughputStep);
         if (const auto fault = PixelSums::faultOf(s)) {
-            local.counters.badSamples.add({pass, cell.y, cell.x, index, *fault});
+            // Whole buckets are rendered; what is beyond the window is in no picture.
+            if (settings.window.contains(cell.x, cell.y))
+                local.counters.badSamples.add({pass, cell.y, cell.x, index, *fault});
             continue;
         }
         const double depth =

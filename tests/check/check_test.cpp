@@ -118,13 +118,13 @@ TEST_F(Check, ReasonsAreKept) {
     EXPECT_EQ(refused.exitCode, 2);
     expectHas(refused.err, "--because");
     makeReferences();
-    ASSERT_EQ(check({"--update", "--because", "Walls are warmer."}).exitCode, 0);
+    ASSERT_EQ(check({"--update", "--because", "Walls are warmer.", "--seeds", "4"}).exitCode, 0);
     const Reference reference = readReference(path("references") / "plain.json");
     ASSERT_EQ(reference.reasons.size(), 2u);
     EXPECT_EQ(reference.reasons[0].because, "The first.");
     EXPECT_EQ(reference.reasons[1].because, "Walls are warmer.");
     EXPECT_EQ(reference.regions.size(), 2u);
-    EXPECT_EQ(reference.regions[0].renders, 17);
+    EXPECT_EQ(reference.regions[0].renders, 5);
 }
 
 TEST_F(Check, JUnitAndPages) {
@@ -138,13 +138,16 @@ TEST_F(Check, JUnitAndPages) {
     expectHas(junit, "<failure type=\"NO REFERENCE\"");
     const std::string index = readText(path("pages") / "index.html");
     expectHas(index, "1 of 2 scenes are right");
-    expectHas(index, "href=\"plain.html\"");
+    expectHas(index, "href=\"scene/plain.html\"");
     expectHas(index, "data:image/png;base64,");
-    const std::string page = readText(path("pages") / "plain.html");
+    const std::string page = readText(path("pages") / "scene" / "plain.html");
     expectHas(page, "the stored picture");
     expectHas(page, "The first.");
-    expectHas(page, "href=\"plain_render.html\"");
-    EXPECT_TRUE(fs::exists(path("pages") / "plain_render.html"));
+    expectHas(page, "href=\"../render/plain.html\"");
+    EXPECT_TRUE(fs::exists(path("pages") / "render" / "plain.html"));
+    const std::string before = readText(path("suite.json"));
+    EXPECT_EQ(check({"--junit", "suite.json"}).exitCode, 2);
+    EXPECT_EQ(readText(path("suite.json")), before);
 }
 
 TEST_F(Check, OnlyAndTheTimeBudget) {
@@ -158,6 +161,40 @@ TEST_F(Check, OnlyAndTheTimeBudget) {
     const Outcome late = check({"--time-budget", "0"});
     EXPECT_EQ(late.exitCode, 6);
     expectHas(late.out, "two: OUT OF TIME");
+}
+
+// What is wrong with one scene's files keeps no other from being checked, and old references whole.
+TEST_F(Check, BrokenReferencesAreOfTheirSceneAlone) {
+    makeReferences();
+    write("suite.json", suiteOf({"broken", "plain"}));
+    for (const char* ending : {".exr", ".png"})
+        fs::copy(path("references") / (std::string("plain") + ending),
+                 path("references") / (std::string("broken") + ending));
+    write("references/broken.json", "<<<<<<< ours");
+    const Outcome outcome = check({"--jobs", "2"});
+    EXPECT_EQ(outcome.exitCode, 6) << outcome.out;
+    expectHas(outcome.out, "broken: FAILED");
+    expectHas(outcome.out, "plain: same bits");
+    const std::string before = readText(path("references") / "plain.exr");
+    const Outcome update = check({"--update", "--because", "Again.", "--seeds", "4"});
+    EXPECT_EQ(update.exitCode, 3) << update.out;
+    expectHas(update.err, "broken.json");
+    EXPECT_EQ(readText(path("references") / "plain.exr"), before);
+}
+
+// The renders work in the suite's folder; the command line and the environment are of ours.
+TEST_F(Check, WorksFromAnyFolder) {
+    makeReferences();
+    fs::create_directory(path("suite"));
+    fs::rename(path("suite.json"), path("suite") / "suite.json");
+    fs::rename(path("references"), path("suite") / "references");
+    for (const char* file : {"box.obj", "box.mtl"}) fs::copy(path(file), path("suite") / file);
+    const fs::path plugin = fs::path(PM_HOST).parent_path() / "libpm_plugin.so";
+    fs::create_symlink(plugin, path("p.so"));
+    const Outcome outcome = run({"check", "suite/suite.json", "--html", "pages"}, nullptr,
+                                {{"PM_PLUGIN_PATH", "p.so"}});
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.out << outcome.err;
+    EXPECT_TRUE(fs::exists(path("pages") / "index.html"));
 }
 
 TEST_F(Check, AFailedRenderIsToldWithWhatItSaid) {
@@ -182,7 +219,11 @@ TEST_F(Check, BadSuitesAreRefused) {
     refused("{\"schema\": \"pm-suite/2\", \"scenes\": []}", "pm-suite/1");
     refused("{\"schema\": \"pm-suite/1\", \"scenes\": []}", "at least one");
     refused(suiteOf({"a", "a"}), "twice");
+    refused(suiteOf({"a", "A"}), "twice");
     refused(suiteOf({"a b"}), "letters, digits");
+    refused(suiteOf({"a"}, "\"options\": [\"-ox.exr\"]"), "not for a suite");
+    refused(suiteOf({"a"}, "\"options\": [\"--explain\"]"), "not for a suite");
+    refused(suiteOf({"a"}, "\"options\": [\"--checkpoint\", \"c\"]"), "not for a suite");
     refused(suiteOf({"a"}, "\"colour\": 1"), "no 'colour'; allowed are name, scene");
     refused(suiteOf({"a"}, "\"options\": [\"-o\", \"x.exr\"]"), "for the check itself");
     refused(suiteOf({"a"}, "\"display\": true, \"options\": [\"--view\", \"none\"]"), "none");

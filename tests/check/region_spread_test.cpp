@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 namespace pm::host {
@@ -106,6 +107,23 @@ TEST(RegionSpread, SaysWhatItSees) {
     EXPECT_NEAR(seenChange(spread), spread.limit * 0.003, 0.3 * spread.limit * 0.003);
     EXPECT_EQ(describe(RegionFinding{{16, 0, 32, 16}, 1, 9, -0.0203}),
               "region 16,0 to 32,16: G is 2.03 % darker");
+}
+
+TEST(RegionSpread, NothingIsFartherOffThanNan) {
+    std::mt19937 random(5);
+    auto means = renders(17, 18, 0.003, random);
+    const RegionSpread spread = spreadOf(kWindow, 16, means);
+    means[0][4] = std::nan("");
+    means[0][9] *= 2;
+    EXPECT_TRUE(std::isnan(furthestRegion(kWindow, spread, means[0]).z));
+    EXPECT_EQ(furthestRegion(kWindow, spread, means[0]).rect, RegionGrid(kWindow, 16).rect(1, 0));
+}
+
+// One render of all shows light somewhere.
+TEST(RegionSpread, LimitsAreFinite) {
+    std::vector<std::vector<double>> means(5, std::vector<double>(18, 0.0));
+    means[2][7] = 1;
+    EXPECT_EQ(spreadOf(kWindow, 16, means).limit, 100);
 }
 
 TEST(RegionSpread, BlackThatStaysBlackIsRightAndLightInItIsNot) {

@@ -39,7 +39,8 @@ def main():
         kept = {file.stem for file in (folder / "suite" / "references").glob("*.json")}
         assert kept == names, kept
         pages = folder / "suite" / "pages"
-        assert all((pages / f"{page}.html").exists() for page in names | {"index"})
+        assert (pages / "index.html").exists()
+        assert all((pages / "scene" / f"{name}.html").exists() for name in names)
         assert (folder / "suite" / "suite.xml").read_text().count("<testcase ") == len(names)
 
 

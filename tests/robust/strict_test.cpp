@@ -57,6 +57,18 @@ TEST_F(Strict, BadSamplesNeverReachAFileAndAreNamed) {
               std::string::npos);
 }
 
+// Buckets are of whole blocks of pixels; those beyond the picture are nobody's.
+TEST_F(Strict, PixelsBeyondThePictureDoNotCount) {
+    const auto countOf = [&](const std::string& size) {
+        EXPECT_EQ(renderBright({"--size", size, "--aa", "2", "--passes", "8"}).exitCode, 0);
+        const auto json = nlohmann::json::parse(readText(path("bright.json")));
+        return json["counters"]["badSamples"].get<double>();
+    };
+    const double small = countOf("10x10"), large = countOf("16x16");
+    EXPECT_GT(small, 0);
+    EXPECT_LT(small, 0.55 * large);
+}
+
 TEST_F(Strict, IsAnErrorThatLeavesThePicture) {
     const Outcome outcome = renderBright({"--strict"});
     EXPECT_EQ(outcome.exitCode, 3) << outcome.err;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/app/outputs.h"
+#include "host_shim/process/outputs.h"
 
 #include "host_shim/pictures/host_error.h"
 #include "host_shim/pictures/picture_io.h"
