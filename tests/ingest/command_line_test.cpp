@@ -265,10 +265,46 @@ TEST(CommandLine, helpNamesEveryOptionAndAsksThePlugin) {
     }
     EXPECT_NE(text.find("MIN: about MIN MAX: about MAX"), std::string::npos) << text;
     EXPECT_NE(text.find(mergeHelpText()), std::string::npos);
-    EXPECT_TRUE(text.ends_with(cacheHelpText()));
+    EXPECT_NE(text.find(cacheHelpText()), std::string::npos);
+    EXPECT_TRUE(text.ends_with(checkHelpText()));
     EXPECT_EQ(mergeHelpText().find("SCENE"), std::string::npos) << mergeHelpText();
     EXPECT_TRUE(parseCommandLine({"merge", "-h"}).helpOfMerge);
     EXPECT_FALSE(parseCommandLine({"-h"}).helpOfMerge);
+}
+
+TEST(CommandLine, checksHaveOptionsOfTheirOwn) {
+    const auto checkOf = [](std::vector<std::string> words) {
+        words.insert(words.begin(), {"check", "s.json"});
+        return *parseCommandLine(words).check;
+    };
+    const CheckOptions plain = checkOf({});
+    EXPECT_EQ(plain.suite, "s.json");
+    EXPECT_EQ(plain.jobs, 1);
+    EXPECT_TRUE(plain.only.empty());
+    const CheckOptions all =
+        checkOf({"--update", "--because", "why", "--seeds", "4", "--only", "a,b", "--only", "c",
+                 "--jobs", "3", "--time-budget", "1.5", "--junit", "j.xml", "--html", "pages"});
+    EXPECT_TRUE(all.update);
+    EXPECT_EQ(all.because, "why");
+    EXPECT_EQ(all.seeds, 4);
+    EXPECT_EQ(all.only, (std::vector<std::string>{"a", "b", "c"}));
+    EXPECT_EQ(all.jobs, 3);
+    EXPECT_EQ(all.timeBudgetSeconds, 1.5);
+    EXPECT_EQ(all.junit, "j.xml");
+    EXPECT_EQ(all.html, "pages");
+    for (const auto& [words, part] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+             {{"--update"}, "--because"},
+             {{"--because", "why"}, "--update"},
+             {{"--seeds", "4"}, "--update"},
+             {{"--update", "--because", "why", "--seeds", "3"}, "4"},
+             {{"--update", "--because", "why", "--seed", "3"}, "--seed"},
+             {{"--jobs", "0"}, "--jobs"},
+             {{"--size", "3x3"}, "--size"}}) {
+        const std::string error = errorOf([&, &given = words] { checkOf(given); });
+        EXPECT_TRUE(error.starts_with("2 ")) << error;
+        EXPECT_NE(error.find(part), std::string::npos) << error;
+    }
+    EXPECT_TRUE(parseCommandLine({"check", "-h"}).helpOfCheck);
 }
 
 TEST(CommandLine, whatAScenesMaterialsAre) {
