@@ -11,14 +11,14 @@
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
-#include "integrator/transport/lamp_samples.h"
-#include "integrator/transport/lit_places.h"
-#include "integrator/transport/path_integrator.h"
-#include "integrator/transport/photon_integrator.h"
-#include "integrator/transport/photon_pass.h"
-#include "integrator/transport/pixel_cell.h"
-#include "integrator/transport/pixel_sums.h"
-#include "integrator/transport/seen_lamps.h"
+#include "integrator/transport/survey/lamp_samples.h"
+#include "integrator/transport/survey/lit_places.h"
+#include "integrator/transport/path/path_integrator.h"
+#include "integrator/transport/photon/photon_integrator.h"
+#include "integrator/transport/photon/photon_pass.h"
+#include "integrator/transport/frame/pixel_cell.h"
+#include "integrator/transport/frame/pixel_sums.h"
+#include "integrator/transport/seen_lights/seen_lamps.h"
 #include "integrator/values/cancel_check.h"
 
 namespace pm {
@@ -36,17 +36,7 @@ std::int32_t firstOfGroup(std::int32_t coordinate) {
     return coordinate & ~1;
 }
 
-double shareOf(double part, double whole) {
-    return whole > 0 ? std::clamp(part / whole, 0.0, 1.0) : 0.0;
-}
-
 }  // namespace
-
-double RenderCounters::shareCut() const {
-    const double ofPaths = shareOf(throughputCut, static_cast<double>(cameraSamples));
-    return std::min(1.0, ofPaths + std::max(shareOf(fluxLost, fluxEmitted),
-                                            shareOf(causticFluxLost, causticFluxEmitted)));
-}
 
 SampleRun fixedSamples(const RenderSettings& settings, std::int32_t x, std::int32_t y,
                        std::uint32_t pass) {

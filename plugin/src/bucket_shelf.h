@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "plugin/include/pm_plugin.h"
-#include "scheduler/frame_store.h"
+#include "scheduler/film/frame_store.h"
 
 namespace pm::plugin {
 

@@ -17,7 +17,7 @@
 #include "plugin/src/call_error.h"
 #include "plugin/src/piece_file.h"
 #include "plugin/src/temporary_file.h"
-#include "scheduler/frame_store_bytes.h"
+#include "scheduler/film/frame_store_bytes.h"
 
 namespace pm::plugin {
 

@@ -14,7 +14,7 @@
 #include "plugin/src/done_pixels.h"
 #include "plugin/src/owned_file.h"
 #include "plugin/src/piece_head.h"
-#include "scheduler/frame_store.h"
+#include "scheduler/film/frame_store.h"
 
 namespace pm::plugin {
 

@@ -15,7 +15,7 @@
 #include "plugin/src/call_error.h"
 #include "plugin/src/context.h"
 #include "plugin/src/handle_table.h"
-#include "scheduler/fp_environment.h"
+#include "scheduler/buckets/fp_environment.h"
 
 namespace pm::plugin {
 

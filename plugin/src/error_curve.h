@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "scheduler/frame_error.h"
+#include "scheduler/film/frame_error.h"
 
 namespace pm::plugin {
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <optional>
 
-#include "scheduler/bucket_grid.h"
+#include "scheduler/buckets/bucket_grid.h"
 
 namespace pm::plugin {
 

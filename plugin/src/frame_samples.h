@@ -7,8 +7,8 @@
 #include <span>
 
 #include "integrator/transport/frame_renderer.h"
-#include "integrator/transport/render_settings.h"
-#include "scheduler/frame_store.h"
+#include "integrator/transport/frame/render_settings.h"
+#include "scheduler/film/frame_store.h"
 
 namespace pm::plugin {
 

@@ -16,7 +16,7 @@
 #include "plugin/src/memory_limit.h"
 #include "plugin/src/objects.h"
 #include "plugin/src/struct_reader.h"
-#include "scheduler/worker_arena.h"
+#include "scheduler/buckets/worker_arena.h"
 
 namespace pm::plugin {
 

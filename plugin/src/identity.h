@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "integrator/scene/scene.h"
-#include "integrator/transport/plan.h"
+#include "integrator/transport/plan/plan.h"
 #include "integrator/values/cancel_check.h"
 #include "plugin/src/scene_textures.h"
 #include "plugin/src/setting_values.h"

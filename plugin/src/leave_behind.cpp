@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "integrator/values/error.h"
-#include "scheduler/fp_environment.h"
+#include "scheduler/buckets/fp_environment.h"
 
 namespace pm::plugin {
 

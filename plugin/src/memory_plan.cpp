@@ -6,9 +6,9 @@
 
 #include <algorithm>
 
-#include "integrator/photons/photon.h"
+#include "integrator/photons/map/photon.h"
 #include "integrator/transport/frame_renderer.h"
-#include "integrator/transport/gather_points.h"
+#include "integrator/transport/gather/gather_points.h"
 #include "plugin/include/pm_plugin.h"
 #include "plugin/src/call_error.h"
 #include "plugin/src/frame_samples.h"
@@ -16,9 +16,9 @@
 #include "plugin/src/memory_limit.h"
 #include "plugin/src/pixel_reader.h"
 #include "plugin/src/render_photons.h"
-#include "scheduler/available_threads.h"
-#include "scheduler/bucket_errors.h"
-#include "scheduler/bucket_order.h"
+#include "scheduler/buckets/available_threads.h"
+#include "scheduler/film/bucket_errors.h"
+#include "scheduler/buckets/bucket_order.h"
 
 namespace pm::plugin {
 

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "integrator/scene/scene.h"
-#include "integrator/transport/plan.h"
+#include "integrator/transport/plan/plan.h"
 #include "plugin/src/setting_values.h"
-#include "scheduler/bucket_grid.h"
+#include "scheduler/buckets/bucket_grid.h"
 
 namespace pm::plugin {
 

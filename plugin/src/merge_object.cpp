@@ -13,7 +13,7 @@
 #include "plugin/src/pixel_reader.h"
 #include "plugin/src/statistics_json.h"
 #include "plugin/src/version.h"
-#include "scheduler/frame_store_bytes.h"
+#include "scheduler/film/frame_store_bytes.h"
 
 namespace pm::plugin {
 

@@ -19,7 +19,7 @@
 #include "plugin/src/layer_table.h"
 #include "plugin/src/piece_head.h"
 #include "plugin/src/setting_values.h"
-#include "scheduler/frame_store.h"
+#include "scheduler/film/frame_store.h"
 
 namespace pm::plugin {
 

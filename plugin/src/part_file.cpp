@@ -13,7 +13,7 @@
 #include "plugin/src/owned_file.h"
 #include "plugin/src/piece_file.h"
 #include "plugin/src/temporary_file.h"
-#include "scheduler/frame_store_bytes.h"
+#include "scheduler/film/frame_store_bytes.h"
 
 namespace pm::plugin {
 

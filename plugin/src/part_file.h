@@ -10,7 +10,7 @@
 
 #include "integrator/values/rect.h"
 #include "plugin/src/piece_head.h"
-#include "scheduler/frame_store.h"
+#include "scheduler/film/frame_store.h"
 
 namespace pm::plugin {
 

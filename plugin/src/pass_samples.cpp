@@ -5,7 +5,7 @@
 #include <array>
 
 #include "plugin/src/frame_samples.h"
-#include "scheduler/bucket_grid.h"
+#include "scheduler/buckets/bucket_grid.h"
 
 namespace pm::plugin {
 

@@ -14,7 +14,7 @@
 #include <system_error>
 #include <utility>
 
-#include "integrator/photons/photon_bytes.h"
+#include "integrator/photons/trace/photon_bytes.h"
 #include "integrator/values/error.h"
 #include "plugin/src/call_error.h"
 

@@ -15,8 +15,8 @@
 #include <string>
 #include <vector>
 
-#include "integrator/photons/photon_store.h"
-#include "integrator/transport/plan.h"
+#include "integrator/photons/trace/photon_store.h"
+#include "integrator/transport/plan/plan.h"
 #include "plugin/src/disk_thread.h"
 #include "plugin/src/owned_file.h"
 #include "plugin/src/piece_file.h"

@@ -10,7 +10,7 @@
 #include "plugin/include/pm_plugin.h"
 #include "plugin/src/layer_table.h"
 #include "plugin/src/setting_values.h"
-#include "scheduler/frame_store.h"
+#include "scheduler/film/frame_store.h"
 
 namespace pm::plugin {
 

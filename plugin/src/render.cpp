@@ -11,8 +11,8 @@
 #include "plugin/src/callback_scope.h"
 #include "plugin/src/entry.h"
 #include "plugin/src/render_pieces.h"
-#include "scheduler/bucket_order.h"
-#include "scheduler/worker_arena.h"
+#include "scheduler/buckets/bucket_order.h"
+#include "scheduler/buckets/worker_arena.h"
 
 namespace pm::plugin {
 

@@ -10,7 +10,7 @@
 #include "plugin/src/call_error.h"
 #include "plugin/src/frame_samples.h"
 #include "plugin/src/render_work.h"
-#include "scheduler/correlated_choice.h"
+#include "scheduler/film/correlated_choice.h"
 
 namespace pm::plugin {
 

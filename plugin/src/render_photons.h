@@ -7,9 +7,9 @@
 #include <memory>
 #include <string>
 
-#include "integrator/photons/photon_store.h"
+#include "integrator/photons/trace/photon_store.h"
 #include "integrator/scene/scene.h"
-#include "integrator/transport/plan.h"
+#include "integrator/transport/plan/plan.h"
 #include "plugin/src/identity.h"
 #include "plugin/src/photon_file.h"
 #include "plugin/src/setting_values.h"

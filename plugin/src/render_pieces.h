@@ -15,8 +15,8 @@
 #include "plugin/src/checkpoint.h"
 #include "plugin/src/piece_head.h"
 #include "plugin/src/setting_values.h"
-#include "scheduler/bucket_grid.h"
-#include "scheduler/frame_store.h"
+#include "scheduler/buckets/bucket_grid.h"
+#include "scheduler/film/frame_store.h"
 
 namespace pm::plugin {
 

@@ -15,7 +15,7 @@
 #include "plugin/src/frame_samples.h"
 #include "plugin/src/memory_limit.h"
 #include "plugin/src/pass_samples.h"
-#include "scheduler/bucket_order.h"
+#include "scheduler/buckets/bucket_order.h"
 
 namespace pm::plugin {
 

@@ -12,7 +12,7 @@
 
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame_renderer.h"
-#include "integrator/transport/plan.h"
+#include "integrator/transport/plan/plan.h"
 #include "integrator/values/error.h"
 #include "integrator/values/stopwatch.h"
 #include "plugin/src/bucket_passes.h"
@@ -25,11 +25,11 @@
 #include "plugin/src/setting_values.h"
 #include "plugin/src/stop_rule.h"
 #include "plugin/src/warning_log.h"
-#include "scheduler/bucket_grid.h"
-#include "scheduler/bucket_runner.h"
-#include "scheduler/cancel_token.h"
-#include "scheduler/frame_store.h"
-#include "scheduler/worker_arena.h"
+#include "scheduler/buckets/bucket_grid.h"
+#include "scheduler/buckets/bucket_runner.h"
+#include "scheduler/buckets/cancel_token.h"
+#include "scheduler/film/frame_store.h"
+#include "scheduler/buckets/worker_arena.h"
 
 namespace pm::plugin {
 

@@ -16,7 +16,7 @@
 #include "plugin/src/leave_behind.h"
 #include "plugin/src/light_reader.h"
 #include "plugin/src/transform_reader.h"
-#include "scheduler/worker_arena.h"
+#include "scheduler/buckets/worker_arena.h"
 
 namespace pm::plugin {
 

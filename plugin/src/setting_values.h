@@ -9,7 +9,7 @@
 #include <string_view>
 #include <variant>
 
-#include "integrator/transport/render_settings.h"
+#include "integrator/transport/frame/render_settings.h"
 #include "integrator/values/rect.h"
 #include "plugin/src/setting_table.h"
 

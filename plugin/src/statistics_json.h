@@ -7,7 +7,7 @@
 
 #include "plugin/src/json.h"
 #include "plugin/src/setting_values.h"
-#include "scheduler/frame_error.h"
+#include "scheduler/film/frame_error.h"
 
 namespace pm::plugin {
 

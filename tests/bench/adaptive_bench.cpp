@@ -13,7 +13,7 @@
 #include <random>
 
 #include "integrator/values/error.h"
-#include "scheduler/sample_allotment.h"
+#include "scheduler/film/sample_allotment.h"
 #include "tests/bench/adaptive_run.h"
 #include "tests/bench/adaptive_scenes.h"
 #include "tests/bench/pass_renderer.h"

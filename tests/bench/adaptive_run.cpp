@@ -11,8 +11,8 @@
 #include <numeric>
 #include <utility>
 
-#include "scheduler/bucket_grid.h"
-#include "scheduler/frame_error.h"
+#include "scheduler/buckets/bucket_grid.h"
+#include "scheduler/film/frame_error.h"
 #include "tests/bench/picture_error.h"
 #include "tests/bench/timing.h"
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "integrator/scene/scene.h"
-#include "integrator/transport/render_settings.h"
-#include "scheduler/sample_allotment.h"
+#include "integrator/transport/frame/render_settings.h"
+#include "scheduler/film/sample_allotment.h"
 #include "tests/bench/pass_renderer.h"
 
 namespace pm::bench {

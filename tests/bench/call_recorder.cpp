@@ -10,7 +10,7 @@
 
 #include "integrator/materials/bsdf.h"
 #include "integrator/scene/camera.h"
-#include "integrator/transport/direct_light.h"
+#include "integrator/transport/path/direct_light.h"
 #include "integrator/values/error.h"
 
 namespace pm::bench {

@@ -7,12 +7,12 @@
 #include <cstdint>
 #include <vector>
 
-#include "integrator/photons/caustic_map.h"
-#include "integrator/photons/irradiance_sites.h"
-#include "integrator/photons/surface_estimate.h"
+#include "integrator/photons/estimate/caustic_map.h"
+#include "integrator/photons/estimate/irradiance_sites.h"
+#include "integrator/photons/estimate/surface_estimate.h"
 #include "integrator/rays/ray_tracer.h"
 #include "integrator/scene/scene.h"
-#include "integrator/transport/gather_points.h"
+#include "integrator/transport/gather/gather_points.h"
 
 namespace pm::bench {
 

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "integrator/scene/scene.h"
-#include "integrator/transport/render_settings.h"
-#include "scheduler/frame_error.h"
+#include "integrator/transport/frame/render_settings.h"
+#include "scheduler/film/frame_error.h"
 
 namespace pm::bench {
 

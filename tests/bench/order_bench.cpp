@@ -8,9 +8,9 @@
 #include <cstdio>
 #include <thread>
 
-#include "scheduler/bucket_order.h"
-#include "scheduler/bucket_runner.h"
-#include "scheduler/correlated_choice.h"
+#include "scheduler/buckets/bucket_order.h"
+#include "scheduler/buckets/bucket_runner.h"
+#include "scheduler/film/correlated_choice.h"
 #include "tests/bench/bench_scenes.h"
 #include "tests/bench/idle_share.h"
 #include "tests/bench/order_picture.h"

@@ -8,7 +8,7 @@
 #include <fstream>
 
 #include "integrator/values/error.h"
-#include "scheduler/bucket_order.h"
+#include "scheduler/buckets/bucket_order.h"
 
 namespace pm::bench {
 

@@ -7,10 +7,10 @@
 #include <numeric>
 #include <utility>
 
-#include "scheduler/bucket_order.h"
-#include "scheduler/bucket_runner.h"
-#include "scheduler/correlated_choice.h"
-#include "scheduler/hilbert_order.h"
+#include "scheduler/buckets/bucket_order.h"
+#include "scheduler/buckets/bucket_runner.h"
+#include "scheduler/film/correlated_choice.h"
+#include "scheduler/buckets/hilbert_order.h"
 #include "tests/bench/timing.h"
 
 namespace pm::bench {

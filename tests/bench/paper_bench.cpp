@@ -9,7 +9,7 @@
 #include <cstdio>
 #include <filesystem>
 
-#include "scheduler/available_threads.h"
+#include "scheduler/buckets/available_threads.h"
 #include "tests/bench/paper_claims.h"
 #include "tests/bench/paper_levels.h"
 #include "tests/bench/paper_orders.h"

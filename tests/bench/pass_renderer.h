@@ -12,7 +12,7 @@
 
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame_renderer.h"
-#include "scheduler/frame_store.h"
+#include "scheduler/film/frame_store.h"
 
 namespace pm::bench {
 

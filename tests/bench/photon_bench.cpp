@@ -4,7 +4,7 @@
 #include <fmt/format.h>
 #include <tbb/task_arena.h>
 
-#include "integrator/photons/photon_tracer.h"
+#include "integrator/photons/trace/photon_tracer.h"
 #include "tests/bench/bench_scenes.h"
 #include "tests/bench/speed_bench.h"
 

@@ -9,11 +9,11 @@
 #include <algorithm>
 #include <nanoflann.hpp>
 
-#include "integrator/photons/irradiance_sites.h"
-#include "integrator/photons/photon_tracer.h"
+#include "integrator/photons/estimate/irradiance_sites.h"
+#include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/camera.h"
-#include "scheduler/hilbert_order.h"
+#include "scheduler/buckets/hilbert_order.h"
 #include "tests/bench/bench_scenes.h"
 #include "tests/bench/speed_bench.h"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "integrator/photons/photon_map.h"
-#include "integrator/transport/pixel_sums.h"
+#include "integrator/photons/map/photon_map.h"
+#include "integrator/transport/frame/pixel_sums.h"
 #include "tests/bench/sweep.h"
 #include "tests/bench/sweep_look.h"
 #include "tests/integrator/rooms.h"

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "integrator/photons/photon_tracer.h"
+#include "integrator/photons/trace/photon_tracer.h"
 #include "tests/integrator/scene_maker.h"
 
 namespace pm::test {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Directions towards casters against the density they state; casters against what they must hold.
-#include "integrator/photons/aim_mixture.h"
+#include "integrator/photons/emission/aim_mixture.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "integrator/photons/caustic_casters.h"
+#include "integrator/photons/emission/caustic_casters.h"
 #include "integrator/scene/light_sampler.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"

@@ -7,8 +7,8 @@
 #include <memory>
 #include <utility>
 
-#include "integrator/photons/aimed_emission.h"
-#include "integrator/photons/photon_tracer.h"
+#include "integrator/photons/emission/aimed_emission.h"
+#include "integrator/photons/trace/photon_tracer.h"
 
 namespace pm::test {
 

@@ -10,8 +10,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "integrator/photons/long_chains.h"
-#include "integrator/photons/photon_tracer.h"
+#include "integrator/photons/trace/long_chains.h"
+#include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/scene/light_sampler.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"

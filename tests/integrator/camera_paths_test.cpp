@@ -11,7 +11,7 @@
 #include <span>
 #include <vector>
 
-#include "integrator/transport/photon_integrator.h"
+#include "integrator/transport/photon/photon_integrator.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"

@@ -11,7 +11,7 @@
 #include <numbers>
 #include <vector>
 
-#include "integrator/photons/caustic_map.h"
+#include "integrator/photons/estimate/caustic_map.h"
 #include "integrator/sampling/warps.h"
 #include "tests/integrator/even_light.h"
 #include "tests/integrator/scene_maker.h"

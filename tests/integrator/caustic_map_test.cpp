@@ -3,7 +3,7 @@
 // Density estimates of independent photons on an evenly lit plane, where theory says all about
 // them: no bias (analytic F1), which an estimate that counts the photon that made its radius, or
 // the one it stands on, has (F2).
-#include "integrator/photons/caustic_map.h"
+#include "integrator/photons/estimate/caustic_map.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

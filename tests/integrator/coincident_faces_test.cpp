@@ -11,7 +11,7 @@
 
 #include "integrator/materials/bsdf.h"
 #include "integrator/scene/scene.h"
-#include "integrator/transport/direct_light.h"
+#include "integrator/transport/path/direct_light.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/sky_picture.h"
 #include "tests/integrator/statistics.h"

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // Which discs win on a plane whose light is known: the widest where it is even, narrow ones where
 // it lies in lines, both side by side, and the widest where there are no two halves to compare.
-#include "integrator/photons/disc_trials.h"
+#include "integrator/photons/trace/disc_trials.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@
 #include <functional>
 #include <vector>
 
-#include "integrator/photons/caustic_map.h"
+#include "integrator/photons/estimate/caustic_map.h"
 #include "tests/integrator/statistics.h"
 
 namespace pm::test {

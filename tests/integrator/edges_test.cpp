@@ -9,9 +9,9 @@
 #include <numbers>
 #include <vector>
 
-#include "integrator/photons/irradiance_sites.h"
-#include "integrator/photons/photon_tracer.h"
-#include "integrator/photons/surface_patches.h"
+#include "integrator/photons/estimate/irradiance_sites.h"
+#include "integrator/photons/trace/photon_tracer.h"
+#include "integrator/photons/estimate/surface_patches.h"
 #include "tests/integrator/even_light.h"
 #include "tests/integrator/scene_maker.h"
 

@@ -10,8 +10,8 @@
 #include <numbers>
 #include <vector>
 
-#include "integrator/photons/aimed_emission.h"
-#include "integrator/photons/photon_tracer.h"
+#include "integrator/photons/emission/aimed_emission.h"
+#include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/scene/light_sampler.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Aimed emission: the expectation of the unaimed, more of it where caustics are cast.
-#include "integrator/photons/aimed_emission.h"
+#include "integrator/photons/emission/aimed_emission.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <cstring>
 #include <functional>
 
-#include "integrator/photons/photon_tracer.h"
+#include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/sampling/sampler.h"
 #include "tests/integrator/aimed.h"
 #include "tests/integrator/scene_maker.h"

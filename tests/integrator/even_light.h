@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "integrator/photons/photon.h"
+#include "integrator/photons/map/photon.h"
 #include "tests/integrator/statistics.h"
 
 namespace pm::test {

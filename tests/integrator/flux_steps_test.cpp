@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Photons drawn in proportion to their flux.
-#include "integrator/photons/flux_steps.h"
+#include "integrator/photons/emission/flux_steps.h"
 
 #include <gtest/gtest.h>
 #include <tbb/task_arena.h>

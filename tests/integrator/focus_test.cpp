@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // Scenes that reach far beyond what is seen: photons are aimed at where gather rays end, and bring
 // what the unaimed bring.
-#include "integrator/photons/focus.h"
+#include "integrator/photons/emission/focus.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,11 +16,11 @@
 #include <utility>
 #include <vector>
 
-#include "integrator/photons/aimed_emission.h"
-#include "integrator/photons/photon_store.h"
-#include "integrator/photons/photon_tracer.h"
+#include "integrator/photons/emission/aimed_emission.h"
+#include "integrator/photons/trace/photon_store.h"
+#include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/transport/frame_renderer.h"
-#include "integrator/transport/gather_focus.h"
+#include "integrator/transport/survey/gather_focus.h"
 #include "tests/integrator/replicates.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/statistics.h"

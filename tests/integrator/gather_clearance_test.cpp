@@ -10,7 +10,7 @@
 #include <numbers>
 #include <span>
 
-#include "integrator/transport/gather_points.h"
+#include "integrator/transport/gather/gather_points.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"
 

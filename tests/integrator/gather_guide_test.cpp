@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // The guide of gather rays: its density is that of what it makes, it goes to where light comes
 // from, and light found by it has the mean of that found by the cosine, and less noise.
-#include "integrator/transport/gather_guide.h"
+#include "integrator/transport/gather/gather_guide.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <numbers>
 #include <vector>
 
-#include "integrator/transport/gather_points.h"
+#include "integrator/transport/gather/gather_points.h"
 #include "tests/integrator/replicates.h"
 #include "tests/integrator/scene_maker.h"
 

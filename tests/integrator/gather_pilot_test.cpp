@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // How much gather rays differ, against a case whose distribution is known, and what follows from
 // it.
-#include "integrator/transport/gather_pilot.h"
+#include "integrator/transport/survey/gather_pilot.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-#include "integrator/photons/photon_map.h"
+#include "integrator/photons/map/photon_map.h"
 #include "integrator/sampling/warps.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // Gather points bring what each camera sample's own gather ray would bring; what they bring depends
 // on the place alone.
-#include "integrator/transport/gather_points.h"
+#include "integrator/transport/gather/gather_points.h"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // Images of lamps much smaller than a pixel, straight and in a mirror: where they are, how large,
 // and that pixels show them with little noise.
-#include "integrator/transport/lamp_images.h"
+#include "integrator/transport/seen_lights/lamp_images.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "integrator/sampling/pixel_filter.h"
-#include "integrator/transport/seen_lamps.h"
+#include "integrator/transport/seen_lights/seen_lamps.h"
 #include "tests/integrator/replicates.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"

@@ -12,7 +12,7 @@
 
 #include "integrator/geometry/polygon_mesh.h"
 #include "integrator/scene/light_sampler.h"
-#include "integrator/transport/lit_places.h"
+#include "integrator/transport/survey/lit_places.h"
 #include "tests/integrator/scene_maker.h"
 
 namespace pm::test {

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // Several lamp samples a camera sample: the same mean, less noise, and how many a pilot finds to
 // pay.
-#include "integrator/transport/lamp_samples.h"
+#include "integrator/transport/survey/lamp_samples.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 #include <memory>
 #include <vector>
 
-#include "integrator/transport/photon_integrator.h"
+#include "integrator/transport/photon/photon_integrator.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"

@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "integrator/photons/irradiance_sites.h"
-#include "integrator/photons/photon_tracer.h"
+#include "integrator/photons/estimate/irradiance_sites.h"
+#include "integrator/photons/trace/photon_tracer.h"
 #include "tests/integrator/replicates.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"

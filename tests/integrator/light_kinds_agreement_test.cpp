@@ -6,7 +6,7 @@
 
 #include <numbers>
 
-#include "integrator/transport/plan.h"
+#include "integrator/transport/plan/plan.h"
 #include "tests/integrator/replicates.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/sky_picture.h"

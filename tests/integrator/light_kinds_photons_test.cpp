@@ -11,8 +11,8 @@
 #include <numbers>
 #include <vector>
 
-#include "integrator/photons/aimed_emission.h"
-#include "integrator/photons/photon_tracer.h"
+#include "integrator/photons/emission/aimed_emission.h"
+#include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/box_shadow.h"
 #include "tests/integrator/aimed.h"

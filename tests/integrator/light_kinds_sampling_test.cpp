@@ -9,7 +9,7 @@
 #include <map>
 #include <numbers>
 
-#include "integrator/photons/aim_shadows.h"
+#include "integrator/photons/emission/aim_shadows.h"
 #include "integrator/sampling/pinned_math.h"
 #include "integrator/scene/box_shadow.h"
 #include "integrator/scene/light_sampler.h"

@@ -12,7 +12,7 @@
 #include "integrator/scene/light_guide.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/light_tree.h"
-#include "integrator/transport/lit_places.h"
+#include "integrator/transport/survey/lit_places.h"
 #include "tests/integrator/lamp_rooms.h"
 #include "tests/integrator/statistics.h"
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "integrator/transport/direct_light.h"
+#include "integrator/transport/path/direct_light.h"
 
 namespace pm::test {
 namespace {

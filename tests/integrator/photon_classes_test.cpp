@@ -9,9 +9,9 @@
 #include <atomic>
 #include <cmath>
 
-#include "integrator/photons/aimed_emission.h"
-#include "integrator/photons/caustic_map.h"
-#include "integrator/photons/photon_tracer.h"
+#include "integrator/photons/emission/aimed_emission.h"
+#include "integrator/photons/estimate/caustic_map.h"
+#include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/sampling/sampler.h"
 #include "tests/integrator/replicates.h"
 #include "tests/integrator/rooms.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // The photon map against a search through all photons.
-#include "integrator/photons/photon_map.h"
+#include "integrator/photons/map/photon_map.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // Photons on their own: what is emitted arrives, dies or escapes and nothing is lost; form factors;
 // the same bits for any number of threads; the flux of a caustic.
-#include "integrator/photons/photon_tracer.h"
+#include "integrator/photons/trace/photon_tracer.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>

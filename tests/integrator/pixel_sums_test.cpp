@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "integrator/transport/pixel_sums.h"
+#include "integrator/transport/frame/pixel_sums.h"
 
 #include <gtest/gtest.h>
 

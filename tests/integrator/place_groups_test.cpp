@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Groups of neighbouring places.
-#include "integrator/photons/place_groups.h"
+#include "integrator/photons/emission/place_groups.h"
 
 #include <gtest/gtest.h>
 

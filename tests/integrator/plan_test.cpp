@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // What a scene has no need of is not planned.
-#include "integrator/transport/plan.h"
+#include "integrator/transport/plan/plan.h"
 
 #include <gtest/gtest.h>
 
@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "integrator/photons/photon_tracer.h"
-#include "integrator/photons/surface_patches.h"
+#include "integrator/photons/trace/photon_tracer.h"
+#include "integrator/photons/estimate/surface_patches.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/transport/frame_renderer.h"
 #include "tests/integrator/scene_maker.h"

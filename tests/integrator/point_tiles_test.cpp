@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Gather points are there while somebody may ask for them, and no longer.
-#include "integrator/transport/point_tiles.h"
+#include "integrator/transport/gather/point_tiles.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <span>
 #include <vector>
 
-#include "integrator/photons/photon_tracer.h"
-#include "integrator/transport/gather_points.h"
+#include "integrator/photons/trace/photon_tracer.h"
+#include "integrator/transport/gather/gather_points.h"
 #include "tests/integrator/rooms.h"
 
 namespace pm::test {

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "integrator/transport/gather_points.h"
+#include "integrator/transport/gather/gather_points.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"
 

@@ -13,7 +13,7 @@
 #include <span>
 
 #include "integrator/transport/frame_renderer.h"
-#include "integrator/transport/photon_integrator.h"
+#include "integrator/transport/photon/photon_integrator.h"
 
 namespace pm::test {
 

@@ -11,7 +11,7 @@
 
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
-#include "integrator/transport/photon_pass.h"
+#include "integrator/transport/photon/photon_pass.h"
 #include "tests/integrator/scene_maker.h"
 
 namespace pm::test {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "integrator/scene/light_choice.h"
-#include "integrator/transport/path_walk.h"
+#include "integrator/transport/path/path_walk.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"

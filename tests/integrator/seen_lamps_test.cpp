@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Lamps that the camera sees, straight or by way of mirrors and glass.
-#include "integrator/transport/seen_lamps.h"
+#include "integrator/transport/seen_lights/seen_lamps.h"
 
 #include <gtest/gtest.h>
 

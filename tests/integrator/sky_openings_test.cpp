@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // Rooms lit through windows: photons from afar are aimed at these, and bring what the unaimed
 // bring.
-#include "integrator/transport/sky_openings.h"
+#include "integrator/transport/survey/sky_openings.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -11,9 +11,9 @@
 #include <atomic>
 #include <cmath>
 
-#include "integrator/photons/aimed_emission.h"
-#include "integrator/photons/photon_tracer.h"
-#include "integrator/photons/sky_parts.h"
+#include "integrator/photons/emission/aimed_emission.h"
+#include "integrator/photons/trace/photon_tracer.h"
+#include "integrator/photons/emission/sky_parts.h"
 #include "integrator/scene/light_sampler.h"
 #include "tests/integrator/statistics.h"
 #include "tests/integrator/window_room.h"

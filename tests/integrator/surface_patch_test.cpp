@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Shares of discs at edges and corners against their closed forms.
-#include "integrator/photons/surface_patch.h"
+#include "integrator/photons/estimate/surface_patch.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <numbers>
 #include <vector>
 
-#include "integrator/photons/surface_patches.h"
+#include "integrator/photons/estimate/surface_patches.h"
 #include "integrator/sampling/warps.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"

@@ -13,7 +13,7 @@
 #include "integrator/scene/camera.h"
 #include "integrator/scene/huge_triangles.h"
 #include "integrator/scene/light_sampler.h"
-#include "integrator/transport/path_integrator.h"
+#include "integrator/transport/path/path_integrator.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"
 

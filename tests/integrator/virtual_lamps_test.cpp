@@ -3,7 +3,7 @@
 // Light that caustics send straight to other surfaces: what gather rays and rays to photons bring
 // together is the integral over the lit patch, whether it is small and far or wide and near, and
 // neither a speck nor noise comes of it.
-#include "integrator/transport/virtual_lamps.h"
+#include "integrator/transport/gather/virtual_lamps.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "integrator/sampling/warps.h"
-#include "integrator/transport/final_gather.h"
+#include "integrator/transport/gather/final_gather.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"
 

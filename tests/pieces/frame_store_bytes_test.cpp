@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "scheduler/frame_store_bytes.h"
+#include "scheduler/film/frame_store_bytes.h"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,7 @@
 #include <limits>
 #include <random>
 
-#include "integrator/photons/photon_bytes.h"
+#include "integrator/photons/trace/photon_bytes.h"
 #include "plugin/src/piece_file.h"
 #include "tests/pieces/photon_host.h"
 

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "integrator/values/error.h"
-#include "scheduler/bucket_grid.h"
-#include "scheduler/frame_store.h"
-#include "scheduler/sample_allotment.h"
+#include "scheduler/buckets/bucket_grid.h"
+#include "scheduler/film/frame_store.h"
+#include "scheduler/film/sample_allotment.h"
 
 namespace pm {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "scheduler/available_threads.h"
+#include "scheduler/buckets/available_threads.h"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 #include <string>
 
 #include "integrator/values/error.h"
-#include "scheduler/worker_arena.h"
+#include "scheduler/buckets/worker_arena.h"
 
 #if defined(__linux__)
 #include <sched.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // The error of a frame that comes bucket by bucket, against that of the whole frame.
-#include "scheduler/bucket_errors.h"
+#include "scheduler/film/bucket_errors.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "scheduler/bucket_grid.h"
+#include "scheduler/buckets/bucket_grid.h"
 
 #include <gtest/gtest.h>
 

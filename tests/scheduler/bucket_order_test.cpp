@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "scheduler/bucket_order.h"
+#include "scheduler/buckets/bucket_order.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,8 +12,8 @@
 #include <string>
 #include <utility>
 
-#include "scheduler/hilbert_order.h"
-#include "scheduler/static_orders.h"
+#include "scheduler/buckets/hilbert_order.h"
+#include "scheduler/buckets/static_orders.h"
 
 namespace pm {
 namespace {

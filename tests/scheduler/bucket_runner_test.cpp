@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "scheduler/bucket_runner.h"
+#include "scheduler/buckets/bucket_runner.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -16,8 +16,8 @@
 #include <thread>
 
 #include "integrator/values/error.h"
-#include "scheduler/bucket_order.h"
-#include "scheduler/hilbert_order.h"
+#include "scheduler/buckets/bucket_order.h"
+#include "scheduler/buckets/hilbert_order.h"
 
 namespace pm {
 namespace {

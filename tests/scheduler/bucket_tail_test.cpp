@@ -14,8 +14,8 @@
 #include <string>
 #include <thread>
 
-#include "scheduler/bucket_runner.h"
-#include "scheduler/static_orders.h"
+#include "scheduler/buckets/bucket_runner.h"
+#include "scheduler/buckets/static_orders.h"
 
 namespace pm {
 namespace {

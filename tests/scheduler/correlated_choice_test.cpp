@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "scheduler/correlated_choice.h"
+#include "scheduler/film/correlated_choice.h"
 
 #include <gtest/gtest.h>
 
@@ -8,8 +8,8 @@
 #include <limits>
 #include <thread>
 
-#include "scheduler/hilbert_order.h"
-#include "scheduler/static_orders.h"
+#include "scheduler/buckets/hilbert_order.h"
+#include "scheduler/buckets/static_orders.h"
 
 namespace pm {
 namespace {

@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "scheduler/frame_error.h"
-#include "scheduler/frame_store.h"
+#include "scheduler/film/frame_error.h"
+#include "scheduler/film/frame_store.h"
 
 namespace pm::test {
 

@@ -4,7 +4,7 @@
 
 #include <array>
 
-#include "scheduler/atom_noise.h"
+#include "scheduler/film/atom_noise.h"
 
 namespace pm {
 

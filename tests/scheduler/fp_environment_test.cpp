@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "scheduler/fp_environment.h"
+#include "scheduler/buckets/fp_environment.h"
 
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
@@ -11,7 +11,7 @@
 #include <cstdint>
 #include <limits>
 
-#include "scheduler/worker_arena.h"
+#include "scheduler/buckets/worker_arena.h"
 
 #if defined(__SSE__)
 

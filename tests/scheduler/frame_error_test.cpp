@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // The frame's error told without a reference, on pictures whose truth is known.
-#include "scheduler/frame_error.h"
+#include "scheduler/film/frame_error.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "scheduler/frame_store.h"
+#include "scheduler/film/frame_store.h"
 #include "tests/scheduler/error_frame.h"
 
 namespace pm::test {

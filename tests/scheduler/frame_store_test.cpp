@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "scheduler/frame_store.h"
+#include "scheduler/film/frame_store.h"
 
 #include <gtest/gtest.h>
 #include <algorithm>
@@ -12,7 +12,7 @@
 #include <random>
 
 #include "integrator/values/error.h"
-#include "scheduler/fp_environment.h"
+#include "scheduler/buckets/fp_environment.h"
 
 namespace pm {
 namespace {

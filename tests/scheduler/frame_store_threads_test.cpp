@@ -6,7 +6,7 @@
 #include <thread>
 #include <vector>
 
-#include "scheduler/frame_store.h"
+#include "scheduler/film/frame_store.h"
 
 namespace pm {
 namespace {

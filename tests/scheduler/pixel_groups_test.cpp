@@ -9,8 +9,8 @@
 #include <random>
 #include <vector>
 
-#include "scheduler/bucket_grid.h"
-#include "scheduler/frame_store.h"
+#include "scheduler/buckets/bucket_grid.h"
+#include "scheduler/film/frame_store.h"
 
 namespace pm {
 namespace {

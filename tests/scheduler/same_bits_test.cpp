@@ -15,10 +15,10 @@
 #include <functional>
 #include <thread>
 
-#include "scheduler/bucket_order.h"
-#include "scheduler/bucket_runner.h"
-#include "scheduler/correlated_choice.h"
-#include "scheduler/frame_store.h"
+#include "scheduler/buckets/bucket_order.h"
+#include "scheduler/buckets/bucket_runner.h"
+#include "scheduler/film/correlated_choice.h"
+#include "scheduler/film/frame_store.h"
 
 namespace pm {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "scheduler/sample_allotment.h"
+#include "scheduler/film/sample_allotment.h"
 
 #include <gtest/gtest.h>
 
@@ -12,7 +12,7 @@
 #include <numbers>
 
 #include "integrator/values/error.h"
-#include "scheduler/bucket_grid.h"
+#include "scheduler/buckets/bucket_grid.h"
 #include "tests/scheduler/even_atom.h"
 
 namespace pm {

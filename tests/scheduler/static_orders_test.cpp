@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "scheduler/static_orders.h"
+#include "scheduler/buckets/static_orders.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "integrator/values/error.h"
-#include "scheduler/bucket_order.h"
+#include "scheduler/buckets/bucket_order.h"
 
 namespace pm {
 namespace {

@@ -1,0 +1,405 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "integrator/photons/trace/photon_tracer.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <mutex>
+#include <utility>
+
+#include "integrator/materials/bsdf.h"
+#include "integrator/sampling/event_count.h"
+#include "integrator/sampling/sampler.h"
+#include "integrator/values/cancel_check.h"
+
+namespace pm {
+
+namespace {
+
+// Small enough for a pass's photons to be shared evenly among many threads: eight batches of 4096
+// left two of these at 1.83 times the speed of one.
+constexpr std::uint64_t kBatchSize = 512;
+// Glass reflects 4 % of most light, often to where it is all there is: there so little flux would
+// lie in a few bright photons. A caustic photon divides at the first of its events, and its smaller
+// part goes on at least so often. See docs/decisions.md.
+constexpr float kLeastShare = 0.2f;
+constexpr int kDividedEvents = 2;
+
+struct Batch {
+    std::vector<Photon> photons;
+    PhotonBalance balance;
+    std::vector<Photon> descended;
+    std::vector<EmissionRecord> records;
+    std::uint64_t metCaster = 0;
+};
+
+class PhotonWalk {
+  public:
+    PhotonWalk(const Scene& scene, const LightSampler& lights, const PhotonTraceRequest& request)
+        : m_scene(scene),
+          m_lights(lights),
+          m_request(request),
+          m_aim(request.aim && !request.aim->empty() ? request.aim : nullptr),
+          m_chains(request.oneInChains, request.count,
+                   isCaustic(request.kind) ? request.descent : 1.0f,
+                   combineBits(combineBits(request.seed, request.pass),
+                               static_cast<std::uint64_t>(request.kind))),
+          m_scale(1.0f / static_cast<float>(request.count)) {}
+
+    void trace(std::uint64_t index, Batch& batch) const {
+        // Even streams are cameras'; see FrameRenderer.
+        Sampler sampler(m_request.seed, 2 * std::uint64_t{m_request.pass} + 1,
+                        static_cast<std::uint64_t>(m_request.kind),
+                        static_cast<std::uint32_t>(index));
+        AimedPhoton photon;
+        ++batch.balance.emitted;
+        if (!emit(sampler, photon)) return;
+        photon.flux *= m_scale;
+        batch.balance.fluxEmitted += channelSum(photon.flux);
+        const double landed = walk(photon, static_cast<std::uint32_t>(index), sampler, batch);
+        if (m_aim && m_request.keepRecords)
+            batch.records.push_back({photon.light, photon.caster,
+                                     static_cast<float>(channelSum(photon.flux)),
+                                     static_cast<float>(landed), photon.part});
+    }
+
+  private:
+    bool emit(Sampler& sampler, AimedPhoton& photon) const {
+        Vec2f uChoice;
+        if (m_aim)
+            uChoice = sampler.next2D();
+        else
+            uChoice.x = sampler.next1D();
+        const Vec2f uPoint = sampler.next2D(), uDirection = sampler.next2D();
+        return m_aim ? m_aim->emit(uChoice, uPoint, uDirection, photon)
+                     : m_lights.emit(uChoice.x, uPoint, uDirection, photon);
+    }
+
+    // How far a photon has come.
+    enum class Stage : std::uint8_t {
+        kStraight,   // no diffuse surface yet, and no other lobe either
+        kSpecular,   // no diffuse surface yet, but other lobes, the first one not broad
+        kDiffuse,    // scattered diffusely, or broadly, at first where it came straight from the
+                     // light
+        kDescended,  // diffusely where it came by way of other lobes
+        kBroadened,  // the same, and on by broad lobes
+        kRefocused,  // descended, and on by other lobes before it met another diffuse surface
+        kLater,      // descended, and has met another since
+    };
+    struct Way {
+        Stage stage = Stage::kStraight;
+        bool isFollowed = true;  // of the share that carries on what descends from caustics
+    };
+
+    // A photon, or what goes on of it where it has divided.
+    struct Part {
+        Ray ray;
+        Rgb flux;
+        LongChains::Chain chain{};
+        Way way{};
+        EventCount events{};
+    };
+    // Parts of one photon that wait to be followed.
+    struct Waiting {
+        std::array<Part, kDividedEvents + 1> parts;
+        std::size_t count = 0;
+    };
+
+    // Returns the flux that landed as asked for, W, summed over the channels.
+    double walk(const EmittedPhoton& photon, std::uint32_t index, Sampler& sampler,
+                Batch& batch) const {
+        Waiting waiting;
+        waiting.parts[waiting.count++] = {photon.ray, photon.flux, {.index = index}};
+        double landed = 0;
+        while (waiting.count > 0) {
+            const Part part = waiting.parts[--waiting.count];
+            landed += walk(part, sampler, waiting, batch);
+        }
+        return landed;
+    }
+
+    double walk(Part part, Sampler& sampler, Waiting& waiting, Batch& batch) const {
+        PhotonBalance& balance = batch.balance;
+        auto& [ray, flux, chain, way, events] = part;
+        double landed = 0;
+        while (true) {
+            Surface surface;
+            ++balance.rays;
+            if (!m_scene.intersect(ray, surface)) {
+                balance.fluxEscaped += channelSum(flux);
+                return landed;
+            }
+            const Vec3f out = -ray.direction;
+            const Bsdf bsdf(m_scene, surface, out, Transport::kPhotons, flux);
+            if (bsdf.has(Lobe::kDiffuse)) {
+                surface.position =
+                    m_scene.pointUnderRay(surface.position, ray, bsdf.facingGeometricNormal());
+                landed += land(part, surface, bsdf, sampler, batch);
+            }
+            BsdfSample sample;
+            float uLobe = sampler.next1D();
+            const Vec2f u = sampler.next2D();
+            if (divides(part, bsdf)) {
+                batch.metCaster += events.count() == 0;
+                if (divide(part, surface, bsdf, {uLobe, u.x}, waiting, balance)) continue;
+                return landed;
+            }
+            batch.metCaster += events.count() == 0 && !bsdf.isDiffuseOnly();
+            const float survival = probabilityOfAll(bsdf);
+            const bool keeps =
+                LongChains::keeps(chain, static_cast<float>(channelSum(flux)) * survival);
+            if (keeps) uLobe *= survival;
+            if ((bsdf.isDiffuseOnly() && endsAtDiffuse(way)) || !bsdf.sample(uLobe, u, sample) ||
+                (sample.lobe == Lobe::kBroad && endsAtBroad(way)) ||
+                (sample.lobe == Lobe::kDiffuse &&
+                 (endsAtDiffuse(way) || !aimScattered(surface, bsdf, sampler, sample)))) {
+                balance.fluxAbsorbed += channelSum(flux);
+                return landed;
+            }
+            Rgb scattered = flux * sample.weight * (keeps ? survival : 1.0f);
+            if (!advance(part, sample.lobe, sampler, scattered)) {
+                balance.fluxAbsorbed += channelSum(flux);
+                return landed;
+            }
+            if (!isFinite(scattered)) break;
+            balance.fluxAbsorbed += channelSum(flux) - channelSum(scattered);
+            flux = scattered;
+            ray = sample.lobe == Lobe::kDiffuse
+                      ? m_scene.rayOnwards(surface.position, bsdf.facingGeometricNormal(),
+                                           sample.direction)
+                      : rayFrom(surface, sample.direction);
+            const float goesOn = events.add(survival);
+            if (goesOn < survival) {
+                balance.fluxAbsorbed += channelSum(flux);
+                if (!(sampler.next1D() * survival < goesOn)) return landed;
+                flux *= survival / goesOn;
+                balance.fluxAbsorbed -= channelSum(flux);
+            }
+            if (events.isOver()) break;
+        }
+        ++balance.lost;
+        balance.fluxLost += channelSum(flux);
+        return landed;
+    }
+
+    static float probabilityOfAll(const Bsdf& bsdf) {
+        if (bsdf.isDiffuseOnly()) return bsdf.probability(Lobe::kDiffuse);
+        float sum = 0.0f;
+        for (std::size_t i = 0; i < kLobeCount; ++i) sum += bsdf.probability(static_cast<Lobe>(i));
+        return std::min(sum, 1.0f);
+    }
+
+    // Of what is scattered diffusely where photons are aimed at a focus far away. False: nothing
+    // goes on.
+    bool aimScattered(const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
+                      BsdfSample& sample) const {
+        if (!m_aim || !m_aim->scattersFrom(surface.position)) return true;
+        float pdf;
+        const float uChoice = sampler.next1D();
+        if (!m_aim->scatter(surface.position, bsdf.diffuseAxis(), uChoice, sampler.next2D(),
+                            sample.direction, pdf))
+            return false;
+        sample.weight = bsdf.evaluate(Lobe::kDiffuse, sample.direction) /
+                        (pdf * bsdf.probability(Lobe::kDiffuse));
+        return !isBlack(sample.weight);
+    }
+
+    // At glass and nothing else, on the way to a caustic.
+    bool divides(const Part& part, const Bsdf& bsdf) const {
+        return isCaustic(m_request.kind) && part.events.count() < kDividedEvents &&
+               part.way.stage <= Stage::kSpecular && bsdf.has(Lobe::kReflection) &&
+               bsdf.has(Lobe::kRefraction) && !bsdf.has(Lobe::kStraight);
+    }
+
+    // The reflected part waits, the refracted one takes the place of `part`. The smaller of both
+    // goes on with the probability of its share, or a little more, the larger always, but for what
+    // tinted glass absorbs. False: the refracted one does not go on.
+    static bool divide(Part& part, const Surface& surface, const Bsdf& bsdf, Vec2f u,
+                       Waiting& waiting, PhotonBalance& balance) {
+        const float all = bsdf.probability(Lobe::kReflection) + bsdf.probability(Lobe::kRefraction);
+        const auto goesOn = [&](Lobe lobe, float uSurvival, Part& next) {
+            const float share = bsdf.probability(lobe) / all;
+            const float survival = all * (share < 0.5f ? std::max(share, kLeastShare) : 1.0f);
+            BsdfSample sample;
+            if (!(uSurvival < survival) || !bsdf.follow(lobe, sample, {uSurvival / survival, 0}))
+                return false;
+            next.ray = rayFrom(surface, sample.direction);
+            next.flux *= sample.weight * (1.0f / survival);
+            next.way.stage = Stage::kSpecular;
+            next.events.add(survival);
+            balance.fluxAbsorbed -= channelSum(next.flux);
+            return true;
+        };
+        balance.fluxAbsorbed += channelSum(part.flux);
+        Part reflection = part;
+        if (goesOn(Lobe::kReflection, u.x, reflection)) waiting.parts[waiting.count++] = reflection;
+        return goesOn(Lobe::kRefraction, u.y, part);
+    }
+
+    // By a lobe, with the flux that it carries on. False: the photon is not of the share that is
+    // followed.
+    bool advance(Part& part, Lobe lobe, Sampler& sampler, Rgb& flux) const {
+        Way& way = part.way;
+        if (lobe == Lobe::kBroad) {
+            if (way.stage == Stage::kStraight) way.stage = Stage::kDiffuse;
+            if (way.stage == Stage::kDescended) way.stage = Stage::kBroadened;
+        } else if (lobe != Lobe::kDiffuse) {
+            if (way.stage == Stage::kStraight) way.stage = Stage::kSpecular;
+            if (way.stage == Stage::kDescended || way.stage == Stage::kBroadened)
+                way.stage = Stage::kRefocused;
+        } else if (way.stage == Stage::kStraight) {
+            way.stage = Stage::kDiffuse;
+        } else if (way.stage == Stage::kSpecular) {
+            way.stage = Stage::kDescended;
+            if (isCaustic(m_request.kind))
+                way.isFollowed = m_chains.areOn() ? m_chains.begins(part.chain.index)
+                                                  : sampler.next1D() < m_request.descent;
+        } else if (way.stage == Stage::kDescended || way.stage == Stage::kBroadened ||
+                   way.stage == Stage::kRefocused) {
+            way.stage = Stage::kLater;
+            if (isCaustic(m_request.kind)) flux *= 1.0f / m_request.descent;
+            if (!way.isFollowed) return false;
+        }
+        if (lobe != Lobe::kDiffuse || part.chain.landings == 0) return true;
+        const float factor = m_chains.goOn(part.chain);
+        flux *= factor;
+        return factor > 0.0f;
+    }
+
+    // Nothing that comes after a diffuse scattering on this way is asked for.
+    bool endsAtDiffuse(const Way& way) const {
+        if (isCaustic(m_request.kind))
+            return way.stage == Stage::kStraight || m_request.descent == 0.0f || !way.isFollowed;
+        return way.stage == Stage::kSpecular && m_request.withoutCaustics;
+    }
+
+    // The same by a broad lobe: light that comes straight from there is no caustic.
+    bool endsAtBroad(const Way& way) const {
+        return isCaustic(m_request.kind) && way.stage == Stage::kStraight;
+    }
+
+    // Stores a photon where its way is asked for. Returns its flux if so; of light that descends
+    // from caustics 0.
+    double land(Part& part, const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
+                Batch& batch) const {
+        const Way& way = part.way;
+        const Rgb& flux = part.flux;
+        if (isCaustic(m_request.kind)) {
+            if (way.stage == Stage::kSpecular)
+                store(surface, bsdf, flux, batch, batch.photons);
+            else if (way.stage != Stage::kStraight)
+                landDescended(part, surface, bsdf, sampler, batch);
+            return way.stage == Stage::kSpecular ? channelSum(flux) : 0;
+        }
+        if (way.stage == Stage::kSpecular && m_request.withoutCaustics) return 0;
+        storeOfChain(part, surface, bsdf, sampler, batch, batch.photons);
+        return channelSum(flux);
+    }
+
+    // What caustics send straight to a surface, or by broad lobes, is even: the share that is
+    // followed carries it.
+    void landDescended(Part& part, const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
+                       Batch& batch) const {
+        const Way& way = part.way;
+        if (way.stage == Stage::kLater)
+            return storeOfChain(part, surface, bsdf, sampler, batch, batch.descended);
+        const bool isStraight = way.stage == Stage::kDescended || way.stage == Stage::kBroadened;
+        if (isStraight && !way.isFollowed) return;
+        store(surface, bsdf, isStraight ? part.flux * (1.0f / m_request.descent) : part.flux, batch,
+              batch.descended);
+        if (way.stage == Stage::kRefocused) batch.descended.back().normal.mark();
+    }
+
+    void storeOfChain(Part& part, const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
+                      Batch& batch, std::vector<Photon>& photons) const {
+        if (!m_chains.areOn()) return store(surface, bsdf, part.flux, batch, photons);
+        const auto flux = static_cast<float>(channelSum(part.flux));
+        LongChains::land(part.chain, flux);
+        const float probability = m_chains.storing(part.chain, flux);
+        if (probability < 1.0f && !(sampler.next1D() < probability)) return;
+        store(surface, bsdf, part.flux * (1.0f / probability), batch, photons);
+    }
+
+    static void store(const Surface& surface, const Bsdf& bsdf, const Rgb& flux, Batch& batch,
+                      std::vector<Photon>& photons) {
+        photons.push_back({surface.position, flux * bsdf.normalRatio(),
+                           PackedNormal(bsdf.facingGeometricNormal())});
+        ++batch.balance.stored;
+    }
+
+    const Scene& m_scene;
+    const LightSampler& m_lights;
+    const PhotonTraceRequest& m_request;
+    const AimedEmission* m_aim;
+    LongChains m_chains;
+    float m_scale;
+};
+
+// Those of all batches, in order; empties them.
+template <typename T>
+void join(std::vector<Batch>& batches, std::vector<T> Batch::*member, BigVector<T>& joined,
+          const CancelCheck& cancel) {
+    std::vector<std::size_t> begins{0};
+    for (const Batch& batch : batches) begins.push_back(begins.back() + (batch.*member).size());
+    joined.resize(begins.back());
+    tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t b) {
+        cancel.throwIfSet("joining photons");
+        const std::vector<T> from = std::exchange(batches[b].*member, {});
+        std::ranges::copy(from, joined.begin() + static_cast<std::ptrdiff_t>(begins[b]));
+    });
+}
+
+}  // namespace
+
+PhotonBalance& PhotonBalance::operator+=(const PhotonBalance& other) {
+    emitted += other.emitted;
+    stored += other.stored;
+    lost += other.lost;
+    rays += other.rays;
+    fluxEmitted += other.fluxEmitted;
+    fluxAbsorbed += other.fluxAbsorbed;
+    fluxEscaped += other.fluxEscaped;
+    fluxLost += other.fluxLost;
+    return *this;
+}
+
+PhotonTraceResult tracePhotons(const Scene& scene, const LightSampler& lights,
+                               const PhotonTraceRequest& request,
+                               const std::atomic<bool>& cancelled,
+                               const std::function<void(double)>& progress) {
+    PhotonTraceResult result;
+    if (request.aim) result.focus = request.aim->focus();
+    if (request.count == 0 || lights.empty()) return result;
+    const PhotonWalk walk(scene, lights, request);
+    const std::size_t batchCount = (request.count + kBatchSize - 1) / kBatchSize;
+    std::vector<Batch> batches(batchCount);
+    std::mutex progressMutex;
+    std::size_t done = 0;
+    tbb::parallel_for(std::size_t{0}, batchCount, [&](std::size_t b) {
+        if (cancelled.load(std::memory_order_relaxed)) return;
+        const std::uint64_t end = std::min(request.count, (b + 1) * kBatchSize);
+        // Where next to nothing is absorbed a single photon takes its time.
+        for (std::uint64_t i = b * kBatchSize;
+             i < end && !cancelled.load(std::memory_order_relaxed); ++i)
+            walk.trace(i, batches[b]);
+        if (!progress) return;
+        const std::lock_guard lock(progressMutex);
+        progress(static_cast<double>(++done) / static_cast<double>(batchCount));
+    });
+    const CancelCheck check(cancelled);
+    check.throwIfSet("tracing photons");
+    join(batches, &Batch::photons, result.photons, check);
+    join(batches, &Batch::descended, result.descended, check);
+    join(batches, &Batch::records, result.records, check);
+    for (const Batch& batch : batches) {
+        result.balance += batch.balance;
+        result.metCaster += batch.metCaster;
+    }
+    return result;
+}
+
+}  // namespace pm

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <cstdint>
+
+#include "integrator/photons/estimate/irradiance_sites.h"
+#include "integrator/sampling/sampler.h"
+#include "integrator/scene/light_sampler.h"
+#include "integrator/scene/scene.h"
+#include "integrator/transport/gather/virtual_lamps.h"
+
+namespace pm {
+
+// What gather rays read where they end.
+struct GatherEnds {
+    const IrradianceSites& sites;
+    // Light that caustics send straight to where the rays come from, where it is gathered; may be
+    // null. rays: of the place, by which VirtualLamps weighs.
+    const VirtualLamps* caustics = nullptr;
+    std::uint32_t rays = 1;
+    // By which light that reaches a broad lobe straight from a lamp is found; null: it is not.
+    const LightSampler* lights = nullptr;
+    // The ray leaves by a broad lobe of what the camera sees, and nothing else looks for what it is
+    // to find: by way of other lobes all light of lamps and caustics, too.
+    bool findsAll = false;
+};
+
+// What one final-gather ray brings.
+struct Gathered {
+    TwoRadii radiance;  // light that left a diffuse surface, met at once or by way of other lobes,
+                        // or a lamp, by way of broad ones
+    Surface first;      // what the ray met first
+    bool hitAny = false;  // `first` is valid
+    std::uint32_t rays = 0;
+    // Where the way ends, the irradiance that is still to be looked up, and the share of it that
+    // is brought, sr^-1.
+    bool isWaiting = false;
+    Vec3f position, normal;
+    Rgb reflected;
+    // Of rays by the cosine, for each unit of area where the way ends at once; 0 where other lobes
+    // come in between, by way of which caustics are not looked at. Scene units^-2.
+    float density = 0.0f;
+    bool readsCaustics = false;  // all of their light there
+
+    void scale(float factor) {
+        radiance.wide *= factor;
+        radiance.narrow *= factor;
+        reflected *= factor;
+    }
+};
+
+// Follows a gather ray to the diffuse surfaces where the irradiance sites end it. Light that it
+// finds at a lamp is in `radiance` where the lobe before is a broad one, there also sampled. Met at
+// once it is direct light; by way of a mirror, glass or a narrow lobe a caustic. Nor is that of
+// caustics met by way of such lobes: it is refocused, with an estimate of its own.
+// Source: Jensen 2001, section 9.2.
+//
+// In two steps: the first asks for the site at the end to be at hand soon, the second reads it.
+// With another ray's first step between them memory has the time that it takes.
+//
+// cosine: of the ray to the shading normal where it comes from.
+Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray, float cosine,
+                      Sampler& sampler);
+void endGather(const GatherEnds& ends, Gathered& gathered);
+
+// Both.
+Gathered finalGather(const Scene& scene, const GatherEnds& ends, const Ray& ray, float cosine,
+                     Sampler& sampler);
+
+}  // namespace pm

@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "integrator/transport/path/direct_light.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "integrator/sampling/warps.h"
+
+namespace pm {
+
+namespace {
+
+// Lamps are chosen so many at a time, where there are several samples.
+constexpr std::uint32_t kAtOnce = 16;
+
+// What estimateDirect is asked for.
+struct Question {
+    const Scene& scene;
+    const LightSampler& lights;
+    const Surface& surface;
+    const Bsdf& bsdf;
+    LampStrategy diffuse;
+    std::uint32_t samples;
+};
+
+// Share of light that comes along a shadow ray straight through what it meets. Counts further rays.
+float straightShare(const Scene& scene, const Ray& shadowRay, std::uint32_t& rays) {
+    const Vec3f target = shadowRay.origin + shadowRay.direction * shadowRay.tMax;
+    const bool isFar = !std::isfinite(shadowRay.tMax);
+    const Vec3f direction = normalize(shadowRay.direction);
+    Vec3f origin = shadowRay.origin;
+    float share = 1.0f;
+    while (share > 0.0f) {
+        const Ray ray = isFar ? Ray{origin, direction}
+                              : Ray{origin, direction, dot(target - origin, direction)};
+        Surface surface;
+        ++rays;
+        if (!(ray.tMax > 0.0f) || !scene.intersect(ray, surface)) break;
+        const Bsdf bsdf(scene, surface, -direction, Transport::kRadiance, Rgb(1.0f));
+        share *= maxChannel(bsdf.reflectance(Lobe::kStraight));
+        origin = rayOrigin(surface, direction);
+    }
+    return share;
+}
+
+// By one of the lamp samples, to be divided by their number.
+DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, std::uint32_t& rays) {
+    const Bsdf& bsdf = asked.bsdf;
+    const auto samples = static_cast<float>(asked.samples);
+    DirectRadiance result;
+    LightSample light;
+    if (!asked.lights.sample(chosen, asked.surface, light) || !(light.pdfSolidAngle > 0.0f))
+        return result;
+    const auto contribution = [&](Lobe lobe) {
+        if (!bsdf.has(lobe)) return Rgb{};
+        const Rgb value = bsdf.evaluate(lobe, light.direction);
+        if (isBlack(value)) return Rgb{};
+        const bool alone = light.isPoint || (lobe == Lobe::kDiffuse &&
+                                             asked.diffuse == LampStrategy::kNextEventOnly);
+        const float weight = alone ? 1.0f
+                                   : powerHeuristic(samples * light.pdfSolidAngle,
+                                                    bsdf.pdfSolidAngle(lobe, light.direction));
+        return value * light.radiance * (weight / light.pdfSolidAngle);
+    };
+    if (asked.diffuse != LampStrategy::kNone) result.diffuse = contribution(Lobe::kDiffuse);
+    result.glossy = contribution(bsdf.phongLobe());
+    if (isBlack(result.diffuse) && isBlack(result.glossy)) return result;
+    ++rays;
+    if (!asked.scene.occluded(light.shadowRay)) return result;
+    if (!light.isPoint || asked.diffuse != LampStrategy::kBothAndBeyond) return {};
+    const float share = straightShare(asked.scene, light.shadowRay, rays);
+    return {{}, {}, result.diffuse * share, result.glossy * share};
+}
+
+// Sum over all samples, whose lamps are chosen kMost at a time.
+template <std::uint32_t kMost>
+DirectRadiance sumOfSamples(const Question& asked, const Sampler& sampler, std::uint32_t& rays) {
+    DirectRadiance sum;
+    std::array<ChosenLight, kMost> chosen;
+    const std::span<ChosenLight> turn(chosen.data(), std::min(asked.samples, kMost));
+    for (std::uint32_t next = 0; next < asked.samples;) {
+        for (ChosenLight& one : turn) one.u = sampler.part(asked.samples, next++).next2D();
+        asked.lights.choose(asked.surface, asked.bsdf.facingGeometricNormal(), turn);
+        for (const ChosenLight& one : turn) {
+            const DirectRadiance part = byLampSample(asked, one, rays);
+            sum.diffuse += part.diffuse;
+            sum.glossy += part.glossy;
+            sum.diffuseBeyond += part.diffuseBeyond;
+            sum.glossyBeyond += part.glossyBeyond;
+        }
+    }
+    return sum;
+}
+
+}  // namespace
+
+DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
+                              const Surface& surface, const Bsdf& bsdf, LampStrategy diffuse,
+                              std::uint32_t samples, Sampler& sampler, std::uint32_t& rays) {
+    const Question asked{scene, lights, surface, bsdf, diffuse, samples};
+    DirectRadiance sum;
+    if (!lights.empty())
+        sum = samples == 1 ? sumOfSamples<1>(asked, sampler, rays)
+                           : sumOfSamples<kAtOnce>(asked, sampler, rays);
+    sampler.skip();
+    const auto number = static_cast<float>(samples);
+    return {sum.diffuse / number, sum.glossy / number, sum.diffuseBeyond / number,
+            sum.glossyBeyond / number};
+}
+
+Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const LastScatter& last) {
+    if (surface.light == kNoLight) return {};
+    const Rgb emitted = lights.emittedRadiance(surface, -last.direction);
+    if (isDelta(last.lobe) || isBlack(emitted)) return emitted;
+    return emitted * powerHeuristic(last.pdfSolidAngle,
+                                    static_cast<float>(last.lampSamples) *
+                                        lights.pdfSolidAngle(last.from, last.direction, surface));
+}
+
+Rgb weightedFarLight(const Scene& scene, const LightSampler& lights, const LastScatter& last) {
+    Rgb sum;
+    const std::span<const Light> far = scene.farLights();
+    for (std::size_t i = 0; i < far.size(); ++i) {
+        const Rgb radiance = scene.farRadiance(far[i], last.direction);
+        if (isBlack(radiance)) continue;
+        sum += isDelta(last.lobe)
+                   ? radiance
+                   : radiance *
+                         powerHeuristic(last.pdfSolidAngle,
+                                        static_cast<float>(last.lampSamples) *
+                                            lights.farPdfSolidAngle(last.from, last.direction, i));
+    }
+    return sum;
+}
+
+void recordFirstHit(const Surface& surface, const Bsdf& bsdf, SampleRadiance& result) {
+    const bool isCutAway = bsdf.reflectance(Lobe::kStraight).g == 1.0f;
+    if (result.coverage > 0.0f || isCutAway) return;
+    result.coverage = 1.0f;
+    result.albedo = bsdf.albedo();
+    result.normal = bsdf.facingShadingNormal();
+    result.firstPosition = surface.position;
+    result.firstShape = surface.shape;
+    result.firstMaterial = surface.material;
+}
+
+}  // namespace pm

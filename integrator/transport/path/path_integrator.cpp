@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "integrator/transport/path/path_integrator.h"
+
+#include "integrator/transport/path/path_walk.h"
+
+namespace pm {
+
+SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
+    SampleRadiance result;
+    PathState state;
+    PathWalk path(ray);
+    LastScatter last;
+    last.direction = ray.direction;
+    while (true) {
+        Surface surface;
+        ++result.rays;
+        if (!m_scene.intersect(path.ray, surface)) {
+            result.of(state.classify()) +=
+                path.throughput * weightedFarLight(m_scene, m_lights, last);
+            return result;
+        }
+        result.of(state.classify()) += path.throughput * weightedEmission(m_lights, surface, last);
+        const Bsdf bsdf(m_scene, surface, -path.ray.direction, Transport::kRadiance,
+                        path.throughput);
+        recordFirstHit(surface, bsdf, result);
+        if (bsdf.isBlackBody()) return result;
+        if (bsdf.reflectsLamps()) {
+            const DirectRadiance direct =
+                estimateDirect(m_scene, m_lights, surface, bsdf, LampStrategy::kBothAndBeyond, 1,
+                               sampler, result.rays);
+            PathState byDiffuse = state, byGlossy = state;
+            byDiffuse.scatter(Lobe::kDiffuse);
+            byGlossy.scatter(bsdf.phongLobe());
+            result.of(byDiffuse.classify()) += path.throughput * direct.diffuse;
+            result.of(byGlossy.classify()) += path.throughput * direct.glossy;
+            byDiffuse.scatter(Lobe::kStraight);
+            byGlossy.scatter(Lobe::kStraight);
+            result.of(byDiffuse.classify()) += path.throughput * direct.diffuseBeyond;
+            result.of(byGlossy.classify()) += path.throughput * direct.glossyBeyond;
+        }
+        BsdfSample sample;
+        const float uLobe = sampler.next1D();
+        const Vec2f u = sampler.next2D();
+        if (!bsdf.sample(uLobe, u, sample)) return result;
+        if (!path.scatter(surface, bsdf, sample, sampler)) {
+            if (path.isCut()) result.addCut(path.amount());
+            return result;
+        }
+        state.scatter(sample.lobe);
+        last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle};
+    }
+}
+
+}  // namespace pm

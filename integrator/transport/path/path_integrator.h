@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "integrator/rays/ray_tracer.h"
+#include "integrator/sampling/sampler.h"
+#include "integrator/scene/light_sampler.h"
+#include "integrator/scene/scene.h"
+#include "integrator/transport/path/direct_light.h"
+
+namespace pm {
+
+// The unbiased reference: a path tracer with next-event estimation, weighted against sampling the
+// BSDF by the power heuristic. Covers all light but that of point lights behind a delta surface.
+// Source: Kajiya 1986; Veach 1997, chapter 9.
+// Threads: any, at once.
+class PathIntegrator {
+  public:
+    PathIntegrator(const Scene& scene, const LightSampler& lights)
+        : m_scene(scene), m_lights(lights) {}
+
+    SampleRadiance sample(const Ray& ray, Sampler& sampler) const;
+
+  private:
+    const Scene& m_scene;
+    const LightSampler& m_lights;
+};
+
+}  // namespace pm

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "integrator/transport/photon/photon_lists.h"
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <iterator>
+
+namespace pm {
+
+std::vector<Photon> refocusedOf(std::span<const Photon> descended) {
+    std::vector<Photon> found;
+    std::ranges::copy_if(descended, std::back_inserter(found),
+                         [](const Photon& photon) { return photon.normal.isMarked(); });
+    return found;
+}
+
+BigVector<Photon> join(std::span<const Photon> first, std::span<const Photon> second) {
+    BigVector<Photon> all(first.size() + second.size());
+    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, all.size()), [&](const auto& range) {
+        for (std::size_t i = range.begin(); i < range.end(); ++i)
+            all[i] = i < first.size() ? first[i] : second[i - first.size()];
+    });
+    return all;
+}
+
+PhotonTraceResult joinHalves(PhotonTraceResult first, PhotonTraceResult second) {
+    for (Photon& photon : second.photons) photon.normal.mark();
+    PhotonTraceResult both;
+    both.photons = join(first.photons, second.photons);
+    both.descended = join(first.descended, second.descended);
+    for (BigVector<Photon>* const photons : {&both.photons, &both.descended})
+        for (Photon& photon : *photons) photon.flux *= 0.5f;
+    both.balance = first.balance;
+    both.balance += second.balance;
+    for (double* const flux : {&both.balance.fluxEmitted, &both.balance.fluxAbsorbed,
+                               &both.balance.fluxEscaped, &both.balance.fluxLost})
+        *flux *= 0.5;
+    both.focus = first.focus;
+    return both;
+}
+
+}  // namespace pm

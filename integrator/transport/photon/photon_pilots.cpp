@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// What a PhotonPass finds once a render, by pilots: where photons are aimed, the radii of the
+// estimates, the number of gather rays and whether they are guided.
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <span>
+#include <utility>
+
+#include "integrator/transport/survey/gather_focus.h"
+#include "integrator/transport/survey/gather_pilot.h"
+#include "integrator/transport/photon/photon_lists.h"
+#include "integrator/transport/photon/photon_pass.h"
+#include "integrator/transport/survey/pilot_passes.h"
+#include "integrator/transport/survey/sky_openings.h"
+
+namespace pm {
+
+namespace {
+
+// Gather rays go by a guide where that leaves less than this of their variance.
+constexpr double kGuidePays = 0.5;
+// Radius at which gather rays read caustics, over the typical one of those that are seen: rays blur
+// them anyway.
+constexpr float kRadiusOfGathered = 2.0f;
+// Caustics' radii, which rise slowly beside bright light, are to hold so many times K photons.
+constexpr double kSoughtInCaustics = 1.6;
+
+BigVector<Photon> inFocus(std::span<const Photon> photons, const Focus& focus) {
+    BigVector<Photon> found;
+    for (const Photon& photon : photons)
+        if (focus.levelAt(photon.position) == 0) found.push_back(photon);
+    return found;
+}
+
+// Where a pilot finds next to nothing, estimates reach a hundredth of what is in focus.
+float fallbackIn(const Focus& focus) {
+    return 0.01f / std::sqrt(focus.inverseRadiusSquared);
+}
+
+}  // namespace
+
+float PhotonPass::radiusOfGathered() const {
+    return kRadiusOfGathered * m_causticRadius->typical();
+}
+
+void PhotonPass::findFocus(const CancelCheck& check) {
+    const Focus focus = findGatherFocus(m_scene, m_camera, m_settings, check);
+    if (!focus.isEverywhere()) {
+        m_focused = std::make_unique<AimedEmission>(
+            AimedEmission::atFocus(m_scene, m_lights, focus, check));
+        return;
+    }
+    SkyOpenings openings = findSkyOpenings(m_scene, m_camera, m_settings, check);
+    if (!openings.balls.empty())
+        m_focused = std::make_unique<AimedEmission>(AimedEmission::atOpenings(
+            m_scene, m_lights, std::move(openings.balls), openings.seenShare, check));
+}
+
+// What light is sent to which casters of caustics: a geometric guess, and a pilot that finds what
+// is hidden.
+void PhotonPass::aim(Control& control) {
+    const CancelCheck check(control.cancelled);
+    m_aim = std::make_unique<AimedEmission>(
+        m_scene, m_lights, findSeenFocus(m_scene, m_camera, m_settings, check), check);
+    if (m_aim->empty()) return;
+    const PhotonTraceRequest request{PhotonKind::kCausticPilot,
+                                     m_plan.aimPilotPhotons(),
+                                     m_settings.seed,
+                                     kPilotOfAiming,
+                                     m_aim.get(),
+                                     true};
+    const PhotonTraceResult landed =
+        tracePhotons(m_scene, m_lights, request, control.cancelled, {});
+    m_aim->refine(landed.records);
+}
+
+void PhotonPass::chooseGatherRays(const PhotonMap& pilot, const CancelCheck& check) {
+    m_raysOfPoint = m_plan.gatherRays;
+    if (!m_plan.gatherRaysByPilot) return;
+    const IrradianceSites sites(m_scene, pilot, m_globalRadius, nullptr, 1.0f, m_focus);
+    std::optional<VirtualLamps> lamps;
+    if (m_plan.descent > 0.0f)
+        lamps.emplace(m_scene, m_causticRadius->photons(), radiusOfGathered(), nullptr, 1.0f,
+                      m_settings.seed, check);
+    const GatherEnds ends{sites, lamps ? &*lamps : nullptr, m_plan.gatherRays, &m_lights};
+    m_raysOfPoint = gatherRaysFor(
+        gatherSpread(m_scene, m_camera, m_lights, ends, m_settings, check), m_plan.gatherRays);
+    const bool always = m_settings.plan == PlanKind::kEverything;
+    if (m_raysOfPoint <= m_plan.gatherRays && !always) return;
+    auto guide = std::make_unique<GatherGuide>(pilot, m_globalRadius);
+    const auto [byCosine, byGuide] =
+        gatherRivals(m_scene, m_camera, m_lights, ends, *guide, m_settings, check);
+    if (byGuide < kGuidePays * byCosine || always) m_guide = std::move(guide);
+}
+
+// In two halves: what one shows of where light is uneven, the other can be asked about.
+PhotonTraceResult PhotonPass::tracePilotOfCaustics(
+    PhotonTraceRequest request, const Control& control,
+    const std::function<void(double)>& progress) const {
+    request.count = (request.count + 1) / 2;
+    PhotonTraceResult first = tracePhotons(m_scene, m_lights, request, control.cancelled,
+                                           [&](double fraction) { progress(0.5 * fraction); });
+    request.pass = kPilotOfSecondHalf;
+    PhotonTraceResult second =
+        tracePhotons(m_scene, m_lights, request, control.cancelled,
+                     [&](double fraction) { progress(0.5 + 0.5 * fraction); });
+    return joinHalves(std::move(first), std::move(second));
+}
+
+// Of caustics and of refocused light. Returns the pilot's descended photons.
+BigVector<Photon> PhotonPass::findCausticRadii(float fallback, Control& control) {
+    if (!m_source) aim(control);
+    const CancelCheck check(control.cancelled);
+    PhotonTraceResult pilot =
+        trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), kPilotOfRadii, control);
+    const auto sought = static_cast<std::uint32_t>(kSoughtInCaustics * m_settings.estimatePhotons);
+    m_causticRadius = std::make_unique<PilotRadius>(pilot.photons, sought, fallback, check);
+    if (m_plan.descent > 0.0f)
+        m_refocusedRadius =
+            std::make_unique<PilotRadius>(refocusedOf(pilot.descended), sought, fallback, check);
+    return std::move(pilot.descended);
+}
+
+// Of what is in focus; gather rays read what is beyond, too.
+void PhotonPass::findGlobalRadius(std::span<const Photon> pilot, float fallback,
+                                  const CancelCheck& check) {
+    if (m_focus.isEverywhere()) {
+        const PhotonMap map(pilot, check, m_scene.coreRadiusIfAny());
+        m_globalRadius = PilotRadius::typicalOf(map, m_settings.estimatePhotons, fallback);
+        chooseGatherRays(map, check);
+    } else {
+        m_globalRadius = PilotRadius::typicalOf(PhotonMap(inFocus(pilot, m_focus), check),
+                                                m_settings.estimatePhotons, fallbackIn(m_focus));
+        chooseGatherRays(PhotonMap(pilot, check, m_scene.coreRadiusIfAny()), check);
+    }
+}
+
+void PhotonPass::findRadii(Control& control) {
+    // Where a pilot finds next to nothing, estimates reach a hundredth of the scene.
+    const auto fallback = static_cast<float>(0.01 * m_scene.coreRadius());
+    const CancelCheck check(control.cancelled);
+    BigVector<Photon> global;
+    if (m_plan.globalMap) {
+        if (!m_source) findFocus(check);
+        PhotonTraceResult pilot =
+            trace(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0, control);
+        // Of photons that are read, that of the view which they were made for.
+        m_focus = pilot.focus;
+        global = std::move(pilot.photons);
+    }
+    if (m_plan.causticMap) global = join(global, findCausticRadii(fallback, control));
+    if (m_plan.globalMap) findGlobalRadius(global, fallback, check);
+    // By the sites' radius, so that they know nothing of caustics.
+    const bool byCaustics = m_causticRadius && !m_plan.globalMap;
+    m_patches = std::make_unique<SurfacePatches>(
+        m_scene, byCaustics ? m_causticRadius->typical() : m_globalRadius);
+    m_haveRadii = true;
+}
+
+}  // namespace pm
