@@ -97,12 +97,20 @@ struct SphereShape {
 
 using Shape = std::variant<std::shared_ptr<const TriangleMesh>, SphereShape>;
 
+// What an instance may be hidden from, as bits.
+enum Viewer : std::uint32_t {
+    kCamera = 1,      // rays from the camera, as far as they go straight on
+    kShadow = 2,      // rays that ask whether a light is seen
+    kReflection = 4,  // rays that leave surfaces, and photons
+};
+
 struct InstanceDescription {
     Shape shape;
     Transform transform = kIdentityTransform;
     std::vector<std::uint32_t> materials;  // index into SceneDescription::materials for each slot
     std::string name;
     std::uint32_t id = 0;
+    std::uint32_t hiddenFrom = 0;  // a set of Viewer
 };
 
 // A light without area that shines equally in all directions.

@@ -11,14 +11,14 @@
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
-#include "integrator/transport/survey/lamp_samples.h"
-#include "integrator/transport/survey/lit_places.h"
+#include "integrator/transport/frame/pixel_cell.h"
+#include "integrator/transport/frame/pixel_sums.h"
 #include "integrator/transport/path/path_integrator.h"
 #include "integrator/transport/photon/photon_integrator.h"
 #include "integrator/transport/photon/photon_pass.h"
-#include "integrator/transport/frame/pixel_cell.h"
-#include "integrator/transport/frame/pixel_sums.h"
 #include "integrator/transport/seen_lights/seen_lamps.h"
+#include "integrator/transport/survey/lamp_samples.h"
+#include "integrator/transport/survey/lit_places.h"
 #include "integrator/values/cancel_check.h"
 
 namespace pm {

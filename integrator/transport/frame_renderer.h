@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "integrator/transport/frame/channel_layout.h"
-#include "integrator/transport/plan/plan.h"
 #include "integrator/transport/frame/render_counters.h"
 #include "integrator/transport/frame/render_settings.h"
+#include "integrator/transport/plan/plan.h"
 #include "integrator/values/notice.h"
 #include "integrator/values/rect.h"
 

@@ -267,6 +267,11 @@ typedef struct PmrSceneDesc {
     double rgbToXyz[9];         /* row-major; all zero = linear Rec.709 (D65) */
 } PmrSceneDesc;
 
+/* What does not see an instance; all others see it. */
+#define PMR_HIDDEN_FROM_CAMERA 1u     /* it is not in the picture, but in mirrors */
+#define PMR_HIDDEN_FROM_SHADOW 2u     /* it casts none: light from lights passes it */
+#define PMR_HIDDEN_FROM_REFLECTION 4u /* rays that leave surfaces, and photons, pass it */
+
 typedef struct PmrInstanceDesc {
     uint64_t size;
     PmrMesh mesh;
@@ -276,7 +281,7 @@ typedef struct PmrInstanceDesc {
     uint64_t materialCount;
     const char* name; /* may be null */
     uint32_t id;
-    uint32_t reserved;
+    uint32_t hiddenFrom; /* PMR_HIDDEN_FROM_... added up; 0 = seen by all */
 } PmrInstanceDesc;
 
 #define PMR_LIGHT_POINT 0 /* intensity, W/sr, in all directions */

@@ -99,7 +99,7 @@ static_assert(offsetof(PmrInstanceDesc, materials) == 32);
 static_assert(offsetof(PmrInstanceDesc, materialCount) == 40);
 static_assert(offsetof(PmrInstanceDesc, name) == 48);
 static_assert(offsetof(PmrInstanceDesc, id) == 56);
-static_assert(offsetof(PmrInstanceDesc, reserved) == 60);
+static_assert(offsetof(PmrInstanceDesc, hiddenFrom) == 60);
 
 static_assert(sizeof(PmrLightDesc) == 64);
 static_assert(offsetof(PmrLightDesc, size) == 0);

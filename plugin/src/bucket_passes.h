@@ -12,10 +12,10 @@
 #include "plugin/src/bucket_shelf.h"
 #include "plugin/src/event_queue.h"
 #include "plugin/src/progress_clock.h"
-#include "scheduler/film/bucket_errors.h"
 #include "scheduler/buckets/bucket_grid.h"
 #include "scheduler/buckets/bucket_runner.h"
 #include "scheduler/buckets/worker_arena.h"
+#include "scheduler/film/bucket_errors.h"
 
 namespace pm::plugin {
 

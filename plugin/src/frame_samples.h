@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <span>
 
-#include "integrator/transport/frame_renderer.h"
 #include "integrator/transport/frame/render_settings.h"
+#include "integrator/transport/frame_renderer.h"
 #include "scheduler/film/frame_store.h"
 
 namespace pm::plugin {

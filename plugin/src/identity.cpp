@@ -105,6 +105,8 @@ void addInstance(Hasher& hasher, const InstanceDescription& instance) {
     }
     hasher.addArray<double>(instance.transform);
     hasher.addArray<std::uint32_t>(instance.materials);
+    // Only where there is some: scenes without keep the checksums that they have had.
+    if (instance.hiddenFrom != 0) hasher.add(instance.hiddenFrom);
 }
 
 // Only what is there: scenes without keep the checksums that they have had.

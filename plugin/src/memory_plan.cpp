@@ -17,8 +17,8 @@
 #include "plugin/src/pixel_reader.h"
 #include "plugin/src/render_photons.h"
 #include "scheduler/buckets/available_threads.h"
-#include "scheduler/film/bucket_errors.h"
 #include "scheduler/buckets/bucket_order.h"
+#include "scheduler/film/bucket_errors.h"
 
 namespace pm::plugin {
 

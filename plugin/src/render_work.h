@@ -28,8 +28,8 @@
 #include "scheduler/buckets/bucket_grid.h"
 #include "scheduler/buckets/bucket_runner.h"
 #include "scheduler/buckets/cancel_token.h"
-#include "scheduler/film/frame_store.h"
 #include "scheduler/buckets/worker_arena.h"
+#include "scheduler/film/frame_store.h"
 
 namespace pm::plugin {
 

@@ -137,12 +137,19 @@ void SceneObject::addInstance(const PmrInstanceDesc& desc) {
     if (!mesh) throw CallError(PMR_ERROR_HANDLE, "PmrInstanceDesc: mesh is not a live mesh");
     if (mesh->context() != m_context)
         throw argumentError("PmrInstanceDesc: mesh belongs to another context");
-    if (desc.reserved != 0) throw argumentError("PmrInstanceDesc: reserved must be 0");
+    constexpr std::uint32_t kAll =
+        PMR_HIDDEN_FROM_CAMERA | PMR_HIDDEN_FROM_SHADOW | PMR_HIDDEN_FROM_REFLECTION;
+    if ((desc.hiddenFrom & ~kAll) != 0)
+        throw argumentError(
+            fmt::format("PmrInstanceDesc: hiddenFrom is {}; it must be a sum of "
+                        "PMR_HIDDEN_FROM_..., at most {}",
+                        desc.hiddenFrom, kAll));
     InstanceDescription instance;
     instance.shape = mesh->shape();
     instance.transform = readTransform(desc.transforms, desc.transformCount, "PmrInstanceDesc");
     instance.name = desc.name == nullptr ? "" : desc.name;
     instance.id = desc.id;
+    instance.hiddenFrom = desc.hiddenFrom;
     instance.materials = materialsOf(desc, *mesh);
     m_description.instances.push_back(std::move(instance));
 }

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <functional>
 
-#include "scheduler/film/compensated_sum.h"
 #include "scheduler/buckets/fp_environment.h"
+#include "scheduler/film/compensated_sum.h"
 
 namespace pm {
 namespace {

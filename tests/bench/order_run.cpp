@@ -9,8 +9,8 @@
 
 #include "scheduler/buckets/bucket_order.h"
 #include "scheduler/buckets/bucket_runner.h"
-#include "scheduler/film/correlated_choice.h"
 #include "scheduler/buckets/hilbert_order.h"
+#include "scheduler/film/correlated_choice.h"
 #include "tests/bench/timing.h"
 
 namespace pm::bench {

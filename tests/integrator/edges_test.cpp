@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "integrator/photons/estimate/irradiance_sites.h"
-#include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/photons/estimate/surface_patches.h"
+#include "integrator/photons/trace/photon_tracer.h"
 #include "tests/integrator/even_light.h"
 #include "tests/integrator/scene_maker.h"
 

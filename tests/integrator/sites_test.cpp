@@ -9,8 +9,8 @@
 #include <cmath>
 
 #include "integrator/photons/estimate/irradiance_sites.h"
-#include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/photons/estimate/surface_patches.h"
+#include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/sampling/warps.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"

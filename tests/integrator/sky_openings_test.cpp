@@ -12,8 +12,8 @@
 #include <cmath>
 
 #include "integrator/photons/emission/aimed_emission.h"
-#include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/photons/emission/sky_parts.h"
+#include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/scene/light_sampler.h"
 #include "tests/integrator/statistics.h"
 #include "tests/integrator/window_room.h"

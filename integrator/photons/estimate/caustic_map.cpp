@@ -8,8 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "integrator/photons/trace/disc_trials.h"
 #include "integrator/photons/estimate/surface_estimate.h"
+#include "integrator/photons/trace/disc_trials.h"
 #include "integrator/sampling/warps.h"
 
 namespace pm {

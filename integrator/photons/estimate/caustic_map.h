@@ -7,8 +7,8 @@
 #include <span>
 #include <vector>
 
-#include "integrator/photons/map/photon_map.h"
 #include "integrator/photons/estimate/surface_patches.h"
+#include "integrator/photons/map/photon_map.h"
 
 namespace pm {
 

@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <optional>
 
-#include "integrator/photons/map/big_array.h"
-#include "integrator/photons/map/photon_map.h"
 #include "integrator/photons/estimate/surface_cells.h"
 #include "integrator/photons/estimate/surface_estimate.h"
+#include "integrator/photons/map/big_array.h"
+#include "integrator/photons/map/photon_map.h"
 #include "integrator/scene/scene.h"
 
 namespace pm {

@@ -8,8 +8,8 @@
 
 #include "integrator/sampling/warps.h"
 #include "integrator/transport/gather/final_gather.h"
-#include "integrator/transport/path/path_walk.h"
 #include "integrator/transport/gather/surroundings.h"
+#include "integrator/transport/path/path_walk.h"
 
 namespace pm {
 

@@ -11,8 +11,8 @@
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
-#include "integrator/transport/path/direct_light.h"
 #include "integrator/transport/gather/gather_points.h"
+#include "integrator/transport/path/direct_light.h"
 #include "integrator/transport/path/path_walk.h"
 
 namespace pm {

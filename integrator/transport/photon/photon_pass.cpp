@@ -9,8 +9,8 @@
 #include <span>
 #include <utility>
 
-#include "integrator/transport/frame/render_counters.h"
 #include "integrator/transport/frame/pass_radius.h"
+#include "integrator/transport/frame/render_counters.h"
 #include "integrator/transport/photon/photon_lists.h"
 #include "integrator/values/stopwatch.h"
 

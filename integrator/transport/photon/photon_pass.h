@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "integrator/photons/emission/aimed_emission.h"
-#include "integrator/photons/estimate/caustic_map.h"
 #include "integrator/photons/emission/focus.h"
+#include "integrator/photons/estimate/caustic_map.h"
 #include "integrator/photons/estimate/irradiance_sites.h"
 #include "integrator/photons/map/photon_map.h"
 #include "integrator/photons/trace/photon_store.h"
@@ -20,9 +20,9 @@
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
-#include "integrator/transport/photon/photon_integrator.h"
-#include "integrator/transport/frame/transport_plan.h"
 #include "integrator/transport/frame/render_settings.h"
+#include "integrator/transport/frame/transport_plan.h"
+#include "integrator/transport/photon/photon_integrator.h"
 #include "integrator/values/notice.h"
 
 namespace pm {

@@ -8,10 +8,10 @@
 #include <span>
 #include <utility>
 
-#include "integrator/transport/survey/gather_focus.h"
-#include "integrator/transport/survey/gather_pilot.h"
 #include "integrator/transport/photon/photon_lists.h"
 #include "integrator/transport/photon/photon_pass.h"
+#include "integrator/transport/survey/gather_focus.h"
+#include "integrator/transport/survey/gather_pilot.h"
 #include "integrator/transport/survey/pilot_passes.h"
 #include "integrator/transport/survey/sky_openings.h"
 

@@ -14,11 +14,11 @@
 #include "integrator/scene/convex_body.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/plan/plan_memory.h"
+#include "integrator/transport/plan/plan_time.h"
 #include "integrator/transport/survey/caustic_reach.h"
 #include "integrator/transport/survey/lamp_samples.h"
 #include "integrator/transport/survey/landing_pilot.h"
-#include "integrator/transport/plan/plan_memory.h"
-#include "integrator/transport/plan/plan_time.h"
 
 namespace pm {
 

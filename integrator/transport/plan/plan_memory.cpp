@@ -9,11 +9,11 @@
 
 #include "integrator/photons/estimate/caustic_map.h"
 #include "integrator/photons/estimate/irradiance_sites.h"
-#include "integrator/photons/map/photon_map.h"
 #include "integrator/photons/estimate/surface_patches.h"
-#include "integrator/transport/gather/gather_points.h"
+#include "integrator/photons/map/photon_map.h"
 #include "integrator/transport/frame/pass_radius.h"
 #include "integrator/transport/frame/transport_plan.h"
+#include "integrator/transport/gather/gather_points.h"
 #include "integrator/transport/gather/virtual_lamps.h"
 
 namespace pm {

@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "integrator/transport/frame/transport_plan.h"
 #include "integrator/transport/frame/render_settings.h"
+#include "integrator/transport/frame/transport_plan.h"
 
 namespace pm {
 

@@ -17,10 +17,10 @@
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
-#include "integrator/transport/seen_lights/lamp_images.h"
-#include "integrator/transport/path/path_walk.h"
 #include "integrator/transport/frame/pixel_cell.h"
 #include "integrator/transport/frame/render_settings.h"
+#include "integrator/transport/path/path_walk.h"
+#include "integrator/transport/seen_lights/lamp_images.h"
 #include "integrator/values/rgb.h"
 
 namespace pm {

@@ -7,9 +7,9 @@
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/frame/render_settings.h"
 #include "integrator/transport/gather/final_gather.h"
 #include "integrator/transport/gather/gather_guide.h"
-#include "integrator/transport/frame/render_settings.h"
 #include "integrator/values/cancel_check.h"
 
 namespace pm {

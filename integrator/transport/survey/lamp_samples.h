@@ -7,8 +7,8 @@
 #include "integrator/scene/camera.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
-#include "integrator/transport/frame/transport_plan.h"
 #include "integrator/transport/frame/render_settings.h"
+#include "integrator/transport/frame/transport_plan.h"
 #include "integrator/values/cancel_check.h"
 
 namespace pm {

@@ -8,8 +8,8 @@
 #include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
-#include "integrator/transport/survey/pilot_passes.h"
 #include "integrator/transport/frame/transport_plan.h"
+#include "integrator/transport/survey/pilot_passes.h"
 
 namespace pm {
 

@@ -8,8 +8,8 @@
 
 #include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
-#include "integrator/transport/path/path_walk.h"
 #include "integrator/transport/frame/render_settings.h"
+#include "integrator/transport/path/path_walk.h"
 #include "integrator/values/cancel_check.h"
 
 namespace pm {
