@@ -27,14 +27,15 @@ Rgb clamp01(const Rgb& c) {
     return {clamp01(c.r), clamp01(c.g), clamp01(c.b)};
 }
 
-Texel lookUp(const Scene& scene, std::int32_t texture, const Surface& surface) {
+Texel lookUp(const Materials& materials, std::int32_t texture, const Surface& surface) {
     return texture == kNoTexture ? Texel{1.0f, 1.0f, 1.0f, 1.0f}
-                                 : scene.textures()->lookUp(texture, surface.uv, 0.0f);
+                                 : materials.textures->lookUp(texture, surface.uv, 0.0f);
 }
 
-Rgb textured(const Scene& scene, const Rgb& number, std::int32_t texture, const Surface& surface) {
+Rgb textured(const Materials& materials, const Rgb& number, std::int32_t texture,
+             const Surface& surface) {
     if (texture == kNoTexture) return number;
-    const Texel t = lookUp(scene, texture, surface);
+    const Texel t = lookUp(materials, texture, surface);
     return number * Rgb(t.r, t.g, t.b);
 }
 
@@ -68,9 +69,9 @@ bool refractBy(const Vec3f& n, const Vec3f& out, float eta, Vec3f& direction) {
 
 }  // namespace
 
-Bsdf::Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transport transport,
-           const Rgb& carried)
-    : m_material(scene.material(surface.material)),
+Bsdf::Bsdf(const Materials& materials, const Surface& surface, const Vec3f& out,
+           Transport transport, const Rgb& carried)
+    : m_material(materials[surface.material]),
       m_out(out),
       m_ng(surface.geometricNormal),
       m_ns(surface.shadingNormal),
@@ -87,16 +88,16 @@ Bsdf::Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transpo
     const bool behindShading = dot(m_out, m_ns) <= 0.0f;
     if (behindShading) m_ns = m_ng;
     m_opacity = clamp01((1.0f - m_material.transparency) *
-                        lookUp(scene, m_material.opacityTexture, surface).r);
+                        lookUp(materials, m_material.opacityTexture, surface).r);
     switch (m_material.kind) {
         case MaterialKind::kSurface:
-            setSurface(scene, surface);
+            setSurface(materials, surface);
             break;
         case MaterialKind::kMirror:
-            setMirror(scene, surface);
+            setMirror(materials, surface);
             break;
         case MaterialKind::kDielectric:
-            setDielectric(scene, surface);
+            setDielectric(materials, surface);
             break;
     }
     m_reflectance[index(Lobe::kStraight)] = Rgb(1.0f - m_opacity);
@@ -116,19 +117,20 @@ Bsdf::Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transpo
     chooseProbabilities(carried);
 }
 
-void Bsdf::setSurface(const Scene& scene, const Surface& surface) {
+void Bsdf::setSurface(const Materials& materials, const Surface& surface) {
     m_reflectance[index(Lobe::kDiffuse)] =
-        clamp01(textured(scene, m_material.diffuse, m_material.diffuseTexture, surface)) *
+        clamp01(textured(materials, m_material.diffuse, m_material.diffuseTexture, surface)) *
         m_opacity;
     if (isBlack(m_material.glossy)) return;
     m_reflectance[index(m_phong)] =
-        clamp01(textured(scene, m_material.glossy, m_material.glossyTexture, surface)) * m_opacity;
+        clamp01(textured(materials, m_material.glossy, m_material.glossyTexture, surface)) *
+        m_opacity;
     m_exponent = std::max(0.0f, m_material.glossyExponent *
-                                    lookUp(scene, m_material.glossyExponentTexture, surface).r);
+                                    lookUp(materials, m_material.glossyExponentTexture, surface).r);
 }
 
-void Bsdf::setMirror(const Scene& scene, const Surface& surface) {
-    m_tint = clamp01(textured(scene, m_material.glossy, m_material.glossyTexture, surface));
+void Bsdf::setMirror(const Materials& materials, const Surface& surface) {
+    m_tint = clamp01(textured(materials, m_material.glossy, m_material.glossyTexture, surface));
     m_exponent = m_material.glossyExponent;
     if (m_exponent > 0.0f) {
         m_reflectance[index(m_phong)] = m_tint * m_opacity;
@@ -145,11 +147,11 @@ Rgb Bsdf::mirrorColour(float cosine) const {
     return m_tint + (Rgb(1.0f) - m_tint) * (m * m * m * m * m);
 }
 
-void Bsdf::setDielectric(const Scene& scene, const Surface& surface) {
+void Bsdf::setDielectric(const Materials& materials, const Surface& surface) {
     m_eta = m_frontSide ? m_material.ior : 1.0f / m_material.ior;
     const float reflected = fresnelDielectric(clamp01(dot(m_out, m_ns)), m_eta);
-    m_tint =
-        clamp01(textured(scene, m_material.transmission, m_material.transmissionTexture, surface));
+    m_tint = clamp01(
+        textured(materials, m_material.transmission, m_material.transmissionTexture, surface));
     if (surface.isPane) {
         setPane(reflected);
         return;

@@ -5,8 +5,8 @@
 #include <array>
 #include <cstdint>
 
-#include "integrator/scene/scene.h"
-#include "integrator/scene/surface.h"
+#include "integrator/materials/materials.h"
+#include "integrator/shapes/surface.h"
 #include "integrator/values/rgb.h"
 #include "integrator/values/vec.h"
 
@@ -49,7 +49,7 @@ class Bsdf {
     // out: unit, away from the surface. carried: throughput or flux so far; lobes are chosen in
     // proportion to what they would carry on. Photons are absorbed with the rest of the
     // probability, so that their mean flux stays the same; camera paths always go on.
-    Bsdf(const Scene& scene, const Surface& surface, const Vec3f& out, Transport transport,
+    Bsdf(const Materials& materials, const Surface& surface, const Vec3f& out, Transport transport,
          const Rgb& carried);
 
     bool has(Lobe lobe) const { return m_probability[index(lobe)] > 0.0f; }
@@ -101,9 +101,9 @@ class Bsdf {
 
   private:
     static constexpr std::size_t index(Lobe lobe) { return static_cast<std::size_t>(lobe); }
-    void setSurface(const Scene& scene, const Surface& surface);
-    void setMirror(const Scene& scene, const Surface& surface);
-    void setDielectric(const Scene& scene, const Surface& surface);
+    void setSurface(const Materials& materials, const Surface& surface);
+    void setMirror(const Materials& materials, const Surface& surface);
+    void setDielectric(const Materials& materials, const Surface& surface);
     // Of both boundaries of a body so thin that no ray starts inside it.
     void setPane(float reflected);
     void limitEnergy();

@@ -11,8 +11,8 @@
 #include <cmath>
 #include <utility>
 
+#include "integrator/materials/invisible.h"
 #include "integrator/sampling/warps.h"
-#include "integrator/scene/invisible.h"
 #include "integrator/scene/shape_record.h"
 
 namespace pm {

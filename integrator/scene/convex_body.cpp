@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "integrator/scene/invisible.h"
+#include "integrator/materials/invisible.h"
 
 namespace pm {
 

@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrator/materials/invisible.h"
 #include "integrator/scene/coincident_faces.h"
-#include "integrator/scene/invisible.h"
 #include "integrator/scene/shape_record.h"
 
 namespace pm {

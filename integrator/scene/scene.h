@@ -13,14 +13,15 @@
 #include <string>
 #include <vector>
 
+#include "integrator/lights/environment.h"
+#include "integrator/lights/lamp_texture.h"
+#include "integrator/lights/lamp_triangle.h"
+#include "integrator/lights/light.h"
+#include "integrator/materials/materials.h"
 #include "integrator/rays/ray_tracer.h"
-#include "integrator/scene/environment.h"
-#include "integrator/scene/lamp_texture.h"
-#include "integrator/scene/lamp_triangle.h"
-#include "integrator/scene/light.h"
 #include "integrator/scene/scene_core.h"
 #include "integrator/scene/scene_description.h"
-#include "integrator/scene/surface.h"
+#include "integrator/shapes/surface.h"
 #include "integrator/values/notice.h"
 
 namespace pm {
@@ -68,6 +69,7 @@ class Scene {
     const Vec3d& halfSize() const { return m_halfSize; }
 
     const SceneDescription& description() const { return m_description; }
+    const Materials& materials() const { return m_materials; }
     const MaterialDescription& material(std::uint32_t index) const {
         return m_description.materials[index];
     }
@@ -175,6 +177,7 @@ class Scene {
     void surfaceOnSphere(const ShapeRecord& shape, const Vec3d& direction, Surface& surface) const;
 
     SceneDescription m_description;
+    Materials m_materials{m_description.materials, m_description.textures.get()};
     std::vector<ShapeRecord> m_shapes;
     std::vector<Light> m_lights;
     std::vector<LampTriangle> m_lampTriangles;  // of the lights

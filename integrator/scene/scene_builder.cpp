@@ -9,14 +9,14 @@
 #include <limits>
 #include <optional>
 
-#include "integrator/scene/close_spheres.h"
 #include "integrator/scene/coincident_faces.h"
-#include "integrator/scene/copied_faces.h"
-#include "integrator/scene/huge_triangles.h"
-#include "integrator/scene/instance_transform.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/scene_core.h"
 #include "integrator/scene/shape_record.h"
+#include "integrator/shapes/close_spheres.h"
+#include "integrator/shapes/copied_faces.h"
+#include "integrator/shapes/huge_triangles.h"
+#include "integrator/shapes/instance_transform.h"
 #include "integrator/values/error.h"
 
 namespace pm {
@@ -46,9 +46,11 @@ class Scene::Builder {
         m_scene.lookAtTextures(m_cancel);
         m_scene.m_coincident = CoincidentFaces::find(m_scene, m_scene.m_notices, m_cancel);
         lookForCloseSpheres();
-        addPointLights(m_scene.m_description, m_scene.m_centre, m_scene.m_lights, m_scene.m_beams);
+        const SceneDescription& d = m_scene.m_description;
+        addPointLights(d.pointLights, d.spotLights, m_scene.m_centre, m_scene.m_lights,
+                       m_scene.m_beams);
         m_scene.m_nearLightCount = m_scene.m_lights.size();
-        addDirectionalLights(m_scene.m_description, m_scene.m_halfSize, m_scene.m_lights,
+        addDirectionalLights(d.directionalLights, m_scene.m_halfSize, m_scene.m_lights,
                              m_scene.m_beams);
         addEnvironment();
         addLampTriangles();

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "integrator/scene/invisible.h"
+#include "integrator/materials/invisible.h"
 #include "integrator/scene/scene.h"
 
 namespace pm {

@@ -7,9 +7,9 @@
 #include <mutex>
 #include <utility>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/sampling/sampler.h"
-#include "integrator/scene/camera.h"
-#include "integrator/scene/light_sampler.h"
+#include "integrator/scene/camera/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame/pixel_cell.h"
 #include "integrator/transport/frame/pixel_sums.h"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "integrator/scene/texture_source.h"
+#include "integrator/materials/texture_source.h"
 #include "plugin/src/objects.h"
 
 namespace pm::plugin {

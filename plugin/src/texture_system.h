@@ -10,7 +10,7 @@
 #include <mutex>
 #include <string>
 
-#include "integrator/scene/texture_source.h"
+#include "integrator/materials/texture_source.h"
 #include "integrator/values/cancel_check.h"
 #include "integrator/values/vec.h"
 #include "plugin/include/pm_plugin.h"

@@ -3,10 +3,10 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
-#include "integrator/scene/camera.h"
-#include "integrator/scene/light_sampler.h"
+#include "integrator/scene/camera/camera.h"
 #include "tests/bench/bare_embree.h"
 #include "tests/bench/bench_scenes.h"
 #include "tests/bench/speed_bench.h"

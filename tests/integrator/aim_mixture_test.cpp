@@ -8,8 +8,8 @@
 #include <cmath>
 #include <vector>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/photons/emission/caustic_casters.h"
-#include "integrator/scene/light_sampler.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"
 

@@ -46,7 +46,7 @@ struct Bench {
         surface.shadingNormal = normalize(shadingNormal);
     }
     Bsdf bsdf(const Vec3f& out, Transport transport = Transport::kRadiance) const {
-        return {*scene, surface, out, transport, Rgb(1.0f)};
+        return {scene->materials(), surface, out, transport, Rgb(1.0f)};
     }
 };
 
@@ -232,7 +232,8 @@ TEST(Bsdf, TooMuchReflectanceIsScaledDown) {
 TEST(Bsdf, PhotonsSurviveByTheAlbedo) {
     Random random(5);
     const Bench bench(diffuseAndGlossy(0.75f, 0.0f, 0));
-    const Bsdf bsdf(*bench.scene, bench.surface, atAngle(40), Transport::kPhotons, Rgb(2.0f));
+    const Bsdf bsdf(bench.scene->materials(), bench.surface, atAngle(40), Transport::kPhotons,
+                    Rgb(2.0f));
     int survived = 0;
     double mean = 0;
     const int n = 50'000;

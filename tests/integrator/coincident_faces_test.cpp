@@ -165,7 +165,9 @@ TEST(FirstHits, PassOverWhatIsCutAway) {
             Surface surface;
             if (!scene->intersect(ray, surface)) break;
             recordFirstHit(
-                surface, Bsdf(*scene, surface, {0, 0, 1}, Transport::kRadiance, Rgb(1.0f)), result);
+                surface,
+                Bsdf(scene->materials(), surface, {0, 0, 1}, Transport::kRadiance, Rgb(1.0f)),
+                result);
             ray = rayFrom(surface, ray.direction);
         }
         EXPECT_EQ(result.coverage, 1);

@@ -10,9 +10,9 @@
 #include <numbers>
 #include <vector>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/photons/emission/aimed_emission.h"
 #include "integrator/photons/trace/photon_tracer.h"
-#include "integrator/scene/light_sampler.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"

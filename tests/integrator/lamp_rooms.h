@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "integrator/geometry/polygon_mesh.h"
-#include "integrator/scene/light_sampler.h"
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/transport/survey/lit_places.h"
 #include "tests/integrator/scene_maker.h"
 

@@ -11,10 +11,10 @@
 #include <numbers>
 #include <vector>
 
+#include "integrator/lights/box_shadow.h"
 #include "integrator/photons/emission/aimed_emission.h"
 #include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/sampling/sampler.h"
-#include "integrator/scene/box_shadow.h"
 #include "tests/integrator/aimed.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"

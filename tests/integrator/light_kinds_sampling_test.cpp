@@ -9,10 +9,10 @@
 #include <map>
 #include <numbers>
 
+#include "integrator/lights/box_shadow.h"
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/photons/emission/aim_shadows.h"
 #include "integrator/sampling/pinned_math.h"
-#include "integrator/scene/box_shadow.h"
-#include "integrator/scene/light_sampler.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/sky_picture.h"
 #include "tests/integrator/statistics.h"

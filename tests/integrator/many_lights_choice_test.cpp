@@ -10,8 +10,8 @@
 #include <span>
 #include <thread>
 
-#include "integrator/scene/light_guide.h"
-#include "integrator/scene/light_tree.h"
+#include "integrator/lights/samplers/light_guide.h"
+#include "integrator/lights/samplers/light_tree.h"
 #include "integrator/values/error.h"
 #include "tests/integrator/lamp_rooms.h"
 #include "tests/integrator/statistics.h"

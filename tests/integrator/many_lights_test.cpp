@@ -9,9 +9,9 @@
 #include <cmath>
 #include <ctime>
 
-#include "integrator/scene/light_guide.h"
-#include "integrator/scene/light_sampler.h"
-#include "integrator/scene/light_tree.h"
+#include "integrator/lights/samplers/light_guide.h"
+#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/lights/samplers/light_tree.h"
 #include "integrator/transport/survey/lit_places.h"
 #include "tests/integrator/lamp_rooms.h"
 #include "tests/integrator/statistics.h"

@@ -30,7 +30,8 @@ class Walk {
     // False when it met nothing or the surface has no such lobe.
     bool scatter(Lobe lobe) {
         if (!m_scene.intersect(m_ray, m_surface)) return false;
-        const Bsdf bsdf(m_scene, m_surface, -m_ray.direction, Transport::kRadiance, Rgb(1.0f));
+        const Bsdf bsdf(m_scene.materials(), m_surface, -m_ray.direction, Transport::kRadiance,
+                        Rgb(1.0f));
         BsdfSample sample;
         // Reflection comes first among a dielectric's lobes, refraction last.
         const float u = lobe == Lobe::kReflection ? 0.0f : 0.99999f;

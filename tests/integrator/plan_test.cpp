@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/photons/estimate/surface_patches.h"
 #include "integrator/photons/trace/photon_tracer.h"
-#include "integrator/scene/light_sampler.h"
 #include "integrator/transport/frame_renderer.h"
 #include "tests/integrator/scene_maker.h"
 

@@ -9,8 +9,8 @@
 #include <memory>
 #include <vector>
 
-#include "integrator/scene/camera.h"
-#include "integrator/scene/light_sampler.h"
+#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/scene/camera/camera.h"
 #include "integrator/transport/photon/photon_pass.h"
 #include "tests/integrator/scene_maker.h"
 

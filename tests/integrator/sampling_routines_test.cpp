@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "integrator/scene/light_choice.h"
+#include "integrator/lights/samplers/light_choice.h"
 #include "integrator/transport/path/path_walk.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"
@@ -76,7 +76,7 @@ TEST(SamplingRoutines, LobesAreChosenByWhatTheyCarry) {
     for (const LobeCase& c : lobeCases(cosine))
         for (const Transport transport : {Transport::kRadiance, Transport::kPhotons}) {
             const Bench bench(c.material);
-            const Bsdf bsdf(*bench.scene, bench.surface, out, transport, carried);
+            const Bsdf bsdf(bench.scene->materials(), bench.surface, out, transport, carried);
             std::array<double, kLobeCount> probability;
             double sum = 0;
             for (std::size_t i = 0; i < kLobeCount; ++i)
@@ -193,8 +193,8 @@ TEST(SamplingRoutines, RouletteKeepsTheMean) {
         Sampler sampler(1, 0, n, 0);
         PathWalk path(Ray{{}, {0, 0, -1}});
         for (std::size_t event = 0; event < kEvents; ++event) {
-            const Bsdf bsdf(*bench.scene, bench.surface, {0, 0, 1}, Transport::kRadiance,
-                            path.throughput);
+            const Bsdf bsdf(bench.scene->materials(), bench.surface, {0, 0, 1},
+                            Transport::kRadiance, path.throughput);
             BsdfSample sample;
             const float u = sampler.next1D();
             ASSERT_TRUE(bsdf.sample(u, sampler.next2D(), sample));

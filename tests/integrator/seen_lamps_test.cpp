@@ -8,8 +8,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "integrator/scene/camera.h"
-#include "integrator/scene/light_sampler.h"
+#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/scene/camera/camera.h"
 #include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"

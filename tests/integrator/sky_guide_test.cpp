@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Environments that are mostly hidden: where a window is, learnt.
-#include "integrator/scene/sky_guide.h"
+#include "integrator/lights/samplers/sky_guide.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -12,7 +12,7 @@
 #include <numbers>
 #include <vector>
 
-#include "integrator/scene/light_sampler.h"
+#include "integrator/lights/samplers/light_sampler.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/sky_picture.h"
 #include "tests/integrator/statistics.h"

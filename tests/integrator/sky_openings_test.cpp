@@ -11,10 +11,10 @@
 #include <atomic>
 #include <cmath>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/photons/emission/aimed_emission.h"
 #include "integrator/photons/emission/sky_parts.h"
 #include "integrator/photons/trace/photon_tracer.h"
-#include "integrator/scene/light_sampler.h"
 #include "tests/integrator/statistics.h"
 #include "tests/integrator/window_room.h"
 

@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-#include "integrator/scene/texture_source.h"
+#include "integrator/materials/texture_source.h"
 #include "integrator/values/rgb.h"
 
 namespace pm::test {

@@ -2,17 +2,17 @@
 // SPDX-FileCopyrightText: The pm authors
 // Points on surfaces and the rays that leave them: never back into what they left, at any size and
 // place; fronts under mirroring; the same picture wherever the scene stands.
-#include "integrator/scene/surface.h"
+#include "integrator/shapes/surface.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/sampling/sampler.h"
-#include "integrator/scene/camera.h"
-#include "integrator/scene/huge_triangles.h"
-#include "integrator/scene/light_sampler.h"
+#include "integrator/scene/camera/camera.h"
+#include "integrator/shapes/huge_triangles.h"
 #include "integrator/transport/path/path_integrator.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"

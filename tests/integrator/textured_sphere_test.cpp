@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "integrator/scene/light_sampler.h"
+#include "integrator/lights/samplers/light_sampler.h"
 #include "tests/integrator/aimed.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/sky_picture.h"

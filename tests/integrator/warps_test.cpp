@@ -8,8 +8,8 @@
 
 #include <cmath>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/materials/bsdf.h"
-#include "integrator/scene/light_sampler.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"
 
@@ -137,7 +137,8 @@ TEST(Warps, BsdfSamplesItsDensity) {
         for (const Transport transport : {Transport::kRadiance, Transport::kPhotons}) {
             const Bench bench(material, {0, 0, 1});
             const Vec3f out = normalize(Vec3f{0.6f, 0.3f, 0.5f});
-            const Bsdf bsdf(*bench.scene, bench.surface, out, transport, Rgb(0.7f, 1.0f, 0.4f));
+            const Bsdf bsdf(bench.scene->materials(), bench.surface, out, transport,
+                            Rgb(0.7f, 1.0f, 0.4f));
             for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kBroad}) {
                 if (!bsdf.has(lobe)) continue;
                 EXPECT_GT(lobePValue(bench, bsdf, lobe, 0.0, ++seed), kSignificance) << seed;
@@ -150,7 +151,7 @@ TEST(Warps, BsdfSamplesItsDensityUnderATiltedNormal) {
     MaterialDescription diffuse;
     diffuse.diffuse = Rgb(0.5f);
     const Bench bench(diffuse, {0.3f, 0.1f, 1.0f});
-    const Bsdf bsdf(*bench.scene, bench.surface, normalize(Vec3f{0.1f, 0.3f, 0.8f}),
+    const Bsdf bsdf(bench.scene->materials(), bench.surface, normalize(Vec3f{0.1f, 0.3f, 0.8f}),
                     Transport::kRadiance, Rgb(1.0f));
     EXPECT_GT(lobePValue(bench, bsdf, Lobe::kDiffuse, 0.0, 1), kSignificance);
     EXPECT_LT(lobePValue(bench, bsdf, Lobe::kDiffuse, 0.15, 2), kSignificance);

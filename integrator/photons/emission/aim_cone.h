@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "integrator/scene/beam.h"
+#include "integrator/lights/beam.h"
 #include "integrator/values/vec.h"
 
 namespace pm {

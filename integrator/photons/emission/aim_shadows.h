@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <span>
 
+#include "integrator/lights/box_shadow.h"
 #include "integrator/photons/emission/aim_mixture.h"
-#include "integrator/scene/box_shadow.h"
 #include "integrator/values/vec.h"
 
 namespace pm {

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "integrator/lights/samplers/light_choice.h"
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/photons/emission/aim_mixture.h"
 #include "integrator/photons/emission/focus.h"
 #include "integrator/photons/emission/sky_parts.h"
-#include "integrator/scene/light_choice.h"
-#include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/values/cancel_check.h"
 

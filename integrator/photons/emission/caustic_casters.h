@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
+#include "integrator/materials/invisible.h"
 #include "integrator/photons/emission/aim_cone.h"
-#include "integrator/scene/invisible.h"
 #include "integrator/scene/scene.h"
 #include "integrator/values/cancel_check.h"
 

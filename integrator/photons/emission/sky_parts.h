@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "integrator/scene/environment.h"
+#include "integrator/lights/environment.h"
 #include "integrator/values/vec.h"
 
 namespace pm {

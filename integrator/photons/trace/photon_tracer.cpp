@@ -134,7 +134,7 @@ class PhotonWalk {
                 return landed;
             }
             const Vec3f out = -ray.direction;
-            const Bsdf bsdf(m_scene, surface, out, Transport::kPhotons, flux);
+            const Bsdf bsdf(m_scene.materials(), surface, out, Transport::kPhotons, flux);
             if (bsdf.has(Lobe::kDiffuse)) {
                 surface.position =
                     m_scene.pointUnderRay(surface.position, ray, bsdf.facingGeometricNormal());

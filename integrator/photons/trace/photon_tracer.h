@@ -7,11 +7,11 @@
 #include <functional>
 #include <vector>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/photons/emission/aimed_emission.h"
 #include "integrator/photons/map/big_array.h"
 #include "integrator/photons/map/photon_map.h"
 #include "integrator/photons/trace/long_chains.h"
-#include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 
 namespace pm {

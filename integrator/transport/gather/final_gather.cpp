@@ -75,7 +75,7 @@ Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray
             result.first = surface;
             result.hitAny = true;
         }
-        const Bsdf bsdf(scene, surface, -way.path.ray.direction, Transport::kRadiance,
+        const Bsdf bsdf(scene.materials(), surface, -way.path.ray.direction, Transport::kRadiance,
                         way.path.throughput);
         if (bsdf.isBlackBody()) return result;
         if (bsdf.has(Lobe::kDiffuse)) {

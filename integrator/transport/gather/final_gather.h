@@ -4,9 +4,9 @@
 
 #include <cstdint>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/photons/estimate/irradiance_sites.h"
 #include "integrator/sampling/sampler.h"
-#include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/gather/virtual_lamps.h"
 

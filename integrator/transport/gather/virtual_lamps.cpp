@@ -95,7 +95,7 @@ Rgb VirtualLamps::irradianceBy(const Lamp& lamp, const Place& place,
     if (!m_scene.intersect(ray, met) ||
         lengthSquared(met.position - lamp.position) > kAside * kAside * wayLength * wayLength)
         return {};
-    const Bsdf bsdf(m_scene, met, -ray.direction, Transport::kRadiance, Rgb(1.0f));
+    const Bsdf bsdf(m_scene.materials(), met, -ray.direction, Transport::kRadiance, Rgb(1.0f));
     const float facing = -dot(away, bsdf.facingGeometricNormal());
     const float squared = lengthSquared(away);
     // Of gather rays by the cosine, for each unit of area there.

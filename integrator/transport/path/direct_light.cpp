@@ -39,7 +39,7 @@ float straightShare(const Scene& scene, const Ray& shadowRay, std::uint32_t& ray
         Surface surface;
         ++rays;
         if (!(ray.tMax > 0.0f) || !scene.intersect(ray, surface)) break;
-        const Bsdf bsdf(scene, surface, -direction, Transport::kRadiance, Rgb(1.0f));
+        const Bsdf bsdf(scene.materials(), surface, -direction, Transport::kRadiance, Rgb(1.0f));
         share *= maxChannel(bsdf.reflectance(Lobe::kStraight));
         origin = rayOrigin(surface, direction);
     }

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cstdint>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/materials/bsdf.h"
 #include "integrator/sampling/sampler.h"
-#include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/values/rgb.h"
 

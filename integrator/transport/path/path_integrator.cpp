@@ -21,7 +21,7 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
             return result;
         }
         result.of(state.classify()) += path.throughput * weightedEmission(m_lights, surface, last);
-        const Bsdf bsdf(m_scene, surface, -path.ray.direction, Transport::kRadiance,
+        const Bsdf bsdf(m_scene.materials(), surface, -path.ray.direction, Transport::kRadiance,
                         path.throughput);
         recordFirstHit(surface, bsdf, result);
         if (bsdf.isBlackBody()) return result;

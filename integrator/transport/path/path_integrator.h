@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/rays/ray_tracer.h"
 #include "integrator/sampling/sampler.h"
-#include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/path/direct_light.h"
 

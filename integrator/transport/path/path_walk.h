@@ -7,7 +7,7 @@
 #include "integrator/sampling/event_count.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/scene.h"
-#include "integrator/scene/surface.h"
+#include "integrator/shapes/surface.h"
 #include "integrator/values/rgb.h"
 
 namespace pm {
@@ -70,7 +70,8 @@ void followCameraPath(const Scene& scene, const Ray& first, Sampler& sampler, co
     while (true) {
         Surface surface;
         if (!scene.intersect(path.ray, surface)) return;
-        const Bsdf bsdf(scene, surface, -path.ray.direction, Transport::kRadiance, path.throughput);
+        const Bsdf bsdf(scene.materials(), surface, -path.ray.direction, Transport::kRadiance,
+                        path.throughput);
         if (bsdf.isBlackBody()) return;
         BsdfSample sample;
         const float uLobe = sampler.next1D();

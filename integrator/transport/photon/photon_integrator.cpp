@@ -124,7 +124,8 @@ void PhotonIntegrator::follow(Branch& branch, const Tree& tree) const {
         branch.way += length(surface.position - path.ray.origin);
         if (tree.view.withSeenLamps || found != PathClass::kEmission)
             result.of(found) += path.throughput * weightedEmission(m_lights, surface, branch.last);
-        Bsdf bsdf(m_scene, surface, -path.ray.direction, Transport::kRadiance, path.throughput);
+        Bsdf bsdf(m_scene.materials(), surface, -path.ray.direction, Transport::kRadiance,
+                  path.throughput);
         bsdf.followAll();
         recordFirstHit(surface, bsdf, result);
         if (bsdf.isBlackBody()) return;

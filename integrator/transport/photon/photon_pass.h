@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/photons/emission/aimed_emission.h"
 #include "integrator/photons/emission/focus.h"
 #include "integrator/photons/estimate/caustic_map.h"
@@ -17,8 +18,7 @@
 #include "integrator/photons/map/photon_map.h"
 #include "integrator/photons/trace/photon_store.h"
 #include "integrator/photons/trace/photon_tracer.h"
-#include "integrator/scene/camera.h"
-#include "integrator/scene/light_sampler.h"
+#include "integrator/scene/camera/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame/render_settings.h"
 #include "integrator/transport/frame/transport_plan.h"

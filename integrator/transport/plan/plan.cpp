@@ -8,11 +8,11 @@
 #include <bit>
 #include <cmath>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/photons/emission/caustic_casters.h"
 #include "integrator/photons/estimate/caustic_map.h"
 #include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/scene/convex_body.h"
-#include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/plan/plan_memory.h"
 #include "integrator/transport/plan/plan_time.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "integrator/scene/invisible.h"
+#include "integrator/materials/invisible.h"
 #include "integrator/scene/scene.h"
 
 namespace pm {

@@ -112,7 +112,8 @@ struct Arrival {
     Arrival(const Scene& scene, const Ray& ray, const Carried& carried)
         : isSurface(scene.intersect(ray, surface)) {
         if (isSurface && mayHaveDelta(scene.material(surface.material)))
-            bsdf.emplace(scene, surface, -ray.direction, Transport::kRadiance, carried.throughput);
+            bsdf.emplace(scene.materials(), surface, -ray.direction, Transport::kRadiance,
+                         carried.throughput);
     }
     // The next ray by way of a lobe; false where there is none.
     bool follow(Lobe lobe, Carried& carried, Ray& next) const {

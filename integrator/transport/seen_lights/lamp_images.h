@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/materials/bsdf.h"
-#include "integrator/scene/camera.h"
-#include "integrator/scene/light_sampler.h"
+#include "integrator/scene/camera/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/values/rgb.h"
 #include "integrator/values/vec.h"

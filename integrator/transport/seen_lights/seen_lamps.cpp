@@ -170,7 +170,8 @@ bool SeenLamps::step(Branch& branch, Waiting& waiting, Sampler& sampler, Rgb& fo
     if (surface.light != kNoLight)
         found += branch.carried.throughput * m_lights.emittedRadiance(surface, out);
     if (!mayHaveDelta(m_scene.material(surface.material))) return false;
-    const Bsdf bsdf(m_scene, surface, out, Transport::kRadiance, branch.carried.throughput);
+    const Bsdf bsdf(m_scene.materials(), surface, out, Transport::kRadiance,
+                    branch.carried.throughput);
     if (bsdf.isBlackBody()) return false;
     const Branch arrived = branch;
     if (waiting.divisions >= waiting.effort.divisions) {

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/materials/bsdf.h"
 #include "integrator/sampling/sampler.h"
-#include "integrator/scene/camera.h"
-#include "integrator/scene/light_sampler.h"
+#include "integrator/scene/camera/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame/pixel_cell.h"
 #include "integrator/transport/frame/render_settings.h"

@@ -4,9 +4,9 @@
 
 #include <atomic>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/photons/emission/aimed_emission.h"
 #include "integrator/photons/trace/photon_tracer.h"
-#include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/survey/pilot_passes.h"
 

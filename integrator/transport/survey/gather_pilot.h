@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "integrator/scene/camera.h"
-#include "integrator/scene/light_sampler.h"
+#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/scene/camera/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame/render_settings.h"
 #include "integrator/transport/gather/final_gather.h"

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <atomic>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/photons/trace/photon_tracer.h"
-#include "integrator/scene/light_sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame/transport_plan.h"
 #include "integrator/transport/survey/pilot_passes.h"

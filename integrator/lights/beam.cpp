@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "integrator/scene/beam.h"
+#include "integrator/lights/beam.h"
 
 #include <algorithm>
 #include <cmath>

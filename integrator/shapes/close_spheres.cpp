@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "integrator/scene/close_spheres.h"
+#include "integrator/shapes/close_spheres.h"
 
 #include <algorithm>
 #include <cmath>

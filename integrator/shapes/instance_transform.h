@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "integrator/scene/scene_description.h"
+#include "integrator/values/transform.h"
 #include "integrator/values/vec.h"
 
 namespace pm {

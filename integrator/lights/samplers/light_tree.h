@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "integrator/scene/light_quad.h"
+#include "integrator/lights/samplers/light_quad.h"
 #include "integrator/scene/scene.h"
 #include "integrator/values/cancel_check.h"
 #include "integrator/values/vec.h"

@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "integrator/sampling/warps.h"
-#include "integrator/scene/surface.h"
+#include "integrator/shapes/surface.h"
 #include "integrator/values/vec.h"
 
 namespace pm {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "integrator/scene/camera.h"
+#include "integrator/scene/camera/camera.h"
 
 #include <fmt/format.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "integrator/scene/light_tree.h"
+#include "integrator/lights/samplers/light_tree.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "integrator/scene/place_cells.h"
+#include "integrator/lights/samplers/place_cells.h"
 
 #include <algorithm>
 #include <cmath>

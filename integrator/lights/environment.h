@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "integrator/scene/scene_description.h"
+#include "integrator/lights/light_description.h"
 #include "integrator/values/cancel_check.h"
 #include "integrator/values/rgb.h"
 #include "integrator/values/vec.h"

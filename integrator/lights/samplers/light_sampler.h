@@ -9,13 +9,13 @@
 #include <span>
 #include <vector>
 
+#include "integrator/lights/samplers/light_choice.h"
+#include "integrator/lights/samplers/light_guide.h"
+#include "integrator/lights/samplers/light_tree.h"
+#include "integrator/lights/samplers/sky_guide.h"
 #include "integrator/rays/ray_tracer.h"
-#include "integrator/scene/light_choice.h"
-#include "integrator/scene/light_guide.h"
-#include "integrator/scene/light_tree.h"
 #include "integrator/scene/scene.h"
-#include "integrator/scene/sky_guide.h"
-#include "integrator/scene/surface.h"
+#include "integrator/shapes/surface.h"
 #include "integrator/values/cancel_check.h"
 #include "integrator/values/rgb.h"
 #include "integrator/values/vec.h"

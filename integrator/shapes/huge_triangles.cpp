@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "integrator/scene/huge_triangles.h"
+#include "integrator/shapes/huge_triangles.h"
 
 #include <algorithm>
 #include <functional>

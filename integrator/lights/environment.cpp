@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "integrator/scene/environment.h"
+#include "integrator/lights/environment.h"
 
 #include <tbb/parallel_for.h>
 

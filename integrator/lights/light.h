@@ -3,15 +3,15 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
-#include "integrator/scene/beam.h"
+#include "integrator/lights/beam.h"
+#include "integrator/lights/light_description.h"
 #include "integrator/values/rgb.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
-
-struct SceneDescription;
 
 // One emitting primitive, a point or a spot, in the scene's own coordinates; or what shines from
 // infinitely far: a directional light, the environment.
@@ -45,12 +45,13 @@ struct Light {
 // directions as floats could not tell its edge.
 inline constexpr double kNarrowestDisc = 1e-4;
 
-// Adds a description's point lights and spots, black ones left out. centre: of the scene, world.
-void addPointLights(const SceneDescription& description, const Vec3d& centre,
+// Adds point lights and spots, black ones left out. centre: of the scene, world.
+void addPointLights(std::span<const PointLightDescription> points,
+                    std::span<const SpotLightDescription> spots, const Vec3d& centre,
                     std::vector<Light>& lights, std::vector<Beam>& beams);
 
-// The same of its directional lights. halfSize: of the scene's box.
-void addDirectionalLights(const SceneDescription& description, const Vec3d& halfSize,
+// The same of directional lights. halfSize: of the scene's box.
+void addDirectionalLights(std::span<const DirectionalLightDescription> suns, const Vec3d& halfSize,
                           std::vector<Light>& lights, std::vector<Beam>& beams);
 
 // Area of the scene's box as parallel light sees it; at least something, so that the light of a

@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <vector>
 
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
-#include "integrator/scene/light_sampler.h"
 
 namespace pm {
 

@@ -3,9 +3,9 @@
 // LightSampler: photons as they leave lights.
 #include <cmath>
 
+#include "integrator/lights/box_shadow.h"
+#include "integrator/lights/samplers/light_sampler.h"
 #include "integrator/sampling/warps.h"
-#include "integrator/scene/box_shadow.h"
-#include "integrator/scene/light_sampler.h"
 
 namespace pm {
 

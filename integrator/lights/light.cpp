@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "integrator/scene/light.h"
+#include "integrator/lights/light.h"
 
 #include <algorithm>
 #include <numbers>
 
-#include "integrator/scene/box_shadow.h"
-#include "integrator/scene/scene_description.h"
+#include "integrator/lights/box_shadow.h"
 
 namespace pm {
 
@@ -14,9 +13,10 @@ double crossSection(const Vec3d& halfSize, const Vec3d& direction) {
     return std::max(BoxShadow(halfSize, direction).area(), 1e-3 * lengthSquared(halfSize));
 }
 
-void addPointLights(const SceneDescription& description, const Vec3d& centre,
+void addPointLights(std::span<const PointLightDescription> points,
+                    std::span<const SpotLightDescription> spots, const Vec3d& centre,
                     std::vector<Light>& lights, std::vector<Beam>& beams) {
-    for (const PointLightDescription& point : description.pointLights) {
+    for (const PointLightDescription& point : points) {
         if (isBlack(point.intensity)) continue;
         Light light;
         light.position = point.position - centre;
@@ -24,7 +24,7 @@ void addPointLights(const SceneDescription& description, const Vec3d& centre,
         light.powerMean = 4 * std::numbers::pi * channelMean(point.intensity);
         lights.push_back(light);
     }
-    for (const SpotLightDescription& spot : description.spotLights) {
+    for (const SpotLightDescription& spot : spots) {
         if (isBlack(spot.intensity)) continue;
         Light light;
         light.kind = Light::Kind::kSpot;
@@ -38,9 +38,9 @@ void addPointLights(const SceneDescription& description, const Vec3d& centre,
     }
 }
 
-void addDirectionalLights(const SceneDescription& description, const Vec3d& halfSize,
+void addDirectionalLights(std::span<const DirectionalLightDescription> suns, const Vec3d& halfSize,
                           std::vector<Light>& lights, std::vector<Beam>& beams) {
-    for (const DirectionalLightDescription& sun : description.directionalLights) {
+    for (const DirectionalLightDescription& sun : suns) {
         if (isBlack(sun.irradiance)) continue;
         Light light;
         light.kind = Light::Kind::kDirectional;

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
+#include "integrator/lights/environment.h"
+#include "integrator/lights/samplers/place_cells.h"
 #include "integrator/sampling/sphere_cells.h"
-#include "integrator/scene/environment.h"
-#include "integrator/scene/place_cells.h"
 #include "integrator/values/vec.h"
 
 namespace pm {

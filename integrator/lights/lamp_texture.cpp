@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "integrator/scene/lamp_texture.h"
+#include "integrator/lights/lamp_texture.h"
 
 #include <tbb/parallel_for.h>
 

@@ -9,8 +9,8 @@
 #include <span>
 #include <vector>
 
-#include "integrator/scene/light_tree.h"
-#include "integrator/scene/place_cells.h"
+#include "integrator/lights/samplers/light_tree.h"
+#include "integrator/lights/samplers/place_cells.h"
 
 namespace pm {
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "integrator/scene/sky_guide.h"
+#include "integrator/lights/samplers/sky_guide.h"
 
 #include <tbb/parallel_for.h>
 

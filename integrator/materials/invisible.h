@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "integrator/scene/scene_description.h"
+#include "integrator/materials/material_description.h"
 
 namespace pm {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "integrator/scene/light_tree.h"
+#include "integrator/lights/samplers/light_tree.h"
 #include "integrator/values/vec.h"
 
 namespace pm {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "integrator/scene/copied_faces.h"
+#include "integrator/shapes/copied_faces.h"
 
 #include <algorithm>
 #include <bit>

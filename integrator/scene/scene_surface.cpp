@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // Points on surfaces: of a hit only the primitive is taken; where it is met is computed again in
 // double and rounded once, so that the error is known (see surfaceOffset).
-#include "integrator/scene/surface.h"
+#include "integrator/shapes/surface.h"
 
 #include <algorithm>
 #include <cmath>
