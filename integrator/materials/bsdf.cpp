@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "integrator/materials/opacity.h"
 #include "integrator/sampling/warps.h"
 
 namespace pm {
@@ -87,8 +88,7 @@ Bsdf::Bsdf(const Materials& materials, const Surface& surface, const Vec3f& out,
     // is Lambertian does not ask where it is seen from.
     const bool behindShading = dot(m_out, m_ns) <= 0.0f;
     if (behindShading) m_ns = m_ng;
-    m_opacity = clamp01((1.0f - m_material.transparency) *
-                        lookUp(materials, m_material.opacityTexture, surface).r);
+    m_opacity = opacityAt(materials, m_material, surface.uv);
     switch (m_material.kind) {
         case MaterialKind::kSurface:
             setSurface(materials, surface);
@@ -179,10 +179,14 @@ void Bsdf::setPhotonWays() {
     }
 }
 
+// What goes straight on is the share of the surface that is not there: none of it is taken.
 void Bsdf::limitEnergy() {
     const float largest = maxChannel(albedo());
     if (!(largest > 1.0f)) return;
-    for (Rgb& reflectance : m_reflectance) reflectance *= 1.0f / largest;
+    const Rgb straight = reflectance(Lobe::kStraight);
+    const float factor = m_opacity / (largest - straight.g);
+    for (Rgb& reflectance : m_reflectance) reflectance *= factor;
+    m_reflectance[index(Lobe::kStraight)] = straight;
 }
 
 // What chooseProbabilities comes to where there is one lobe; most surfaces are like that.

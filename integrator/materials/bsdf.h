@@ -20,7 +20,9 @@ enum class Lobe : std::uint8_t {
     kBroad,       // Phong lobe that is not: for the classes of paths much like the diffuse one
     kReflection,  // mirror, and the reflected part of a dielectric (delta)
     kRefraction,  // delta
-    kStraight,    // transparency: passes as if nothing were there (delta)
+    // Transparency: passes as if nothing were there (delta). It is no event of a path: changes no
+    // class of paths and stands in no density. Shadow rays go by it as well: Scene::transmittance.
+    kStraight,
 };
 inline constexpr std::size_t kLobeCount = 6;
 

@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cmath>
 #include <deque>
+#include <exception>
 #include <vector>
 
 #include "integrator/values/error.h"
@@ -109,6 +110,35 @@ void passOver(const RTCFilterFunctionNArguments* args) {
     args->valid[0] = 0;
 }
 
+// What asks each of a ray's hits whether it stops the ray.
+struct HitQuestions {
+    RTCIntersectContext context;  // first: Embree hands a pointer to it back
+    bool (*stops)(void* user, const RayHit& hit);
+    void* user;
+    std::exception_ptr thrown;  // Embree's own functions can't be left by an exception
+
+    bool areStopped(const RayHit& hit) {
+        try {
+            return thrown || stops(user, hit);
+        } catch (...) {
+            thrown = std::current_exception();
+            return true;
+        }
+    }
+};
+
+void askForHit(const RTCFilterFunctionNArguments* args) {
+    if (args->valid[0] != -1) return;
+    auto& questions = *reinterpret_cast<HitQuestions*>(args->context);
+    if (!questions.areStopped({RTCHitN_geomID(args->hit, 1, 0), RTCHitN_primID(args->hit, 1, 0),
+                               RTCRayN_tfar(args->ray, 1, 0)}))
+        args->valid[0] = 0;
+}
+
+void stop(RTCRay& ray) {
+    ray.tfar = -std::numeric_limits<float>::infinity();
+}
+
 // Rays are traced one by one, so N is 1 and the packet is a plain RTCRayHit.
 void sphereIntersect(const RTCIntersectFunctionNArguments* args) {
     if (args->valid[0] != -1 || args->context->filter == passOver) return;
@@ -122,8 +152,22 @@ void sphereIntersect(const RTCIntersectFunctionNArguments* args) {
 void sphereOccluded(const RTCOccludedFunctionNArguments* args) {
     if (args->valid[0] != -1) return;
     auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
-    if (intersectRtcRay(*static_cast<const Sphere*>(args->geometryUserPtr), ray) >= 0.0)
-        ray.tfar = -std::numeric_limits<float>::infinity();
+    const auto& sphere = *static_cast<const Sphere*>(args->geometryUserPtr);
+    if (args->context->filter != askForHit) {
+        if (intersectRtcRay(sphere, ray) >= 0.0) stop(ray);
+        return;
+    }
+    auto& questions = *reinterpret_cast<HitQuestions*>(args->context);
+    SphereRoots roots;
+    if (!findSphereRoots({ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z},
+                         sphere.centre, sphere.radius, roots))
+        return;
+    for (const double t : {roots.near, roots.far})
+        if (t > 0.0 && t <= static_cast<double>(ray.tfar) &&
+            questions.areStopped({args->geomID, args->primID, static_cast<float>(t)})) {
+            stop(ray);
+            return;
+        }
 }
 
 void trianglesBounds(const RTCBoundsFunctionArguments* args) {
@@ -174,8 +218,13 @@ void trianglesOccluded(const RTCOccludedFunctionNArguments* args) {
     if (args->valid[0] != -1) return;
     auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
     const auto& of = *static_cast<const ExactTriangles*>(args->geometryUserPtr);
-    if (intersectRtcRay(of.triangles[args->primID], ray) >= 0.0)
-        ray.tfar = -std::numeric_limits<float>::infinity();
+    const ExactTriangle& triangle = of.triangles[args->primID];
+    const double t = intersectRtcRay(triangle, ray);
+    if (t < 0.0) return;
+    if (args->context->filter != askForHit ||
+        reinterpret_cast<HitQuestions*>(args->context)
+            ->areStopped({of.shape, triangle.primitive, static_cast<float>(t)}))
+        stop(ray);
 }
 
 bool usable(const Ray& ray) {
@@ -209,26 +258,33 @@ void fill(RTCRayHit& out, const Ray& ray) {
 
 }  // namespace
 
-double intersectSphere(const Vec3d& origin, const Vec3d& direction, double tMax,
-                       const Vec3d& centre, double radius) {
+bool findSphereRoots(const Vec3d& origin, const Vec3d& direction, const Vec3d& centre,
+                     double radius, SphereRoots& roots) {
     const Vec3d f = origin - centre;
     const double a = lengthSquared(direction);
-    if (!(a > 0.0)) return -1.0;
+    if (!(a > 0.0)) return false;
     const double b = -dot(f, direction);
     const double f2 = lengthSquared(f), c = f2 - radius * radius;
     // Most misses need no division: the sphere lies behind, or the line passes it by more than
     // these few terms' roundings, 2^-52 each of a f2, can amount to.
-    if (b < 0.0 && c > 0.0) return -1.0;
-    if (a * c - b * b > 0x1p-46 * a * f2) return -1.0;
+    if (b < 0.0 && c > 0.0) return false;
+    if (a * c - b * b > 0x1p-46 * a * f2) return false;
     // The squared distance of the ray's line from the centre, without cancellation for far spheres.
     const Vec3d nearest = f + direction * (b / a);
     const double discriminant = radius * radius - lengthSquared(nearest);
-    if (discriminant < 0.0) return -1.0;
+    if (discriminant < 0.0) return false;
     const double q = b + std::copysign(std::sqrt(a * discriminant), b);
-    if (q == 0.0) return -1.0;  // the origin is on the sphere and the ray touches it
-    double t0 = c / q, t1 = q / a;
-    if (t0 > t1) std::swap(t0, t1);
-    const double t = t0 > 0.0 ? t0 : t1;
+    if (q == 0.0) return false;  // the origin is on the sphere and the ray touches it
+    roots = {c / q, q / a};
+    if (roots.near > roots.far) std::swap(roots.near, roots.far);
+    return true;
+}
+
+double intersectSphere(const Vec3d& origin, const Vec3d& direction, double tMax,
+                       const Vec3d& centre, double radius) {
+    SphereRoots roots;
+    if (!findSphereRoots(origin, direction, centre, radius, roots)) return -1.0;
+    const double t = roots.near > 0.0 ? roots.near : roots.far;
     return t > 0.0 && t <= tMax ? t : -1.0;
 }
 
@@ -365,6 +421,18 @@ bool RayTracer::occluded(const Ray& ray) const {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     rtcOccluded1(m_impl->scene, &context, &rtcRay);
+    return rtcRay.tfar < 0.0f;
+}
+
+bool RayTracer::askEach(const Ray& ray, HitQuestion stops, void* user) const {
+    if (!usable(ray)) return true;
+    alignas(16) RTCRay rtcRay;
+    fill(rtcRay, ray);
+    HitQuestions questions{{}, stops, user, nullptr};
+    rtcInitIntersectContext(&questions.context);
+    questions.context.filter = askForHit;
+    rtcOccluded1(m_impl->scene, &questions.context, &rtcRay);
+    if (questions.thrown) std::rethrow_exception(questions.thrown);
     return rtcRay.tfar < 0.0f;
 }
 

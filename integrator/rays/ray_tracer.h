@@ -8,6 +8,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "integrator/values/cancel_check.h"
@@ -68,6 +69,15 @@ class RayTracer {
     // Threads: any, at once, after commit.
     bool intersect(const Ray& ray, RayHit& hit) const;
     bool occluded(const Ray& ray) const;
+    // Calls stops(hit) for all that the ray meets, every root of a sphere too, in no order, until
+    // one stops it. True: one did. What stops throws goes on to the caller.
+    template <typename Stops>
+    bool stopped(const Ray& ray, Stops&& stops) const {
+        using Plain = std::remove_reference_t<Stops>;
+        return askEach(
+            ray, [](void* user, const RayHit& hit) { return (*static_cast<Plain*>(user))(hit); },
+            &stops);
+    }
     // Calls visit(hit) for every triangle that the ray meets beyond tMin, in no order. Spheres are
     // left out.
     template <typename Visit>
@@ -84,15 +94,27 @@ class RayTracer {
 
   private:
     using HitVisitor = void (*)(const void* user, const RayHit& hit);
+    using HitQuestion = bool (*)(void* user, const RayHit& hit);
+    bool askEach(const Ray& ray, HitQuestion stops, void* user) const;
     void visitHits(const Ray& ray, float tMin, HitVisitor visit, const void* user) const;
 
     struct Impl;
     std::unique_ptr<Impl> m_impl;
 };
 
-// Intersects a ray with a sphere in double precision. Returns the nearest root in (0, tMax], or a
-// negative number. Source: Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray
+// Where a line meets a sphere, near before far, in units of the direction's length: either may be
+// outside the ray.
+struct SphereRoots {
+    double near, far;
+};
+
+// Intersects a line with a sphere in double precision; false: it passes the sphere, or touches it
+// at its origin. Source: Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray
 // Tracing Gems, 2019 (the stable quadratic).
+bool findSphereRoots(const Vec3d& origin, const Vec3d& direction, const Vec3d& centre,
+                     double radius, SphereRoots& roots);
+
+// The nearest root in (0, tMax], or a negative number.
 double intersectSphere(const Vec3d& origin, const Vec3d& direction, double tMax,
                        const Vec3d& centre, double radius);
 

@@ -72,7 +72,7 @@ Rgb Scene::farRadiance(const Light& light, const Vec3f& direction) const {
 Rgb Scene::skyRadiance(const Surface& from, const Vec3f& normal, const Vec3f& direction) const {
     if (!(dot(direction, normal) > 0.0f)) return {};
     const Rgb radiance = m_environment->radiance(direction);
-    return isBlack(radiance) || occluded(rayFrom(from, direction)) ? Rgb{} : radiance;
+    return isBlack(radiance) ? Rgb{} : radiance * transmittance(rayFrom(from, direction));
 }
 
 bool Scene::seesFarLight(const Vec3f& direction) const {

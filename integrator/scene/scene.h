@@ -26,6 +26,9 @@
 
 namespace pm {
 
+class Medium;
+class Sampler;
+
 // A scene as it is rendered: immutable, moved to its own centre, ray-tracing structure built. Its
 // own coordinates are world coordinates minus centre(), in float. The centre is the middle of all
 // shapes, or of its core, where a few lie far away from that (see findCore). Threads: all const
@@ -40,6 +43,13 @@ class Scene {
 
     bool intersect(const Ray& ray, Surface& surface) const;
     bool occluded(const Ray& ray) const { return m_tracer.occluded(ray); }
+    // Share of light that goes straight along a ray from its origin to tMax, in [0, 1] a channel:
+    // what the cut-outs and half-transparent sheets on it let through. All that the ray crosses
+    // counts once, faces that rays can't tell apart as one. What bends light lets none through.
+    // medium: in which the ray starts; null: vacuum, the only one that there is. sampler: for what
+    // is estimated by chance; nothing is.
+    Rgb transmittance(const Ray& ray, const Medium* medium = nullptr,
+                      Sampler* sampler = nullptr) const;
 
     // The same as a ray that starts at `origin`, any distance away, along the unit direction; but
     // it starts where it comes near the core, where nothing is in between: a float far away has no
@@ -166,6 +176,10 @@ class Scene {
     // Sets centre and bounds.
     void place(const Box3d& whole, const std::optional<Box3d>& core);
     bool findFlat(const CancelCheck& cancel) const;
+    // Of what a ray meets; shape and all else but isPane.
+    void surfaceAt(const Ray& ray, const RayHit& hit, Surface& surface) const;
+    float straightShare(const Ray& ray, const RayHit& hit) const;
+    bool areOne(const Ray& ray, const RayHit& crossing, const RayHit& next) const;
     void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, const Corner& corner,
                            double b1, double b2, Surface& surface) const;
     // Of a texture of lights; gives notice the first time.
@@ -194,6 +208,7 @@ class Scene {
     std::uint64_t m_triangleCount = 0;
     double m_triangleArea = 0;  // of all
     bool m_isFlat = false, m_hasSheets = false;
+    bool m_letsThrough = false;  // some material does
     RayTracer m_tracer;  // last: it refers to the shapes' arrays and is destroyed before them
     std::unique_ptr<const CoincidentFaces> m_coincident;  // null where there are none
 };

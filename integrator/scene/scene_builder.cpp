@@ -9,6 +9,7 @@
 #include <limits>
 #include <optional>
 
+#include "integrator/materials/opacity.h"
 #include "integrator/scene/coincident_faces.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/scene_core.h"
@@ -41,6 +42,8 @@ class Scene::Builder {
         findHuge();
         m_scene.m_isFlat = m_scene.findFlat(m_cancel);
         m_scene.m_hasSheets = findSheets();
+        m_scene.m_letsThrough =
+            std::ranges::any_of(m_scene.m_description.materials, pm::letsThrough);
         addToTracer();
         for (std::uint32_t i = 0; i < m_scene.m_shapes.size(); ++i) findLights(i);
         m_scene.lookAtTextures(m_cancel);

@@ -81,6 +81,14 @@ Vec2f textureOnSphere(const Vec3d (&axes)[3], const Vec3d& normal) {
             static_cast<float>(2.0 * pinnedAtan2Turns(std::sqrt(x * x + z * z), -y))};
 }
 
+// That of both roots which a hit's distance was rounded from.
+double rootOf(const SphereShape& sphere, const Vec3d& origin, const Vec3d& direction, float t) {
+    const auto told = static_cast<double>(t);
+    SphereRoots roots;
+    if (!findSphereRoots(origin, direction, sphere.centre, sphere.radius, roots)) return told;
+    return std::abs(roots.near - told) <= std::abs(roots.far - told) ? roots.near : roots.far;
+}
+
 }  // namespace
 
 Scene::Facet::Facet(const Corner& corner, bool mirrored, bool exact) {
@@ -108,6 +116,16 @@ bool Scene::intersect(const Ray& ray, Surface& surface) const {
     RayHit hit;
     if (!m_tracer.intersect(ray, hit)) return false;
     if (m_coincident) hit = m_coincident->chosen(ray, hit);
+    surfaceAt(ray, hit, surface);
+    surface.isPane = hit.isPane;
+    if (hit.isPane) {
+        surface.shadingNormal = surface.geometricNormal;
+        surface.offset *= CoincidentFaces::kBeyondPane;
+    }
+    return true;
+}
+
+void Scene::surfaceAt(const Ray& ray, const RayHit& hit, Surface& surface) const {
     const ShapeRecord& record = m_shapes[hit.shape];
     surface.shape = hit.shape;
     if (record.mesh) {
@@ -115,20 +133,11 @@ bool Scene::intersect(const Ray& ray, Surface& surface) const {
         double b1, b2;
         barycentrics(ray, corner.vertex, corner.e1, corner.e2, b1, b2);
         surfaceOnTriangle(record, hit.primitive, corner, b1, b2, surface);
-        surface.isPane = hit.isPane;
-        if (hit.isPane) {
-            surface.shadingNormal = surface.geometricNormal;
-            surface.offset *= CoincidentFaces::kBeyondPane;
-        }
-        return true;
+        return;
     }
     const Vec3d origin(ray.origin), direction(ray.direction);
-    const double t = intersectSphere(origin, direction, static_cast<double>(ray.tMax),
-                                     record.sphere.centre, record.sphere.radius);
-    const Vec3d point = origin + direction * (t > 0 ? t : static_cast<double>(hit.t));
+    const Vec3d point = origin + direction * rootOf(record.sphere, origin, direction, hit.t);
     surfaceOnSphere(record, point - record.sphere.centre, surface);
-    surface.isPane = false;
-    return true;
 }
 
 void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive,

@@ -117,7 +117,7 @@ std::optional<Sighting> LightSampler::lookFrom(const LitPlace& place, std::uint3
     if (!this->sample({u, descent.node, descent.probability}, place.surface, sample) ||
         !(dot(sample.direction, receiver.normal) > 0.0f))
         return std::nullopt;
-    return Sighting{descent.node, !m_scene.occluded(sample.shadowRay)};
+    return Sighting{descent.node, !isBlack(m_scene.transmittance(sample.shadowRay))};
 }
 
 }  // namespace pm

@@ -16,17 +16,16 @@ namespace pm {
 // would bring.
 inline constexpr float kCarriesNothing = 1e-6f;
 
-// Whether light can leave a surface of this material other than diffusely or by a broad lobe, which
-// makes it caustic.
+// Whether light can leave a surface of this material other than diffusely, by a broad lobe or
+// straight on, which makes it caustic.
 inline bool castsCaustics(const MaterialDescription& material) {
     if (isDiffuseAtMost(material) || isInvisible(material)) return false;
-    const bool isOpaque = material.transparency == 0.0f && material.opacityTexture == kNoTexture;
-    if (isOpaque && material.kind != MaterialKind::kDielectric && !material.fresnelMirror &&
+    if (material.kind != MaterialKind::kDielectric && !material.fresnelMirror &&
         material.glossyTexture == kNoTexture && !(maxChannel(material.glossy) > kCarriesNothing))
         return false;
     const bool isPhong = material.kind == MaterialKind::kSurface ||
                          (material.kind == MaterialKind::kMirror && material.glossyExponent > 0.0f);
-    return !(isPhong && isBroad(material)) || !isOpaque;
+    return !(isPhong && isBroad(material));
 }
 
 // Casters that together hold every surface of the scene that casts caustics, at most kMostFound:

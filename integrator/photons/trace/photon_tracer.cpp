@@ -81,7 +81,7 @@ class PhotonWalk {
 
     // How far a photon has come.
     enum class Stage : std::uint8_t {
-        kStraight,   // no diffuse surface yet, and no other lobe either
+        kStraight,   // by no lobe yet, or straight on, which is as if nothing were there
         kSpecular,   // no diffuse surface yet, but other lobes, the first one not broad
         kDiffuse,    // scattered diffusely, or broadly, at first where it came straight from the
                      // light
@@ -144,11 +144,11 @@ class PhotonWalk {
             float uLobe = sampler.next1D();
             const Vec2f u = sampler.next2D();
             if (divides(part, bsdf)) {
-                batch.metCaster += events.count() == 0;
+                batch.metCaster += way.stage == Stage::kStraight;
                 if (divide(part, surface, bsdf, {uLobe, u.x}, waiting, balance)) continue;
                 return landed;
             }
-            batch.metCaster += events.count() == 0 && !bsdf.isDiffuseOnly();
+            batch.metCaster += way.stage == Stage::kStraight && !isDiffuseOrStraight(bsdf);
             const float survival = probabilityOfAll(bsdf);
             const bool keeps =
                 LongChains::keeps(chain, static_cast<float>(channelSum(flux)) * survival);
@@ -191,6 +191,12 @@ class PhotonWalk {
         float sum = 0.0f;
         for (std::size_t i = 0; i < kLobeCount; ++i) sum += bsdf.probability(static_cast<Lobe>(i));
         return std::min(sum, 1.0f);
+    }
+
+    static bool isDiffuseOrStraight(const Bsdf& bsdf) {
+        return bsdf.isDiffuseOnly() ||
+               !(bsdf.has(bsdf.phongLobe()) || bsdf.has(Lobe::kReflection) ||
+                 bsdf.has(Lobe::kRefraction));
     }
 
     // Of what is scattered diffusely where photons are aimed at a focus far away. False: nothing
@@ -244,6 +250,7 @@ class PhotonWalk {
     // followed.
     bool advance(Part& part, Lobe lobe, Sampler& sampler, Rgb& flux) const {
         Way& way = part.way;
+        if (lobe == Lobe::kStraight) return true;
         if (lobe == Lobe::kBroad) {
             if (way.stage == Stage::kStraight) way.stage = Stage::kDiffuse;
             if (way.stage == Stage::kDescended) way.stage = Stage::kBroadened;

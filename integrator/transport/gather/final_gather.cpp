@@ -22,8 +22,16 @@ struct GatherWay {
     }
 };
 
+// met: null where the ray meets nothing. atOnce: by no lobe.
 void addLampsMet(const Scene& scene, const GatherEnds& ends, const GatherWay& way,
-                 const Surface* met, Gathered& result) {
+                 const Surface* met, bool atOnce, Gathered& result) {
+    if (atOnce) {
+        if (!ends.from) return;
+        result.lampsStraight +=
+            way.path.throughput * (met ? weightedEmission(*ends.lights, *met, *ends.from)
+                                       : weightedFarLight(scene, *ends.lights, *ends.from));
+        return;
+    }
     if (!GatherWay::isAsked(ends, way.last.lobe)) return;
     const Rgb light = way.path.throughput * (met ? weightedEmission(*ends.lights, *met, way.last)
                                                  : weightedFarLight(scene, *ends.lights, way.last));
@@ -41,7 +49,8 @@ void addLampsSampled(const Scene& scene, const GatherEnds& ends, const GatherWay
 }
 
 // The end of the way at a surface with a diffuse lobe, as endGather will read it.
-void setEnd(const Scene& scene, const GatherEnds& ends, const GatherWay& way,
+// first: the gather ray.
+void setEnd(const Scene& scene, const GatherEnds& ends, const GatherWay& way, const Ray& first,
             const Surface& surface, const Bsdf& bsdf, float cosine, bool atOnce, Gathered& result) {
     const Ray& ray = way.path.ray;
     result.isWaiting = true;
@@ -52,7 +61,7 @@ void setEnd(const Scene& scene, const GatherEnds& ends, const GatherWay& way,
     result.readsCaustics = ends.caustics && (ends.findsAll || (!atOnce && way.byBroadOnly));
     if (ends.caustics && atOnce && !ends.findsAll) {
         const float facing = -dot(ray.direction, result.normal);
-        result.density = cosine * kInvPi * facing / lengthSquared(surface.position - ray.origin);
+        result.density = cosine * kInvPi * facing / lengthSquared(surface.position - first.origin);
     }
     if (result.density > 0.0f || result.readsCaustics)
         ends.caustics->prefetch(result.position, result.normal);
@@ -65,11 +74,12 @@ Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray
                       Sampler& sampler) {
     Gathered result;
     GatherWay way{PathWalk(ray), {}};
-    for (bool atOnce = true;; atOnce = false) {
+    bool atOnce = true;
+    while (true) {
         Surface surface;
         ++result.rays;
         const bool hit = scene.intersect(way.path.ray, surface);
-        if (!atOnce) addLampsMet(scene, ends, way, hit ? &surface : nullptr, result);
+        addLampsMet(scene, ends, way, hit ? &surface : nullptr, atOnce, result);
         if (!hit) return result;
         if (!result.hitAny) {
             result.first = surface;
@@ -79,7 +89,7 @@ Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray
                         way.path.throughput);
         if (bsdf.isBlackBody()) return result;
         if (bsdf.has(Lobe::kDiffuse)) {
-            setEnd(scene, ends, way, surface, bsdf, cosine, atOnce, result);
+            setEnd(scene, ends, way, ray, surface, bsdf, cosine, atOnce, result);
             if (bsdf.isDiffuseOnly()) return result;
             endGather(ends, result);
         }
@@ -90,6 +100,8 @@ Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray
         if (!bsdf.sample(uLobe, u, sample) || sample.lobe == Lobe::kDiffuse ||
             !way.path.scatter(surface, bsdf, sample, sampler))
             return result;
+        if (sample.lobe == Lobe::kStraight) continue;
+        atOnce = false;
         way.last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle};
         way.byBroadOnly = way.byBroadOnly && sample.lobe == Lobe::kBroad;
     }

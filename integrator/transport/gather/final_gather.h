@@ -9,6 +9,7 @@
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/gather/virtual_lamps.h"
+#include "integrator/transport/path/direct_light.h"
 
 namespace pm {
 
@@ -24,12 +25,15 @@ struct GatherEnds {
     // The ray leaves by a broad lobe of what the camera sees, and nothing else looks for what it is
     // to find: by way of other lobes all light of lamps and caustics, too.
     bool findsAll = false;
+    // What sent the ray out, where light of lamps that it meets at once is asked for as well.
+    const LastScatter* from = nullptr;
 };
 
 // What one final-gather ray brings.
 struct Gathered {
     TwoRadii radiance;  // light that left a diffuse surface, met at once or by way of other lobes,
                         // or a lamp, by way of broad ones
+    Rgb lampsStraight;  // of lamps that are met at once, weighted; see GatherEnds::from
     Surface first;      // what the ray met first
     bool hitAny = false;  // `first` is valid
     std::uint32_t rays = 0;
@@ -52,9 +56,9 @@ struct Gathered {
 
 // Follows a gather ray to the diffuse surfaces where the irradiance sites end it. Light that it
 // finds at a lamp is in `radiance` where the lobe before is a broad one, there also sampled. Met at
-// once it is direct light; by way of a mirror, glass or a narrow lobe a caustic. Nor is that of
-// caustics met by way of such lobes: it is refocused, with an estimate of its own.
-// Source: Jensen 2001, section 9.2.
+// once, itself or straight on through what lets it pass, it is direct light; by way of a mirror,
+// glass or a narrow lobe a caustic. Nor is that of caustics met by way of such lobes: it is
+// refocused, with an estimate of its own. Source: Jensen 2001, section 9.2.
 //
 // In two steps: the first asks for the site at the end to be at hand soon, the second reads it.
 // With another ray's first step between them memory has the time that it takes.

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "integrator/materials/bsdf.h"
+#include "integrator/materials/opacity.h"
 #include "integrator/photons/emission/flux_steps.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
@@ -80,6 +81,24 @@ TwoRadii VirtualLamps::gathered(const Vec3f& position, const Vec3f& normal, floa
     return {irradiance.wide * weight, irradiance.narrow * weight};
 }
 
+// The surface at a place, as a ray meets it that goes there, straight on through what lets it pass;
+// and the share of light that comes from there. False: something is in the way.
+bool VirtualLamps::reach(const Ray& ray, const Vec3f& place, float tolerance, Surface& met,
+                         float& share) const {
+    share = 1.0f;
+    Ray next = ray;
+    while (m_scene.intersect(next, met)) {
+        if (lengthSquared(met.position - place) <= tolerance * tolerance) return true;
+        const MaterialDescription& material = m_scene.material(met.material);
+        if (!letsThrough(material)) return false;
+        share *= 1.0f - opacityAt(m_scene.materials(), material, met.uv);
+        next.origin = rayOrigin(met, ray.direction);
+        next.tMax = ray.tMax - dot(next.origin - ray.origin, ray.direction);
+        if (!(share > 0.0f && next.tMax > 0.0f)) return false;
+    }
+    return false;
+}
+
 // What a lamp brings alone, weighted.
 Rgb VirtualLamps::irradianceBy(const Lamp& lamp, const Place& place,
                                std::uint32_t gatherRays) const {
@@ -92,9 +111,8 @@ Rgb VirtualLamps::irradianceBy(const Lamp& lamp, const Place& place,
     const float wayLength = length(way);
     const Ray ray{place.start, way * (1.0f / wayLength), wayLength * (1.0f + kAside)};
     Surface met;
-    if (!m_scene.intersect(ray, met) ||
-        lengthSquared(met.position - lamp.position) > kAside * kAside * wayLength * wayLength)
-        return {};
+    float share;
+    if (!reach(ray, lamp.position, kAside * wayLength, met, share)) return {};
     const Bsdf bsdf(m_scene.materials(), met, -ray.direction, Transport::kRadiance, Rgb(1.0f));
     const float facing = -dot(away, bsdf.facingGeometricNormal());
     const float squared = lengthSquared(away);
@@ -103,7 +121,8 @@ Rgb VirtualLamps::irradianceBy(const Lamp& lamp, const Place& place,
     const auto gather = static_cast<float>(gatherRays);
     const float own = static_cast<float>(raysBeside(gatherRays)) * lamp.density;
     // density * own / (own + gather * density), also where the density is beyond all floats.
-    return lamp.flux * bsdf.diffuse() * (facing > 0.0f ? own / (own / density + gather) : 0.0f);
+    return lamp.flux * bsdf.diffuse() * share *
+           (facing > 0.0f ? own / (own / density + gather) : 0.0f);
 }
 
 Rgb VirtualLamps::sampled(const Place& place, std::uint32_t gatherRays, float u) const {

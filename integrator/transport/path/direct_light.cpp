@@ -7,6 +7,8 @@
 #include <cmath>
 #include <span>
 
+#include "integrator/materials/opacity.h"
+#include "integrator/sampling/event_count.h"
 #include "integrator/sampling/warps.h"
 
 namespace pm {
@@ -25,26 +27,6 @@ struct Question {
     LampStrategy diffuse;
     std::uint32_t samples;
 };
-
-// Share of light that comes along a shadow ray straight through what it meets. Counts further rays.
-float straightShare(const Scene& scene, const Ray& shadowRay, std::uint32_t& rays) {
-    const Vec3f target = shadowRay.origin + shadowRay.direction * shadowRay.tMax;
-    const bool isFar = !std::isfinite(shadowRay.tMax);
-    const Vec3f direction = normalize(shadowRay.direction);
-    Vec3f origin = shadowRay.origin;
-    float share = 1.0f;
-    while (share > 0.0f) {
-        const Ray ray = isFar ? Ray{origin, direction}
-                              : Ray{origin, direction, dot(target - origin, direction)};
-        Surface surface;
-        ++rays;
-        if (!(ray.tMax > 0.0f) || !scene.intersect(ray, surface)) break;
-        const Bsdf bsdf(scene.materials(), surface, -direction, Transport::kRadiance, Rgb(1.0f));
-        share *= maxChannel(bsdf.reflectance(Lobe::kStraight));
-        origin = rayOrigin(surface, direction);
-    }
-    return share;
-}
 
 // By one of the lamp samples, to be divided by their number.
 DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, std::uint32_t& rays) {
@@ -69,10 +51,8 @@ DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, st
     result.glossy = contribution(bsdf.phongLobe());
     if (isBlack(result.diffuse) && isBlack(result.glossy)) return result;
     ++rays;
-    if (!asked.scene.occluded(light.shadowRay)) return result;
-    if (!light.isPoint || asked.diffuse != LampStrategy::kBothAndBeyond) return {};
-    const float share = straightShare(asked.scene, light.shadowRay, rays);
-    return {{}, {}, result.diffuse * share, result.glossy * share};
+    const Rgb through = asked.scene.transmittance(light.shadowRay);
+    return {result.diffuse * through, result.glossy * through};
 }
 
 // Sum over all samples, whose lamps are chosen kMost at a time.
@@ -88,8 +68,6 @@ DirectRadiance sumOfSamples(const Question& asked, const Sampler& sampler, std::
             const DirectRadiance part = byLampSample(asked, one, rays);
             sum.diffuse += part.diffuse;
             sum.glossy += part.glossy;
-            sum.diffuseBeyond += part.diffuseBeyond;
-            sum.glossyBeyond += part.glossyBeyond;
         }
     }
     return sum;
@@ -107,8 +85,7 @@ DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
                            : sumOfSamples<kAtOnce>(asked, sampler, rays);
     sampler.skip();
     const auto number = static_cast<float>(samples);
-    return {sum.diffuse / number, sum.glossy / number, sum.diffuseBeyond / number,
-            sum.glossyBeyond / number};
+    return {sum.diffuse / number, sum.glossy / number};
 }
 
 Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const LastScatter& last) {
@@ -132,6 +109,26 @@ Rgb weightedFarLight(const Scene& scene, const LightSampler& lights, const LastS
                          powerHeuristic(last.pdfSolidAngle,
                                         static_cast<float>(last.lampSamples) *
                                             lights.farPdfSolidAngle(last.from, last.direction, i));
+    }
+    return sum;
+}
+
+Rgb lightAlong(const Scene& scene, const LightSampler& lights, const Ray& ray,
+               const LastScatter& last, std::uint32_t& rays) {
+    Rgb sum, share(1.0f);
+    EventCount events;
+    for (Ray next = ray; !events.isOver();) {
+        Surface surface;
+        ++rays;
+        if (!scene.intersect(next, surface))
+            return sum + share * weightedFarLight(scene, lights, last);
+        sum += share * weightedEmission(lights, surface, last);
+        const MaterialDescription& material = scene.material(surface.material);
+        if (!letsThrough(material)) break;
+        share *= 1.0f - opacityAt(scene.materials(), material, surface.uv);
+        if (isBlack(share)) break;
+        events.add(share.g);
+        next = rayFrom(surface, ray.direction);
     }
     return sum;
 }

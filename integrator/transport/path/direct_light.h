@@ -14,9 +14,9 @@
 namespace pm {
 
 // Which part of the picture a light path belongs to. With D the diffuse lobe, B a broad one and S
-// any other, read from the eye: emission E S* L where every S is delta; direct E S* (D|B) L, and
-// E S+ L where a glossy lobe takes part; caustic E S* D (B|S)* S L; indirect all others, which have
-// two D or B or more. Each path is in exactly one.
+// any other but going straight on, which is none, read from the eye: emission E S* L where every S
+// is delta; direct E S* (D|B) L, and E S+ L where a glossy lobe takes part; caustic E S* D (B|S)* S
+// L; indirect all others, which have two D or B or more. Each path is in exactly one.
 enum class PathClass : std::uint8_t { kEmission, kDirect, kCaustic, kIndirect };
 
 // How far a path from the camera has come.
@@ -29,6 +29,7 @@ struct PathState {
     bool anyGlossy = false;
 
     void scatter(Lobe lobe) {
+        if (lobe == Lobe::kStraight) return;
         const bool diffuse = lobe == Lobe::kDiffuse;
         lastIsSpecular = !diffuse && lobe != Lobe::kBroad;
         anyGlossy = anyGlossy || lobe == Lobe::kGlossy;
@@ -82,8 +83,6 @@ struct SampleRadiance {
 // Radiance reflected by the diffuse and the Phong lobe, from one light sample.
 struct DirectRadiance {
     Rgb diffuse, glossy;
-    // Of light that came straight through transparent surfaces, where that was asked for.
-    Rgb diffuseBeyond, glossyBeyond;
 };
 
 // How light that a diffuse lobe receives straight from a lamp is found.
@@ -91,9 +90,6 @@ enum class LampStrategy : std::uint8_t {
     kBoth,           // by next-event estimation and by sampling the lobe, weighted
     kNextEventOnly,  // where lamps fill so little of the view that sampling the lobe adds nothing
     kNone,           // it is not asked for
-    // As kBoth, and points and parallel beams are looked for beyond transparent surfaces too: no
-    // lobe that goes on straight ever meets them. All other lamps are left to those lobes.
-    kBothAndBeyond,
 };
 
 // Next-event estimation for both lobes: the mean of `samples` lamp samples, a power of two, with a
@@ -105,7 +101,7 @@ DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
                               std::uint32_t samples, Sampler& sampler, std::uint32_t& rays);
 
 // The sample that led from one surface to the next, as far as the weight of light found there
-// needs.
+// needs. What lets it go straight on between them does not count.
 struct LastScatter {
     Surface from;
     Vec3f direction;
@@ -120,6 +116,11 @@ Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const L
 
 // The same of lights that are infinitely far, where the path that came by `last` meets nothing.
 Rgb weightedFarLight(const Scene& scene, const LightSampler& lights, const LastScatter& last);
+
+// Light of lamps that the ray finds which `last` sent out, itself or straight on through what lets
+// it pass, weighted as by both functions above. Counts its rays.
+Rgb lightAlong(const Scene& scene, const LightSampler& lights, const Ray& ray,
+               const LastScatter& last, std::uint32_t& rays);
 
 // First hit: albedo, normal, position, and which surface it is. What is wholly cut away there is
 // passed over, as is every hit after the first.

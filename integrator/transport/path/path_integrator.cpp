@@ -26,18 +26,13 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
         recordFirstHit(surface, bsdf, result);
         if (bsdf.isBlackBody()) return result;
         if (bsdf.reflectsLamps()) {
-            const DirectRadiance direct =
-                estimateDirect(m_scene, m_lights, surface, bsdf, LampStrategy::kBothAndBeyond, 1,
-                               sampler, result.rays);
+            const DirectRadiance direct = estimateDirect(
+                m_scene, m_lights, surface, bsdf, LampStrategy::kBoth, 1, sampler, result.rays);
             PathState byDiffuse = state, byGlossy = state;
             byDiffuse.scatter(Lobe::kDiffuse);
             byGlossy.scatter(bsdf.phongLobe());
             result.of(byDiffuse.classify()) += path.throughput * direct.diffuse;
             result.of(byGlossy.classify()) += path.throughput * direct.glossy;
-            byDiffuse.scatter(Lobe::kStraight);
-            byGlossy.scatter(Lobe::kStraight);
-            result.of(byDiffuse.classify()) += path.throughput * direct.diffuseBeyond;
-            result.of(byGlossy.classify()) += path.throughput * direct.glossyBeyond;
         }
         BsdfSample sample;
         const float uLobe = sampler.next1D();
@@ -48,7 +43,8 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
             return result;
         }
         state.scatter(sample.lobe);
-        last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle};
+        if (sample.lobe != Lobe::kStraight)
+            last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle};
     }
 }
 

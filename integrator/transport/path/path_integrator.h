@@ -11,9 +11,8 @@
 namespace pm {
 
 // The unbiased reference: a path tracer with next-event estimation, weighted against sampling the
-// BSDF by the power heuristic. Covers all light but that of point lights behind a delta surface.
-// Source: Kajiya 1986; Veach 1997, chapter 9.
-// Threads: any, at once.
+// BSDF by the power heuristic. Covers all light but that of point lights by way of mirrors and
+// glass. Source: Kajiya 1986; Veach 1997, chapter 9. Threads: any, at once.
 class PathIntegrator {
   public:
     PathIntegrator(const Scene& scene, const LightSampler& lights)

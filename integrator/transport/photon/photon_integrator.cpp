@@ -105,6 +105,7 @@ PhotonIntegrator::Survival PhotonIntegrator::divide(const Bsdf& bsdf, const Carr
 bool PhotonIntegrator::Branch::goOn(const Surface& surface, const Bsdf& bsdf,
                                     const BsdfSample& sample, bool isPart, Sampler& sampler) {
     if (!path.scatter(surface, bsdf, sample, sampler, isPart)) return false;
+    if (sample.lobe == Lobe::kStraight) return true;
     state.scatter(sample.lobe);
     last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle, lampSamples};
     return true;
@@ -279,20 +280,18 @@ void PhotonIntegrator::followBroad(const Surface& surface, const Bsdf& bsdf, con
     BsdfSample sample;
     if (!bsdf.follow(Lobe::kBroad, sample, tree.sampler.next2D())) return;
     SampleRadiance& result = tree.result;
-    const GatherEnds ends{*m_maps.global, m_maps.lamps, 1, &m_lights, true};
+    const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle,
+                           branch.lampSamples};
+    const GatherEnds ends{*m_maps.global, m_maps.lamps, 1, &m_lights, true, &last};
     const Gathered found =
         finalGather(m_scene, ends, rayFrom(surface, sample.direction), 1.0f, tree.sampler);
     result.rays += found.rays;
     const Rgb weight = branch.path.throughput * sample.weight / survival;
     result.indirect += weight * found.radiance.wide;
     result.biasProbe += weight * (found.radiance.narrow - found.radiance.wide);
-    const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle,
-                           branch.lampSamples};
     PathState state = branch.state;
     state.scatter(sample.lobe);
-    result.of(state.classify()) +=
-        weight * (found.hitAny ? weightedEmission(m_lights, found.first, last)
-                               : weightedFarLight(m_scene, m_lights, last));
+    result.of(state.classify()) += weight * found.lampsStraight;
 }
 
 // What a sample's own gather rays leave out of the light that caustics send straight to a surface.
@@ -312,20 +311,19 @@ void PhotonIntegrator::sampleCaustics(const Surface& surface, const Bsdf& bsdf,
 void PhotonIntegrator::gatherAlong(const Ray& ray, const LastScatter& last, StillToFind still,
                                    const Rgb& weight, std::uint32_t rays, float cosine,
                                    Sampler& sampler, SampleRadiance& result) const {
-    Gathered found;
-    if (still.indirect) {
-        found = finalGather(m_scene, {*m_maps.global, m_maps.lamps, rays, &m_lights}, ray, cosine,
-                            sampler);
-        result.rays += found.rays;
-        result.indirect += weight * found.radiance.wide;
-        result.biasProbe += weight * (found.radiance.narrow - found.radiance.wide);
-    } else if (still.lamps == LampStrategy::kBoth) {
-        ++result.rays;
-        found.hitAny = m_scene.intersect(ray, found.first);
+    const bool findsLamps = still.lamps == LampStrategy::kBoth;
+    if (!still.indirect) {
+        if (findsLamps)
+            result.direct += weight * lightAlong(m_scene, m_lights, ray, last, result.rays);
+        return;
     }
-    if (still.lamps != LampStrategy::kBoth) return;
-    result.direct += weight * (found.hitAny ? weightedEmission(m_lights, found.first, last)
-                                            : weightedFarLight(m_scene, m_lights, last));
+    const GatherEnds ends{*m_maps.global, m_maps.lamps, rays,
+                          &m_lights,      false,        findsLamps ? &last : nullptr};
+    const Gathered found = finalGather(m_scene, ends, ray, cosine, sampler);
+    result.rays += found.rays;
+    result.indirect += weight * found.radiance.wide;
+    result.biasProbe += weight * (found.radiance.narrow - found.radiance.wide);
+    result.direct += weight * found.lampsStraight;
 }
 
 }  // namespace pm

@@ -53,7 +53,6 @@ constexpr std::uint64_t kMapBytesOfHugeFrame = std::uint64_t{560} << 20;
 struct SceneTraits {
     bool diffuse = false;   // some surface reflects diffusely
     bool specular = false;  // some surface has another lobe that may cast caustics
-    bool bends = false;     // and not just by being straight transparent
     bool glossy = false;    // or a Phong lobe, broad or not
     bool lights = false;
     bool pointLights = false;  // of those that no ray meets: point lights, spots, parallel light
@@ -71,10 +70,6 @@ SceneTraits findTraits(const Scene& scene) {
                                 (m.kind == MaterialKind::kMirror && m.glossyExponent > 0.0f);
             traits.glossy |= glossy;
             traits.specular |= castsCaustics(m);
-            MaterialDescription opaque = m;
-            opaque.transparency = 0.0f;
-            opaque.opacityTexture = kNoTexture;
-            traits.bends |= castsCaustics(opaque);
         }
     traits.lights = !scene.lights().empty();
     for (const Light& light : scene.lights())
@@ -115,7 +110,7 @@ void estimateCosts(const Scene& scene, const RenderSettings& settings, Plan& pla
 void planPaths(const SceneTraits& traits, Plan& plan) {
     plan.reasons.push_back("path tracing: asked for by --integrator path; no photons");
     plan.lampSamples = 1;
-    if (traits.bends && traits.diffuse && traits.pointLights)
+    if (traits.specular && traits.diffuse && traits.pointLights)
         plan.notices.push_back({NoticeCode::kNotCovered,
                                 "caustics of point lights, spots and suns without a disc can't "
                                 "be found by path tracing"});
@@ -268,7 +263,7 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     Plan plan;
     const SceneTraits traits = findTraits(scene);
     const bool isPath = settings.integrator == IntegratorKind::kPath;
-    if (traits.glossy && (isPath ? traits.bends : traits.specular) && traits.pointLights)
+    if (traits.glossy && traits.specular && traits.pointLights)
         plan.notices.push_back({NoticeCode::kNotCovered,
                                 "light of point lights, spots and suns without a disc that reaches "
                                 "a glossy lobe by way of a mirror, glass or another glossy surface "

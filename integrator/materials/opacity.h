@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <algorithm>
+
+#include "integrator/materials/materials.h"
+#include "integrator/values/vec.h"
+
+namespace pm {
+
+// Whether light may go straight on where it meets the material, as if nothing were there.
+inline bool letsThrough(const MaterialDescription& material) {
+    return material.transparency > 0.0f || material.opacityTexture != kNoTexture;
+}
+
+// Share of the light at a point that does not go straight on, in [0, 1].
+inline float opacityAt(const Materials& materials, const MaterialDescription& material, Vec2f uv) {
+    float opacity = 1.0f - material.transparency;
+    if (material.opacityTexture != kNoTexture)
+        opacity *= materials.textures->lookUp(material.opacityTexture, uv, 0.0f).r;
+    return opacity > 0.0f ? std::min(opacity, 1.0f) : 0.0f;
+}
+
+}  // namespace pm

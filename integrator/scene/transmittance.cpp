@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Scene: what a ray between two points goes through.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <tuple>
+#include <vector>
+
+#include "integrator/materials/opacity.h"
+#include "integrator/scene/scene.h"
+#include "integrator/scene/shape_record.h"
+
+namespace pm {
+
+namespace {
+
+struct Crossing {
+    RayHit hit;
+    float share;  // of light that goes straight on
+};
+
+// What a ray crosses; most rays cross few.
+class Crossings {
+  public:
+    void add(const Crossing& crossing) {
+        if (m_count < kFew) {
+            m_few[m_count++] = crossing;
+            return;
+        }
+        if (m_many.empty()) m_many.assign(m_few.begin(), m_few.end());
+        m_many.push_back(crossing);
+    }
+    // By distance, shape and primitive, however they were found.
+    std::span<const Crossing> sorted() {
+        const std::span<Crossing> all = m_many.empty() ? std::span(m_few).first(m_count) : m_many;
+        std::ranges::sort(all, {}, [](const Crossing& c) {
+            return std::tuple(c.hit.t, c.hit.shape, c.hit.primitive);
+        });
+        return all;
+    }
+
+  private:
+    static constexpr std::size_t kFew = 16;
+    std::array<Crossing, kFew> m_few;
+    std::size_t m_count = 0;
+    std::vector<Crossing> m_many;  // all, where they are more
+};
+
+}  // namespace
+
+float Scene::straightShare(const Ray& ray, const RayHit& hit) const {
+    const MaterialDescription& material =
+        m_materials[m_shapes[hit.shape].materialOf(hit.primitive)];
+    if (!letsThrough(material)) return 0.0f;
+    Vec2f uv;
+    if (material.opacityTexture != kNoTexture) {
+        Surface surface;
+        surfaceAt(ray, hit, surface);
+        uv = surface.uv;
+    }
+    return 1.0f - opacityAt(m_materials, material, uv);
+}
+
+// Whether they are so close behind each other that a path which goes straight on from the first
+// does not meet the other: neighbours at their edge, faces in one place.
+bool Scene::areOne(const Ray& ray, const RayHit& crossing, const RayHit& next) const {
+    const auto offsetAndSlope = [&](const RayHit& hit) {
+        Surface surface;
+        surfaceAt(ray, hit, surface);
+        return std::pair(surface.offset, std::abs(dot(surface.geometricNormal, ray.direction)));
+    };
+    const auto [offset, slope] = offsetAndSlope(crossing);
+    const auto [offsetNext, slopeNext] = offsetAndSlope(next);
+    return (next.t - crossing.t) * slope <= offset + offsetNext;
+}
+
+Rgb Scene::transmittance(const Ray& ray, const Medium* /*medium*/, Sampler* /*sampler*/) const {
+    if (!m_letsThrough) return occluded(ray) ? Rgb{} : Rgb(1.0f);
+    Crossings crossings;
+    const bool isStopped = m_tracer.stopped(ray, [&](const RayHit& hit) {
+        const float share = straightShare(ray, hit);
+        if (share > 0.0f) crossings.add({hit, share});
+        return !(share > 0.0f);
+    });
+    if (isStopped) return {};
+    float product = 1.0f;
+    const RayHit* last = nullptr;
+    for (const Crossing& crossing : crossings.sorted()) {
+        if (last && areOne(ray, *last, crossing.hit)) continue;
+        product *= crossing.share;
+        last = &crossing.hit;
+    }
+    return Rgb(product);
+}
+
+}  // namespace pm
