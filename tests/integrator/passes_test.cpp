@@ -24,13 +24,12 @@ namespace {
 constexpr double kAlpha = 2.0 / 3.0;
 const std::atomic<bool> kNotCancelled{false};
 
-// A floor at z = 0 under a sheet that all light passes as it is, and so counts as caustic: density
-// estimates of light that is known.
+// A floor at z = 0 under glass that bends no light to speak of: caustics, and so density estimates,
+// of light that is known.
 SceneMaker floorUnderASheet(double sheetTo) {
     SceneMaker maker;
     maker.quad({-4, -4, 0}, {8, 0, 0}, {0, 8, 0}, maker.diffuse(Rgb(0.5f)));
-    MaterialDescription clear;
-    clear.transparency = 1;
+    const MaterialDescription clear = glass(1.00001f);
     maker.quad({-4, -4, 1}, {4 + sheetTo, 0, 0}, {0, 8, 0}, maker.material(clear));
     maker.camera({0, 0, 0.9}, {0, 0, 0}, {0, 1, 0}, 60);
     return maker;

@@ -174,13 +174,12 @@ TEST(PhotonClasses, NothingWithoutOtherLobes) {
     EXPECT_EQ(trace.all(20'000, 1).photons.size(), trace.withoutCaustics(20'000, 1).photons.size());
 }
 
-// A sheet that light reaches by way of a clear one, and of a mirror behind it: each side shows its
-// own light only.
+// A sheet that light reaches by way of glass that bends next to none, and of a mirror behind it:
+// each side shows its own light only.
 TEST(PhotonClasses, NoCausticFromBehind) {
     SceneMaker maker;
     maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.diffuse(Rgb(0.5f)));
-    MaterialDescription clear;
-    clear.transparency = 1;
+    const MaterialDescription clear = glass(1.00001f);
     maker.quad({-3, -3, 1}, {6, 0, 0}, {0, 6, 0}, maker.material(clear));
     maker.pointLight({0, 0, 2}, Rgb(1.0f));
     const auto scene = maker.build();

@@ -16,6 +16,7 @@
 
 #include "integrator/sampling/warps.h"
 #include "integrator/transport/gather/final_gather.h"
+#include "tests/integrator/rooms.h"
 #include "tests/integrator/scene_maker.h"
 #include "tests/integrator/statistics.h"
 
@@ -175,8 +176,7 @@ TEST(VirtualLamps, ShineOnTheirSideAlone) {
 TEST(VirtualLamps, AreNotSeenThroughGlass) {
     SceneMaker maker;
     const auto grey = maker.diffuse(Rgb(static_cast<float>(kReflectance)));
-    MaterialDescription clear;
-    clear.transparency = 1;
+    const MaterialDescription clear = glass(1.00001f);
     maker.quad({-1, -1, -0.5}, {2, 0, 0}, {0, 2, 0}, grey);
     maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.material(clear));
     maker.quad({-1, -1, 0.5}, {0, 2, 0}, {2, 0, 0}, grey);
