@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "integrator/values/cancel_check.h"
+#include "integrator/values/kept.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
@@ -54,6 +55,8 @@ struct TriangleMesh {
 
     std::vector<std::uint32_t> materials;  // slot of each triangle
     std::vector<std::uint32_t> faces;      // the polygon each triangle came from
+
+    Kept rayTracing;  // the SharedMesh of its instances
 };
 
 // What was put right on the way to triangles, for one warning each.

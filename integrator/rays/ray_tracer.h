@@ -11,33 +11,15 @@
 #include <type_traits>
 #include <vector>
 
+#include "integrator/rays/exact_triangle.h"
+#include "integrator/rays/ray.h"
+#include "integrator/rays/shared_mesh.h"
+#include "integrator/rays/sphere.h"
 #include "integrator/values/cancel_check.h"
+#include "integrator/values/transform.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
-
-// A ray in the scene's own coordinates (its centre at the origin). The direction need not have unit
-// length; distances are in units of its length.
-struct Ray {
-    Vec3f origin;
-    Vec3f direction;
-    float tMax = std::numeric_limits<float>::infinity();
-};
-
-// The primitive that a ray meets first. Where exactly it is met is computed again from the
-// primitive.
-struct RayHit {
-    std::uint32_t shape = 0;      // in the order in which shapes were added
-    std::uint32_t primitive = 0;  // triangle of that shape; 0 for spheres
-    float t = 0.0f;
-    bool isPane = false;  // see Surface; never set by the tracer
-};
-
-// A triangle that is intersected in double: one so huge that float's roundings of it matter.
-struct ExactTriangle {
-    std::uint32_t primitive = 0;  // its number in its shape
-    std::array<Vec3d, 3> corners;
-};
 
 // Nearest hits and visibility among triangle meshes and spheres, by Embree in its robust mode.
 // Every ray is checked first for what would end the process inside Embree: NaN, infinity, distances
@@ -61,6 +43,8 @@ class RayTracer {
                                std::span<const std::array<std::uint32_t, 3>> triangles,
                                std::span<const ExactTriangle> exact = {});
     std::uint32_t addSphere(const Vec3d& centre, double radius);
+    // mesh: of this tracer's instruction set. toScene: object to scene, of any scale but 0.
+    std::uint32_t addInstance(std::shared_ptr<const SharedMesh> mesh, const Transform& toScene);
 
     // Builds; in parallel in the calling TBB arena. Throws Error(kOutOfMemory, kInternal,
     // kCancelled).
@@ -82,40 +66,29 @@ class RayTracer {
     // left out.
     template <typename Visit>
     void forEachHit(const Ray& ray, float tMin, const Visit& visit) const {
+        auto visitAll = [&](const RayHit& hit) {
+            visit(hit);
+            return false;
+        };
+        using All = decltype(visitAll);
         visitHits(
             ray, tMin,
-            [](const void* user, const RayHit& hit) { (*static_cast<const Visit*>(user))(hit); },
-            &visit);
+            [](void* user, const RayHit& hit) { return (*static_cast<All*>(user))(hit); },
+            &visitAll);
     }
 
     // What "best" came to; part of a render's identity.
     const std::string& isa() const;
+    // Without shared meshes.
     std::uint64_t memoryBytes() const;
 
   private:
-    using HitVisitor = void (*)(const void* user, const RayHit& hit);
     using HitQuestion = bool (*)(void* user, const RayHit& hit);
     bool askEach(const Ray& ray, HitQuestion stops, void* user) const;
-    void visitHits(const Ray& ray, float tMin, HitVisitor visit, const void* user) const;
+    void visitHits(const Ray& ray, float tMin, HitQuestion visit, void* user) const;
 
     struct Impl;
     std::unique_ptr<Impl> m_impl;
 };
-
-// Where a line meets a sphere, near before far, in units of the direction's length: either may be
-// outside the ray.
-struct SphereRoots {
-    double near, far;
-};
-
-// Intersects a line with a sphere in double precision; false: it passes the sphere, or touches it
-// at its origin. Source: Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray
-// Tracing Gems, 2019 (the stable quadratic).
-bool findSphereRoots(const Vec3d& origin, const Vec3d& direction, const Vec3d& centre,
-                     double radius, SphereRoots& roots);
-
-// The nearest root in (0, tMax], or a negative number.
-double intersectSphere(const Vec3d& origin, const Vec3d& direction, double tMax,
-                       const Vec3d& centre, double radius);
 
 }  // namespace pm

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <utility>
 
 #include "integrator/materials/invisible.h"
@@ -28,6 +29,8 @@ constexpr std::uint32_t kMostPoints = 256;
 constexpr float kWindow = 4.0f;
 // Of the way along a ray, beside what its end may be off.
 constexpr float kRoundings = 4 * 0x1p-24f;
+// Faces of all instances of a mesh that are looked at.
+constexpr std::size_t kMostOfInstances = 1 << 20;
 // Faces that a ray meets in one place and that are compared as sides of panes.
 constexpr std::size_t kMostTogether = 8;
 
@@ -58,7 +61,7 @@ Scene::CoincidentFaces::Rank Scene::CoincidentFaces::rankOf(const Scene& scene, 
 // tell.
 bool Scene::CoincidentFaces::isOn(const Scene& scene, const Face& face, const Surface& point) {
     const ShapeRecord& record = scene.m_shapes[face.shape];
-    const Facet& facet = record.facets[face.primitive];
+    const Facet facet = record.facet(face.primitive);
     if (std::abs(dot(facet.normal, point.geometricNormal)) < 0.9f) return false;
     const Vec3d way = Vec3d(point.position) - record.corner(face.primitive).vertex;
     const float off = point.offset + surfaceOffset(point.position, facet.reach);
@@ -73,7 +76,7 @@ double Scene::CoincidentFaces::depthBehind(const Scene& scene, const Face& face,
     const Vec3d normal = cross(corner.e1, corner.e2);
     const Vec3d way = scene.m_shapes[other.shape].corner(other.primitive).vertex - corner.vertex;
     const double depth = -dot(way, normal) / length(normal);
-    return dot(normal, Vec3d(record.facets[face.primitive].normal)) < 0 ? -depth : depth;
+    return dot(normal, Vec3d(record.facet(face.primitive).normal)) < 0 ? -depth : depth;
 }
 
 bool Scene::CoincidentFaces::areOfPane(const Scene& scene, const Face& face, const Face& other) {
@@ -83,8 +86,7 @@ bool Scene::CoincidentFaces::areOfPane(const Scene& scene, const Face& face, con
     return material.kind == MaterialKind::kDielectric && material.transparency == 0.0f &&
            material.opacityTexture == kNoTexture && ofOther.mesh &&
            index == ofOther.materialOf(other.primitive) &&
-           dot(record.facets[face.primitive].normal, ofOther.facets[other.primitive].normal) <
-               0.0f &&
+           dot(record.facet(face.primitive).normal, ofOther.facet(other.primitive).normal) < 0.0f &&
            depthBehind(scene, face, other) > 0.0;
 }
 
@@ -125,8 +127,8 @@ bool Scene::CoincidentFaces::hidesOther(const Scene& scene, const Face& face, co
     if (rank == Rank::kGlass) return !areOfPane(scene, face, other);
     if (rank == Rank::kSheet) return !areCutAlike(scene, face, other);
     return rank != Rank::kShining ||
-           dot(scene.m_shapes[face.shape].facets[face.primitive].normal,
-               scene.m_shapes[other.shape].facets[other.primitive].normal) > 0.0f;
+           dot(scene.m_shapes[face.shape].facet(face.primitive).normal,
+               scene.m_shapes[other.shape].facet(other.primitive).normal) > 0.0f;
 }
 
 void Scene::CoincidentFaces::search(const Scene& scene, const Face& face, std::uint32_t points,
@@ -185,6 +187,14 @@ void Scene::CoincidentFaces::addNotices(const Found& found, std::vector<Notice>&
 std::unique_ptr<const Scene::CoincidentFaces> Scene::CoincidentFaces::find(
     const Scene& scene, std::vector<Notice>& notices, const CancelCheck& cancel) {
     std::vector<Face> special;
+    // Of a mesh that is used very often, only where it stands first.
+    std::map<const TriangleMesh*, std::size_t> looked;
+    const auto looksAt = [&](const ShapeRecord& record) {
+        std::size_t& faces = looked[record.mesh.get()];
+        const bool isMore = faces > 0;
+        faces += record.mesh->triangles.size();
+        return !isMore || faces <= kMostOfInstances;
+    };
     for (std::uint32_t shape = 0; shape < scene.m_shapes.size(); ++shape) {
         const ShapeRecord& record = scene.m_shapes[shape];
         if (!record.mesh) continue;
@@ -193,7 +203,7 @@ std::unique_ptr<const Scene::CoincidentFaces> Scene::CoincidentFaces::find(
             return (material.kind == MaterialKind::kDielectric && !isInvisible(material)) ||
                    isSheet(material) || !isBlack(material.emission);
         });
-        if (!mayBe) continue;
+        if (!mayBe || (record.placement && !looksAt(record))) continue;
         for (std::uint32_t i = 0; i < record.mesh->triangles.size(); ++i)
             if (rankOf(scene, {shape, i}) != Rank::kOpaque &&
                 !isInvisible(scene.material(record.materialOf(i))))
@@ -231,7 +241,7 @@ Scene::CoincidentFaces::CoincidentFaces(const Scene& scene, const std::vector<Fa
 RayHit Scene::CoincidentFaces::chosen(const Ray& ray, const RayHit& nearest) const {
     const auto& isAmong = m_isAmong[nearest.shape];
     if (isAmong.empty() || !isAmong[nearest.primitive]) return nearest;
-    const Facet& facet = m_scene.m_shapes[nearest.shape].facets[nearest.primitive];
+    const Facet facet = m_scene.m_shapes[nearest.shape].facet(nearest.primitive);
     const float slope = std::abs(dot(facet.normal, ray.direction));
     const float offset = surfaceOffset(ray.origin + ray.direction * nearest.t, facet.reach);
     const float window = kWindow * (offset / slope + kRoundings * nearest.t);
@@ -256,7 +266,7 @@ RayHit Scene::CoincidentFaces::chosen(const Ray& ray, const RayHit& nearest) con
 RayHit Scene::CoincidentFaces::nearSide(const Ray& ray, std::span<const RayHit> met,
                                         const RayHit& soFar) const {
     const auto isEntered = [&](const RayHit& hit) {
-        return dot(m_scene.m_shapes[hit.shape].facets[hit.primitive].normal, ray.direction) < 0.0f;
+        return dot(m_scene.m_shapes[hit.shape].facet(hit.primitive).normal, ray.direction) < 0.0f;
     };
     for (const RayHit& entered : met) {
         const ShapeRecord& record = m_scene.m_shapes[entered.shape];
@@ -268,7 +278,7 @@ RayHit Scene::CoincidentFaces::nearSide(const Ray& ray, std::span<const RayHit> 
                 !areOfPane(m_scene, face, other))
                 continue;
             const float offset = surfaceOffset(ray.origin + ray.direction * entered.t,
-                                               record.facets[entered.primitive].reach);
+                                               record.facet(entered.primitive).reach);
             RayHit hit = entered;
             hit.isPane =
                 depthBehind(m_scene, face, other) <= static_cast<double>(kThickestPane * offset);
@@ -281,7 +291,7 @@ RayHit Scene::CoincidentFaces::nearSide(const Ray& ray, std::span<const RayHit> 
 std::pair<int, Scene::CoincidentFaces::Face> Scene::CoincidentFaces::orderFor(
     const Ray& ray, const Face& face) const {
     Rank rank = rankOf(m_scene, face);
-    const Vec3f& normal = m_scene.m_shapes[face.shape].facets[face.primitive].normal;
+    const Vec3f normal = m_scene.m_shapes[face.shape].facet(face.primitive).normal;
     // Lamps shine from their fronts only.
     if (rank == Rank::kShining && dot(normal, ray.direction) >= 0.0f) rank = Rank::kOpaque;
     return {-static_cast<int>(rank), face};

@@ -60,6 +60,7 @@ class Body {
     // False where something lets light through.
     bool collect() {
         const SceneDescription& description = m_scene.description();
+        if (m_scene.hasInstances()) return false;
         for (std::uint32_t i = 0; i < description.instances.size(); ++i) {
             const InstanceDescription& instance = description.instances[i];
             const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape);

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "integrator/materials/invisible.h"
 #include "integrator/scene/coincident_faces.h"
@@ -95,9 +96,8 @@ bool Scene::findFlat(const CancelCheck& cancel) const {
             for (std::size_t i = 0; i < triangles.size(); ++i) {
                 if (i % kTrianglesBetweenLooks == 0) cancel.throwIfSet("building the scene");
                 if (reflects(record, static_cast<std::uint32_t>(i)) &&
-                    !visit(Vec3d(record.positions[triangles[i][0]]),
-                           Vec3d(record.positions[triangles[i][1]]),
-                           Vec3d(record.positions[triangles[i][2]])))
+                    !visit(record.vertex(triangles[i][0]), record.vertex(triangles[i][1]),
+                           record.vertex(triangles[i][2])))
                     return false;
             }
         }
@@ -127,7 +127,16 @@ bool Scene::findFlat(const CancelCheck& cancel) const {
 
 std::uint64_t Scene::memoryBytes() const {
     std::uint64_t bytes = m_tracer.memoryBytes();
+    std::set<const TriangleMesh*> instanced;
     for (const ShapeRecord& record : m_shapes) {
+        bytes += sizeof(ShapeRecord);
+        if (record.placement) {
+            if (!instanced.insert(record.mesh.get()).second) continue;
+            bytes += record.mesh->rayTracing
+                         .get<SharedMesh>([](const SharedMesh&) { return true; },
+                                          [] { return std::shared_ptr<const SharedMesh>(); })
+                         ->memoryBytes();
+        }
         bytes += record.positions.size() * sizeof(Vec3f) + record.normals.size() * sizeof(Vec3f) +
                  record.lightOfPrimitive.size() * sizeof(std::int32_t);
         bytes += record.facets.size() * sizeof(Facet);

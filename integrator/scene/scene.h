@@ -128,6 +128,9 @@ class Scene {
     // so that no light goes from one surface by way of another.
     bool isFlat() const { return m_isFlat; }
 
+    // Whether rays meet a mesh, used several times, where its instances have it.
+    bool hasInstances() const { return m_hasInstances; }
+
     // Whether something in it isSheet(): photons may lie on two surfaces that are as close as can
     // be.
     bool hasSheets() const { return m_hasSheets; }
@@ -209,6 +212,7 @@ class Scene {
     double m_triangleArea = 0;  // of all
     bool m_isFlat = false, m_hasSheets = false;
     bool m_letsThrough = false;  // some material does
+    bool m_hasInstances = false;
     RayTracer m_tracer;  // last: it refers to the shapes' arrays and is destroyed before them
     std::unique_ptr<const CoincidentFaces> m_coincident;  // null where there are none
 };

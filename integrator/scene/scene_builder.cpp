@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <unordered_map>
 
 #include "integrator/materials/opacity.h"
 #include "integrator/scene/coincident_faces.h"
@@ -37,6 +38,7 @@ class Scene::Builder {
     void run() {
         checkInstances();
         findBounds();
+        countUses();
         for (const InstanceDescription& instance : m_scene.m_description.instances)
             addShape(instance);
         findHuge();
@@ -114,7 +116,33 @@ class Scene::Builder {
                                     instance.name, instance.materials.size(), slots));
     }
 
-    // With the box of each triangle and sphere, world.
+    // Meshes of which so many triangles would be there, in all their places, are instanced; smaller
+    // ones take less memory and time where they are moved to their places.
+    static constexpr std::size_t kLeastInstanced = 4096, kLeastOfInstanced = 16;
+
+    void countUses() {
+        for (const InstanceDescription& instance : m_scene.m_description.instances)
+            if (const auto* mesh =
+                    std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape))
+                if (!isFlattened(instance)) ++m_uses[mesh->get()];
+    }
+
+    // Where something in it is met by no ray, or float would not do in its own space.
+    bool isFlattened(const InstanceDescription& instance) const {
+        return Placement(instance.transform).condition > Placement::kMostCondition ||
+               std::ranges::any_of(instance.materials, [&](std::uint32_t material) {
+                   return isInvisible(m_scene.material(material));
+               });
+    }
+
+    bool isInstanced(const InstanceDescription& instance, const TriangleMesh& mesh) const {
+        const auto found = m_uses.find(&mesh);
+        return found != m_uses.end() && found->second > 1 &&
+               mesh.triangles.size() >= kLeastOfInstanced &&
+               found->second * mesh.triangles.size() >= kLeastInstanced && !isFlattened(instance);
+    }
+
+    // With the box of each triangle and sphere, world; of an instanced mesh with that of all.
     template <typename Visit>
     void forEachBox(const Visit& visit) {
         for (const InstanceDescription& instance : m_scene.m_description.instances) {
@@ -122,6 +150,10 @@ class Scene::Builder {
             if (const auto* mesh =
                     std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape)) {
                 const TriangleMesh& m = **mesh;
+                if (isInstanced(instance, m)) {
+                    visit(boxOf(m, transform));
+                    continue;
+                }
                 for (const auto& triangle : m.triangles) {
                     goOn();
                     Box3d box;
@@ -138,6 +170,16 @@ class Scene::Builder {
                 visit(Box3d{centre - r, centre + r});
             }
         }
+    }
+
+    Box3d boxOf(const TriangleMesh& mesh, const Transform& transform) {
+        Box3d box;
+        for (const Vec3f& position : mesh.positions) {
+            goOn();
+            const Vec3d p = transformPoint(transform, Vec3d(position));
+            box.grow({p, p});
+        }
+        return box;
     }
 
     void findBounds() {
@@ -164,7 +206,10 @@ class Scene::Builder {
         record.instanceId = instance.id;
         record.mirrored = determinant(instance.transform) < 0;
         if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape)) {
-            addMesh(*mesh, instance.transform, record);
+            if (isInstanced(instance, **mesh))
+                placeMesh(*mesh, instance.transform, record);
+            else
+                addMesh(*mesh, instance.transform, record);
         } else {
             const auto& sphere = std::get<SphereShape>(instance.shape);
             const double scale = uniformScale(instance.transform);
@@ -177,6 +222,48 @@ class Scene::Builder {
             record.isTexturedSphere = hasTexture(m_scene.material(record.materials[0]));
         }
         m_scene.m_shapes.push_back(std::move(record));
+    }
+
+    void placeMesh(const std::shared_ptr<const TriangleMesh>& mesh, Transform transform,
+                   ShapeRecord& record) {
+        const Box3d box = boxOf(*mesh, transform);
+        for (int axis = 0; axis < 3; ++axis)
+            transform[static_cast<std::size_t>(4 * axis + 3)] -= m_scene.m_centre[axis];
+        record.mesh = mesh;
+        record.placement.emplace(transform);
+        const double farthest = std::max(maxAbsComponent(box.lo - m_scene.m_centre),
+                                         maxAbsComponent(box.hi - m_scene.m_centre));
+        // As surfaceOffset takes it.
+        record.reachOfPlacement =
+            static_cast<float>(record.placement->error(farthest) / (16 * 0x1p-24));
+        // Of all places alike, as far as a guide to how fine the scene is goes.
+        const double scale = std::cbrt(std::abs(determinant(transform)));
+        double& area = m_areas[mesh.get()];
+        if (area == 0.0)
+            for (const auto& t : mesh->triangles) {
+                goOn();
+                const Vec3d v0(mesh->positions[t[0]]);
+                area += 0.5 * length(cross(Vec3d(mesh->positions[t[1]]) - v0,
+                                           Vec3d(mesh->positions[t[2]]) - v0));
+            }
+        m_scene.m_triangleArea += area * scale * scale;
+        m_scene.m_triangleCount += mesh->triangles.size();
+        m_scene.m_hasInstances = true;
+    }
+
+    // Built in the mesh's own space, for all of its instances and for scenes to come.
+    std::shared_ptr<const SharedMesh> sharedMesh(const ShapeRecord& record) const {
+        const TriangleMesh& mesh = *record.mesh;
+        // Of rays from anywhere in the scene.
+        const double needed = record.placement->errorInObject(2.0 * m_scene.m_radius);
+        const std::string& isa = m_scene.m_tracer.isa();
+        return mesh.rayTracing.get<SharedMesh>(
+            [&](const SharedMesh& kept) { return kept.isa() == isa && kept.margin() >= needed; },
+            [&] {
+                constexpr double kToSpare = 16.0;  // for scenes to come, larger ones
+                return std::make_shared<const SharedMesh>(isa, mesh.positions, mesh.triangles,
+                                                          kToSpare * needed, m_cancel);
+            });
     }
 
     void addMesh(const std::shared_ptr<const TriangleMesh>& mesh, const Transform& transform,
@@ -204,8 +291,8 @@ class Scene::Builder {
         m_scene.m_triangleCount += mesh->triangles.size();
     }
 
-    // Calls visit(shape, triangle, its longest edge) for all triangles, visit(shape, 0, diameter)
-    // for spheres.
+    // Calls visit(shape, triangle, its longest edge) for all triangles but instanced ones,
+    // visit(shape, 0, diameter) for spheres.
     template <typename Visit>
     void forEachSize(const Visit& visit) {
         for (ShapeRecord& record : m_scene.m_shapes) {
@@ -213,6 +300,7 @@ class Scene::Builder {
                 visit(record, 0u, 2 * record.sphere.radius);
                 continue;
             }
+            if (record.placement) continue;
             for (std::uint32_t i = 0; i < record.mesh->triangles.size(); ++i) {
                 goOn();
                 const Corner c = record.corner(i);
@@ -256,9 +344,8 @@ class Scene::Builder {
 
     static double triangleArea(const ShapeRecord& record, std::uint32_t primitive) {
         const auto& t = record.mesh->triangles[primitive];
-        const Vec3d v0(record.positions[t[0]]);
-        return 0.5 * length(cross(Vec3d(record.positions[t[1]]) - v0,
-                                  Vec3d(record.positions[t[2]]) - v0));
+        const Vec3d v0 = record.vertex(t[0]);
+        return 0.5 * length(cross(record.vertex(t[1]) - v0, record.vertex(t[2]) - v0));
     }
 
     FaceKind kindOf(const ShapeRecord& record, std::uint32_t primitive) const {
@@ -274,7 +361,7 @@ class Scene::Builder {
         const auto forEachFace = [&](const VisitFace& visit) {
             for (std::uint32_t shape = 0; shape < m_scene.m_shapes.size(); ++shape) {
                 const ShapeRecord& record = m_scene.m_shapes[shape];
-                if (!record.mesh) continue;
+                if (!record.mesh || record.placement) continue;
                 for (std::uint32_t i = 0; i < record.mesh->triangles.size(); ++i) {
                     goOn();
                     const auto& t = record.mesh->triangles[i];
@@ -304,6 +391,10 @@ class Scene::Builder {
         for (ShapeRecord& record : m_scene.m_shapes) {
             if (!record.mesh && record.visible.empty()) {
                 m_scene.m_tracer.addSphere(record.sphere.centre, record.sphere.radius);
+                continue;
+            }
+            if (record.placement) {
+                m_scene.m_tracer.addInstance(sharedMesh(record), record.placement->toScene);
                 continue;
             }
             const std::vector<TriangleMesh::Corners>& triangles =
@@ -341,6 +432,10 @@ class Scene::Builder {
 
     void findLights(std::uint32_t shape) {
         ShapeRecord& record = m_scene.m_shapes[shape];
+        if (std::ranges::none_of(record.materials, [&](std::uint32_t material) {
+                return emits(m_scene.material(material));
+            }))
+            return;
         const std::size_t primitives = record.mesh ? record.mesh->triangles.size() : 1;
         for (std::uint32_t i = 0; i < primitives; ++i) {
             goOn();
@@ -396,9 +491,10 @@ class Scene::Builder {
             if (record.exactOf(light.primitive)) continue;
             LampTriangle& lamp = m_scene.m_lampTriangles[i];
             for (std::size_t k = 0; k < 3; ++k)
-                lamp.vertices[k] = record.positions[record.mesh->triangles[light.primitive][k]];
-            lamp.normal = record.facets[light.primitive].normal;
-            lamp.reach = record.facets[light.primitive].reach;
+                lamp.vertices[k] = Vec3f(record.vertex(record.mesh->triangles[light.primitive][k]));
+            const Facet facet = record.facet(light.primitive);
+            lamp.normal = facet.normal;
+            lamp.reach = facet.reach;
             lamp.area = light.area;
             lamp.material = light.material;
         }
@@ -408,6 +504,8 @@ class Scene::Builder {
     Scene& m_scene;
     CancelCheck m_cancel;
     std::uint32_t m_steps = 0;
+    std::unordered_map<const TriangleMesh*, std::size_t> m_uses;
+    std::unordered_map<const TriangleMesh*, double> m_areas;  // in their own space
 };
 
 Scene::Scene(SceneDescription description, const std::string& isa, const CancelCheck& cancel)

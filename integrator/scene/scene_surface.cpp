@@ -145,15 +145,15 @@ void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive
     const TriangleMesh& mesh = *record.mesh;
     const auto& [v0, e1, e2] = corner;
     surface.position = Vec3f(v0 + (e1 * b1 + e2 * b2));
-    const Facet& facet = record.facets[primitive];
+    const Facet facet = record.facet(primitive, corner);
     surface.offset = surfaceOffset(surface.position, facet.reach);
     surface.geometricNormal = surface.shadingNormal = facet.normal;
     const auto f1 = static_cast<float>(b1), f2 = static_cast<float>(b2);
     if (!mesh.normals.empty()) {
         const auto& at = mesh.normalIndices[primitive];
         surface.shadingNormal =
-            interpolateNormal(record.normals[at[0]], record.normals[at[1]], record.normals[at[2]],
-                              f1, f2, surface.geometricNormal);
+            interpolateNormal(record.normal(at[0]), record.normal(at[1]), record.normal(at[2]), f1,
+                              f2, surface.geometricNormal);
     }
     surface.uv = {};
     if (!mesh.texcoords.empty()) {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
 
 #include "integrator/materials/invisible.h"
 #include "integrator/scene/scene.h"
+#include "integrator/shapes/placement.h"
 
 namespace pm {
 
@@ -24,10 +26,14 @@ struct Scene::Facet {
 // One instance made ready: vertices in the scene's own coordinates.
 struct Scene::ShapeRecord {
     std::shared_ptr<const TriangleMesh> mesh;  // null for a sphere
-    std::vector<Vec3f> positions;              // one spare element at the end, for Embree
-    std::vector<Vec3f> normals;                // transformed, unit
-    std::vector<Facet> facets;                 // of each triangle
-    std::vector<ExactTriangle> exact;          // huge ones, by their numbers
+    // Of a mesh that rays meet where its instances have it; else its vertices and all that follows
+    // of them are kept, moved to the scene.
+    std::optional<Placement> placement;
+    float reachOfPlacement = 0.0f;     // added to a facet's reach, scene units
+    std::vector<Vec3f> positions;      // one spare element at the end, for Embree
+    std::vector<Vec3f> normals;        // transformed, unit
+    std::vector<Facet> facets;         // of each triangle
+    std::vector<ExactTriangle> exact;  // huge ones, by their numbers
     // The triangles, without area those that no ray is to meet; empty where rays meet all there is.
     std::vector<TriangleMesh::Corners> visible;
     bool mirrored = false;  // the transform turns the winding round
@@ -54,8 +60,23 @@ struct Scene::ShapeRecord {
             return {found->corners[0], found->corners[1] - found->corners[0],
                     found->corners[2] - found->corners[0]};
         const auto& triangle = mesh->triangles[primitive];
-        const Vec3d v0(positions[triangle[0]]);
-        return {v0, Vec3d(positions[triangle[1]]) - v0, Vec3d(positions[triangle[2]]) - v0};
+        const Vec3d v0 = vertex(triangle[0]);
+        return {v0, vertex(triangle[1]) - v0, vertex(triangle[2]) - v0};
+    }
+    Vec3d vertex(std::uint32_t index) const {
+        return placement ? transformPoint(placement->toScene, Vec3d(mesh->positions[index]))
+                         : Vec3d(positions[index]);
+    }
+    Vec3f normal(std::uint32_t index) const {
+        return placement ? placement->normals.apply(mesh->normals[index]) : normals[index];
+    }
+    Facet facet(std::uint32_t primitive) const { return facet(primitive, corner(primitive)); }
+    // of: its corner.
+    Facet facet(std::uint32_t primitive, const Corner& of) const {
+        if (!placement) return facets[primitive];
+        Facet facet(of, mirrored);
+        facet.reach += reachOfPlacement;
+        return facet;
     }
     // Of a triangle, or the sphere.
     void bounds(std::uint32_t primitive, Vec3d& lo, Vec3d& hi) const {
@@ -65,8 +86,8 @@ struct Scene::ShapeRecord {
             return;
         }
         const auto& triangle = mesh->triangles[primitive];
-        lo = hi = Vec3d(positions[triangle[0]]);
-        for (const Vec3d v : {Vec3d(positions[triangle[1]]), Vec3d(positions[triangle[2]])})
+        lo = hi = vertex(triangle[0]);
+        for (const Vec3d& v : {vertex(triangle[1]), vertex(triangle[2])})
             for (int axis = 0; axis < 3; ++axis) {
                 lo[axis] = std::min(lo[axis], v[axis]);
                 hi[axis] = std::max(hi[axis], v[axis]);

@@ -9,21 +9,6 @@
 
 namespace pm {
 
-inline Vec3d transformPoint(const Transform& m, const Vec3d& p) {
-    return {m[0] * p.x + m[1] * p.y + m[2] * p.z + m[3],
-            m[4] * p.x + m[5] * p.y + m[6] * p.z + m[7],
-            m[8] * p.x + m[9] * p.y + m[10] * p.z + m[11]};
-}
-
-inline Vec3d row(const Transform& m, int i) {
-    const auto k = static_cast<std::size_t>(4 * i);
-    return {m[k], m[k + 1], m[k + 2]};
-}
-
-inline double determinant(const Transform& m) {
-    return dot(row(m, 0), cross(row(m, 1), row(m, 2)));
-}
-
 // The transform of normals up to a positive factor: the transposed inverse, whose rows are cross
 // products of the matrix's rows over its determinant. The sign keeps the front in front.
 struct NormalTransform {
