@@ -195,7 +195,7 @@ TEST(CausticCasters, OnlyWhatIsNotDiffuse) {
     m.diffuse = Rgb(0.5f);
     EXPECT_FALSE(castsCaustics(m));
     m.transparency = 0.5f;
-    EXPECT_TRUE(castsCaustics(m));
+    EXPECT_FALSE(castsCaustics(m));
     m = {};
     m.glossy = {0, 0.1f, 0};
     m.glossyExponent = kMostBroadExponent;
