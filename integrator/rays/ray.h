@@ -9,12 +9,21 @@
 
 namespace pm {
 
+// Who asks what a ray meets, and what a shape may be hidden from: bits, added up.
+using Viewers = std::uint32_t;
+inline constexpr Viewers kCameraRays = 1;      // from the camera, as far as they go straight on
+inline constexpr Viewers kShadowRays = 2;      // between a surface and a light
+inline constexpr Viewers kReflectionRays = 4;  // all others that leave a surface
+inline constexpr Viewers kLampRays = 8;        // that look for lamps along a shadow ray's way
+inline constexpr Viewers kAllRays = 15;
+
 // A ray in the scene's own coordinates (its centre at the origin). The direction need not have unit
 // length; distances are in units of its length.
 struct Ray {
     Vec3f origin;
     Vec3f direction;
     float tMax = std::numeric_limits<float>::infinity();
+    Viewers viewer = kReflectionRays;  // meets what is seen by one of them
 };
 
 // The primitive that a ray meets first. Where exactly it is met is computed again from the

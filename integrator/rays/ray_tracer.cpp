@@ -46,7 +46,7 @@ void fill(RTCRay& out, const Ray& ray) {
     out.dir_z = ray.direction.z;
     out.time = 0.0f;
     out.tfar = ray.tMax;
-    out.mask = ~0u;
+    out.mask = ray.viewer;
     out.id = 0;
     out.flags = 0;
 }
@@ -100,7 +100,7 @@ RayTracer::~RayTracer() = default;
 
 std::uint32_t RayTracer::addTriangles(std::span<const Vec3f> positions,
                                       std::span<const std::array<std::uint32_t, 3>> triangles,
-                                      std::span<const ExactTriangle> exact) {
+                                      std::span<const ExactTriangle> exact, Viewers seenBy) {
     if (!exact.empty()) {
         // Embree passes over triangles without area.
         auto& others = m_impl->othersThanExact.emplace_back(triangles.begin(), triangles.end());
@@ -112,28 +112,30 @@ std::uint32_t RayTracer::addTriangles(std::span<const Vec3f> positions,
                                positions.data(), 0, sizeof(Vec3f), positions.size());
     rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3,
                                triangles.data(), 0, sizeof(triangles[0]), triangles.size());
+    rtcSetGeometryMask(geometry, seenBy);
     rtcCommitGeometry(geometry);
     const std::uint32_t id = rtcAttachGeometry(m_impl->scene, geometry);
     rtcReleaseGeometry(geometry);
     m_impl->device->check("adding triangles");
-    if (!exact.empty()) m_impl->exact.push_back({id, {exact.begin(), exact.end()}});
+    if (!exact.empty()) m_impl->exact.push_back({id, {exact.begin(), exact.end()}, seenBy});
     return m_impl->added(id, nullptr);
 }
 
-std::uint32_t RayTracer::addSphere(const Vec3d& centre, double radius) {
+std::uint32_t RayTracer::addSphere(const Vec3d& centre, double radius, Viewers seenBy) {
     m_impl->spheres.push_back({centre, radius});
-    const std::uint32_t id =
-        attachUserGeometry(m_impl->device->handle(), m_impl->scene, m_impl->spheres.back(), 1);
+    const std::uint32_t id = attachUserGeometry(m_impl->device->handle(), m_impl->scene,
+                                                m_impl->spheres.back(), 1, seenBy);
     m_impl->device->check("adding a sphere");
     return m_impl->added(id, nullptr);
 }
 
 std::uint32_t RayTracer::addInstance(std::shared_ptr<const SharedMesh> mesh,
-                                     const Transform& toScene) {
+                                     const Transform& toScene, Viewers seenBy) {
     RTCGeometry geometry = rtcNewGeometry(m_impl->device->handle(), RTC_GEOMETRY_TYPE_INSTANCE);
     rtcSetGeometryInstancedScene(geometry, mesh->m_impl->scene);
     rtcSetGeometryTransform(geometry, 0, RTC_FORMAT_FLOAT3X4_COLUMN_MAJOR,
                             toEmbree(toScene).data());
+    rtcSetGeometryMask(geometry, seenBy);
     rtcCommitGeometry(geometry);
     const std::uint32_t id = rtcAttachGeometry(m_impl->scene, geometry);
     rtcReleaseGeometry(geometry);
@@ -146,7 +148,8 @@ std::uint32_t RayTracer::addInstance(std::shared_ptr<const SharedMesh> mesh,
 void RayTracer::commit(const CancelCheck& cancel) {
     // Last, so that shapes keep their numbers.
     for (ExactTriangles& one : m_impl->exact)
-        attachUserGeometry(m_impl->device->handle(), m_impl->scene, one, one.triangles.size());
+        attachUserGeometry(m_impl->device->handle(), m_impl->scene, one, one.triangles.size(),
+                           one.seenBy);
     m_impl->bytes = m_impl->device->commit(m_impl->scene, cancel);
 }
 

@@ -39,12 +39,15 @@ class RayTracer {
     // Shapes are copied (spheres) or referred to (meshes: positions must stay until destruction,
     // and must be followed by at least 4 readable bytes, which a spare last element gives).
     // exact: those of the triangles that are to be intersected in double, copied.
+    // seenBy: rays that meet them.
     std::uint32_t addTriangles(std::span<const Vec3f> positions,
                                std::span<const std::array<std::uint32_t, 3>> triangles,
-                               std::span<const ExactTriangle> exact = {});
-    std::uint32_t addSphere(const Vec3d& centre, double radius);
+                               std::span<const ExactTriangle> exact = {},
+                               Viewers seenBy = kAllRays);
+    std::uint32_t addSphere(const Vec3d& centre, double radius, Viewers seenBy = kAllRays);
     // mesh: of this tracer's instruction set. toScene: object to scene, of any scale but 0.
-    std::uint32_t addInstance(std::shared_ptr<const SharedMesh> mesh, const Transform& toScene);
+    std::uint32_t addInstance(std::shared_ptr<const SharedMesh> mesh, const Transform& toScene,
+                              Viewers seenBy = kAllRays);
 
     // Builds; in parallel in the calling TBB arena. Throws Error(kOutOfMemory, kInternal,
     // kCancelled).

@@ -23,13 +23,14 @@ struct SharedMesh::Impl {
 // geometry's number.
 template <typename Kind>
 std::uint32_t attachUserGeometry(RTCDevice device, RTCScene scene, Kind& shape,
-                                 std::size_t primitives) {
+                                 std::size_t primitives, Viewers seenBy = kAllRays) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<std::uint32_t>(primitives));
     rtcSetGeometryUserData(geometry, &shape);
     rtcSetGeometryBoundsFunction(geometry, UserGeometry<Kind>::bounds, nullptr);
     rtcSetGeometryIntersectFunction(geometry, UserGeometry<Kind>::intersect);
     rtcSetGeometryOccludedFunction(geometry, UserGeometry<Kind>::occluded);
+    rtcSetGeometryMask(geometry, seenBy);
     rtcCommitGeometry(geometry);
     const std::uint32_t id = rtcAttachGeometry(scene, geometry);
     rtcReleaseGeometry(geometry);

@@ -71,6 +71,7 @@ struct ExactTriangles {
 
     std::uint32_t shape;
     std::vector<ExactTriangle> triangles;
+    Viewers seenBy = kAllRays;
 
     void bounds(std::uint32_t primitive, RTCBounds& bounds) const {
         boundsOfTriangle(triangles[primitive].corners, 0.0, bounds);

@@ -250,8 +250,8 @@ RayHit Scene::CoincidentFaces::chosen(const Ray& ray, const RayHit& nearest) con
     auto bestOrder = orderFor(ray, {nearest.shape, nearest.primitive});
     std::array<RayHit, kMostTogether> met;
     std::size_t metCount = 0;
-    m_scene.m_tracer.forEachHit({ray.origin, ray.direction, nearest.t + window}, nearest.t - window,
-                                [&](const RayHit& hit) {
+    m_scene.m_tracer.forEachHit({ray.origin, ray.direction, nearest.t + window, ray.viewer},
+                                nearest.t - window, [&](const RayHit& hit) {
                                     if (metCount < met.size()) met[metCount++] = hit;
                                     const Face face{hit.shape, hit.primitive};
                                     const auto order = orderFor(ray, face);

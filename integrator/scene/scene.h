@@ -42,7 +42,11 @@ class Scene {
     ~Scene();
 
     bool intersect(const Ray& ray, Surface& surface) const;
-    bool occluded(const Ray& ray) const { return m_tracer.occluded(ray); }
+    // By anything that any ray meets.
+    bool occluded(Ray ray) const {
+        ray.viewer = kAllRays;
+        return m_tracer.occluded(ray);
+    }
     // Share of light that goes straight along a ray from its origin to tMax, in [0, 1] a channel:
     // what the cut-outs and half-transparent sheets on it let through. All that the ray crosses
     // counts once, faces that rays can't tell apart as one. What bends light lets none through.
@@ -128,6 +132,14 @@ class Scene {
     // so that no light goes from one surface by way of another.
     bool isFlat() const { return m_isFlat; }
 
+    // Whether shadow rays and others that leave a surface may meet different things there: then
+    // lamps that a lobe leads to are to be looked for beside what else its ray meets, see
+    // lightAlong().
+    bool viewersDiffer() const { return m_viewersDiffer; }
+    bool isHiddenFrom(std::uint32_t shape, Viewers viewer) const {
+        return (m_description.instances[shape].hiddenFrom & viewer) != 0;
+    }
+
     // Whether rays meet a mesh, used several times, where its instances have it.
     bool hasInstances() const { return m_hasInstances; }
 
@@ -212,7 +224,7 @@ class Scene {
     double m_triangleArea = 0;  // of all
     bool m_isFlat = false, m_hasSheets = false;
     bool m_letsThrough = false;  // some material does
-    bool m_hasInstances = false;
+    bool m_hasInstances = false, m_viewersDiffer = false;
     RayTracer m_tracer;  // last: it refers to the shapes' arrays and is destroyed before them
     std::unique_ptr<const CoincidentFaces> m_coincident;  // null where there are none
 };

@@ -44,6 +44,7 @@ class Scene::Builder {
         findHuge();
         m_scene.m_isFlat = m_scene.findFlat(m_cancel);
         m_scene.m_hasSheets = findSheets();
+        m_scene.m_viewersDiffer = findViewers();
         m_scene.m_letsThrough =
             std::ranges::any_of(m_scene.m_description.materials, pm::letsThrough);
         addToTracer();
@@ -388,19 +389,23 @@ class Scene::Builder {
     void addToTracer() {
         for (ShapeRecord& record : m_scene.m_shapes) record.leaveOutInvisible(m_scene);
         leaveOutCopies();
-        for (ShapeRecord& record : m_scene.m_shapes) {
+        for (std::uint32_t shape = 0; shape < m_scene.m_shapes.size(); ++shape) {
+            const ShapeRecord& record = m_scene.m_shapes[shape];
             if (!record.mesh && record.visible.empty()) {
-                m_scene.m_tracer.addSphere(record.sphere.centre, record.sphere.radius);
+                m_scene.m_tracer.addSphere(record.sphere.centre, record.sphere.radius,
+                                           seenBy(shape));
                 continue;
             }
             if (record.placement) {
-                m_scene.m_tracer.addInstance(sharedMesh(record), record.placement->toScene);
+                m_scene.m_tracer.addInstance(sharedMesh(record), record.placement->toScene,
+                                             seenBy(shape));
                 continue;
             }
             const std::vector<TriangleMesh::Corners>& triangles =
                 record.visible.empty() ? record.mesh->triangles : record.visible;
             m_scene.m_tracer.addTriangles({record.positions.data(), record.positions.size() - 1},
-                                          {triangles.data(), triangles.size()}, record.exact);
+                                          {triangles.data(), triangles.size()}, record.exact,
+                                          seenBy(shape));
         }
         m_cancel.throwIfSet("building the scene");
         m_scene.m_tracer.commit(m_cancel);
@@ -419,6 +424,28 @@ class Scene::Builder {
                              "can tell: light through both is lost; leave a gap of a millionth of "
                              "the radius",
                              count)});
+    }
+
+    // Lamps are met by sampled lobes and looked for by shadow rays.
+    bool findViewers() const {
+        return std::ranges::any_of(
+            m_scene.m_description.instances, [&](const InstanceDescription& instance) {
+                const bool shadow = (instance.hiddenFrom & kShadowRays) != 0,
+                           reflection = (instance.hiddenFrom & kReflectionRays) != 0;
+                const auto shines = [&](std::uint32_t m) { return emits(m_scene.material(m)); };
+                return shadow != reflection ||
+                       (reflection && std::ranges::any_of(instance.materials, shines));
+            });
+    }
+
+    Viewers seenBy(std::uint32_t shape) const {
+        const InstanceDescription& instance = m_scene.m_description.instances[shape];
+        const auto shines = [&](std::uint32_t m) { return emits(m_scene.material(m)); };
+        Viewers seen = kCameraRays | kShadowRays | kReflectionRays;
+        seen &= ~instance.hiddenFrom;
+        if ((seen & kShadowRays) != 0 || std::ranges::any_of(instance.materials, shines))
+            seen |= kLampRays;
+        return seen;
     }
 
     bool findSheets() const {

@@ -11,17 +11,11 @@
 
 #include "integrator/lights/light_description.h"
 #include "integrator/materials/material_description.h"
+#include "integrator/rays/ray.h"
 #include "integrator/shapes/shape.h"
 #include "integrator/values/transform.h"
 
 namespace pm {
-
-// What an instance may be hidden from, as bits.
-enum Viewer : std::uint32_t {
-    kCamera = 1,      // rays from the camera, as far as they go straight on
-    kShadow = 2,      // rays that ask whether a light is seen
-    kReflection = 4,  // rays that leave surfaces, and photons
-};
 
 struct InstanceDescription {
     Shape shape;
@@ -29,7 +23,7 @@ struct InstanceDescription {
     std::vector<std::uint32_t> materials;  // index into SceneDescription::materials for each slot
     std::string name;
     std::uint32_t id = 0;
-    std::uint32_t hiddenFrom = 0;  // a set of Viewer
+    Viewers hiddenFrom = 0;
 };
 
 // A pinhole camera that looks along -z of its transform, +y up, +x right.

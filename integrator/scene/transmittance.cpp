@@ -76,8 +76,10 @@ bool Scene::areOne(const Ray& ray, const RayHit& crossing, const RayHit& next) c
     return (next.t - crossing.t) * slope <= offset + offsetNext;
 }
 
-Rgb Scene::transmittance(const Ray& ray, const Medium* /*medium*/, Sampler* /*sampler*/) const {
-    if (!m_letsThrough) return occluded(ray) ? Rgb{} : Rgb(1.0f);
+Rgb Scene::transmittance(const Ray& asked, const Medium* /*medium*/, Sampler* /*sampler*/) const {
+    Ray ray = asked;
+    ray.viewer = kShadowRays;
+    if (!m_letsThrough) return m_tracer.occluded(ray) ? Rgb{} : Rgb(1.0f);
     Crossings crossings;
     const bool isStopped = m_tracer.stopped(ray, [&](const RayHit& hit) {
         const float share = straightShare(ray, hit);

@@ -93,6 +93,15 @@ class PhotonWalk {
     struct Way {
         Stage stage = Stage::kStraight;
         bool isFollowed = true;  // of the share that carries on what descends from caustics
+        // It has passed, on its way from the light, what shadow rays pass and others do not, or the
+        // other way round; see passesHidden().
+        bool pastShadowless = false, pastMirrorless = false;
+
+        bool isVoid() const { return pastShadowless && pastMirrorless; }
+        bool mayGoOnBy(Lobe lobe) const {
+            if (lobe == Lobe::kStraight) return true;
+            return isDelta(lobe) ? !pastShadowless : !pastMirrorless;
+        }
     };
 
     // A photon, or what goes on of it where it has divided.
@@ -113,7 +122,9 @@ class PhotonWalk {
     double walk(const EmittedPhoton& photon, std::uint32_t index, Sampler& sampler,
                 Batch& batch) const {
         Waiting waiting;
-        waiting.parts[waiting.count++] = {photon.ray, photon.flux, {.index = index}};
+        Part& first = waiting.parts[waiting.count++];
+        first = {photon.ray, photon.flux, {.index = index}};
+        if (m_scene.viewersDiffer()) first.ray.viewer = kShadowRays | kReflectionRays;
         double landed = 0;
         while (waiting.count > 0) {
             const Part part = waiting.parts[--waiting.count];
@@ -133,9 +144,15 @@ class PhotonWalk {
                 balance.fluxEscaped += channelSum(flux);
                 return landed;
             }
+            if (m_scene.viewersDiffer() && way.stage == Stage::kStraight &&
+                passesHidden(part, surface, sampler, balance)) {
+                events.add(1.0f);
+                if (events.isOver()) break;
+                continue;
+            }
             const Vec3f out = -ray.direction;
             const Bsdf bsdf(m_scene.materials(), surface, out, Transport::kPhotons, flux);
-            if (bsdf.has(Lobe::kDiffuse)) {
+            if (bsdf.has(Lobe::kDiffuse) && !way.pastMirrorless) {
                 surface.position =
                     m_scene.pointUnderRay(surface.position, ray, bsdf.facingGeometricNormal());
                 landed += land(part, surface, bsdf, sampler, batch);
@@ -153,7 +170,8 @@ class PhotonWalk {
             const bool keeps =
                 LongChains::keeps(chain, static_cast<float>(channelSum(flux)) * survival);
             if (keeps) uLobe *= survival;
-            if ((bsdf.isDiffuseOnly() && endsAtDiffuse(way)) || !bsdf.sample(uLobe, u, sample) ||
+            if ((bsdf.isDiffuseOnly() && endsAtDiffuse(way)) || way.isVoid() ||
+                !bsdf.sample(uLobe, u, sample) || !way.mayGoOnBy(sample.lobe) ||
                 (sample.lobe == Lobe::kBroad && endsAtBroad(way)) ||
                 (sample.lobe == Lobe::kDiffuse &&
                  (endsAtDiffuse(way) || !aimScattered(surface, bsdf, sampler, sample)))) {
@@ -168,10 +186,15 @@ class PhotonWalk {
             if (!isFinite(scattered)) break;
             balance.fluxAbsorbed += channelSum(flux) - channelSum(scattered);
             flux = scattered;
+            const Viewers viewer = ray.viewer;
             ray = sample.lobe == Lobe::kDiffuse
                       ? m_scene.rayOnwards(surface.position, bsdf.facingGeometricNormal(),
                                            sample.direction)
                       : rayFrom(surface, sample.direction);
+            if (sample.lobe == Lobe::kStraight)
+                ray.viewer = viewer;
+            else
+                way.pastShadowless = way.pastMirrorless = false;
             const float goesOn = events.add(survival);
             if (goesOn < survival) {
                 balance.fluxAbsorbed += channelSum(flux);
@@ -184,6 +207,29 @@ class PhotonWalk {
         ++balance.lost;
         balance.fluxLost += channelSum(flux);
         return landed;
+    }
+
+    // On its way from a light, where a surface is hidden from shadow rays or from others. What a
+    // shadow ray would go by, from where light is scattered to the lamp, is other than what a ray
+    // by way of a mirror would; a photon goes by both until it is scattered. What is hidden from
+    // shadow rays alone it meets, for rays of mirrors, and passes, for those of shadows: by
+    // chance one, for both. Hidden from others alone it stops at it, but for mirrors beyond.
+    bool passesHidden(Part& part, const Surface& surface, Sampler& sampler,
+                      PhotonBalance& balance) const {
+        const bool isShadowless = m_scene.isHiddenFrom(surface.shape, kShadowRays);
+        if (!isShadowless && !m_scene.isHiddenFrom(surface.shape, kReflectionRays)) return false;
+        if (isShadowless) {
+            balance.fluxAbsorbed -= channelSum(part.flux);
+            part.flux *= 2.0f;
+            if (sampler.next1D() < 0.5f) return false;
+            part.way.pastShadowless = true;
+        } else {
+            part.way.pastMirrorless = true;
+        }
+        const Viewers viewer = part.ray.viewer;
+        part.ray = rayFrom(surface, part.ray.direction);
+        part.ray.viewer = viewer;
+        return true;
     }
 
     static float probabilityOfAll(const Bsdf& bsdf) {
@@ -218,7 +264,8 @@ class PhotonWalk {
     bool divides(const Part& part, const Bsdf& bsdf) const {
         return isCaustic(m_request.kind) && part.events.count() < kDividedEvents &&
                part.way.stage <= Stage::kSpecular && bsdf.has(Lobe::kReflection) &&
-               bsdf.has(Lobe::kRefraction) && !bsdf.has(Lobe::kStraight);
+               bsdf.has(Lobe::kRefraction) && !bsdf.has(Lobe::kStraight) &&
+               !m_scene.viewersDiffer();
     }
 
     // The reflected part waits, the refracted one takes the place of `part`. The smaller of both

@@ -57,14 +57,15 @@ Ray Camera::ray(double x, double y) const {
     const Vec3d direction =
         normalize(m_forward + m_right * ((x - m_halfWidth) * m_scale * m_aspect) +
                   m_up * ((m_halfHeight - y) * m_scale));
-    if (m_scene.hasCore()) return m_scene.rayFromAfar(m_eye, direction);
-    if (!m_isFar) return {Vec3f(m_eye), Vec3f(direction)};
-    Vec3d origin = m_eye;
+    Ray ray{Vec3f(m_eye), Vec3f(direction)};
+    if (m_scene.hasCore()) ray = m_scene.rayFromAfar(m_eye, direction);
+    ray.viewer = kCameraRays;
+    if (m_scene.hasCore() || !m_isFar) return ray;
     // Entry into a sphere slightly larger than the scene's.
     const double radius = m_sceneRadius * 1.01;
     const double t = intersectSphere(m_eye, direction, 1e300, Vec3d(0.0), radius);
-    if (t > 0) origin = m_eye + direction * t;
-    return {Vec3f(origin), Vec3f(direction)};
+    if (t > 0) ray.origin = Vec3f(m_eye + direction * t);
+    return ray;
 }
 
 PixelBeam Camera::pixelBeam(const Ray& ray) const {

@@ -103,6 +103,13 @@ Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray
         if (sample.lobe == Lobe::kStraight) continue;
         atOnce = false;
         way.last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle};
+        if (scene.viewersDiffer() && !isDelta(sample.lobe) &&
+            GatherWay::isAsked(ends, sample.lobe)) {
+            const Rgb light = way.path.throughput *
+                              lightAlong(scene, *ends.lights, way.path.ray, way.last, result.rays);
+            result.radiance += {light, light};
+            way.last.hasLamps = true;
+        }
         way.byBroadOnly = way.byBroadOnly && sample.lobe == Lobe::kBroad;
     }
 }

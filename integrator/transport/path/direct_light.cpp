@@ -89,7 +89,7 @@ DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
 }
 
 Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const LastScatter& last) {
-    if (surface.light == kNoLight) return {};
+    if (surface.light == kNoLight || last.hasLamps) return {};
     const Rgb emitted = lights.emittedRadiance(surface, -last.direction);
     if (isDelta(last.lobe) || isBlack(emitted)) return emitted;
     return emitted * powerHeuristic(last.pdfSolidAngle,
@@ -99,6 +99,7 @@ Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const L
 
 Rgb weightedFarLight(const Scene& scene, const LightSampler& lights, const LastScatter& last) {
     Rgb sum;
+    if (last.hasLamps) return sum;
     const std::span<const Light> far = scene.farLights();
     for (std::size_t i = 0; i < far.size(); ++i) {
         const Rgb radiance = scene.farRadiance(far[i], last.direction);
@@ -117,16 +118,19 @@ Rgb lightAlong(const Scene& scene, const LightSampler& lights, const Ray& ray,
                const LastScatter& last, std::uint32_t& rays) {
     Rgb sum, share(1.0f);
     EventCount events;
-    for (Ray next = ray; !events.isOver();) {
+    Ray next = ray;
+    for (next.viewer = kLampRays; !events.isOver(); next.viewer = kLampRays) {
         Surface surface;
         ++rays;
         if (!scene.intersect(next, surface))
             return sum + share * weightedFarLight(scene, lights, last);
         sum += share * weightedEmission(lights, surface, last);
-        const MaterialDescription& material = scene.material(surface.material);
-        if (!letsThrough(material)) break;
-        share *= 1.0f - opacityAt(scene.materials(), material, surface.uv);
-        if (isBlack(share)) break;
+        if (!scene.isHiddenFrom(surface.shape, kShadowRays)) {
+            const MaterialDescription& material = scene.material(surface.material);
+            if (!letsThrough(material)) break;
+            share *= 1.0f - opacityAt(scene.materials(), material, surface.uv);
+            if (isBlack(share)) break;
+        }
         events.add(share.g);
         next = rayFrom(surface, ray.direction);
     }

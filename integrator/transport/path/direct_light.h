@@ -108,6 +108,7 @@ struct LastScatter {
     Lobe lobe = Lobe::kStraight;
     float pdfSolidAngle = 0.0f;
     std::uint32_t lampSamples = 1;  // of next-event estimation at `from`
+    bool hasLamps = false;          // what lamps are along it has been added: lightAlong()
 };
 
 // Emission of `surface` towards the path that came by `last`, weighted against next-event
@@ -118,7 +119,8 @@ Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const L
 Rgb weightedFarLight(const Scene& scene, const LightSampler& lights, const LastScatter& last);
 
 // Light of lamps that the ray finds which `last` sent out, itself or straight on through what lets
-// it pass, weighted as by both functions above. Counts its rays.
+// it pass, weighted as by both functions above. Nothing else is in its way than what is in a shadow
+// ray's. Counts its rays.
 Rgb lightAlong(const Scene& scene, const LightSampler& lights, const Ray& ray,
                const LastScatter& last, std::uint32_t& rays);
 

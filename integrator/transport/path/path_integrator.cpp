@@ -43,8 +43,13 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
             return result;
         }
         state.scatter(sample.lobe);
-        if (sample.lobe != Lobe::kStraight)
-            last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle};
+        if (sample.lobe == Lobe::kStraight) continue;
+        last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle};
+        if (m_scene.viewersDiffer() && !isDelta(sample.lobe)) {
+            result.of(state.classify()) +=
+                path.throughput * lightAlong(m_scene, m_lights, path.ray, last, result.rays);
+            last.hasLamps = true;
+        }
     }
 }
 

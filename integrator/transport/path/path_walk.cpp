@@ -24,7 +24,9 @@ bool PathWalk::scatter(const Surface& surface, const Bsdf& bsdf, const BsdfSampl
         if (sampler.next1D() >= survival) return false;
         throughput *= 1.0f / survival;
     }
+    const Viewers viewer = ray.viewer;
     ray = rayFrom(surface, sample.direction);
+    if (sample.lobe == Lobe::kStraight) ray.viewer = viewer;
     return true;
 }
 

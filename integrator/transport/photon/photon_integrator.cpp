@@ -111,6 +111,16 @@ bool PhotonIntegrator::Branch::goOn(const Surface& surface, const Bsdf& bsdf,
     return true;
 }
 
+// Where shadow rays don't meet what others do.
+void PhotonIntegrator::addLampsAlong(Branch& branch, const Tree& tree) const {
+    if (!m_scene.viewersDiffer() || isDelta(branch.last.lobe) || branch.last.hasLamps) return;
+    SampleRadiance& result = tree.result;
+    result.of(branch.state.classify()) +=
+        branch.path.throughput *
+        lightAlong(m_scene, m_lights, branch.path.ray, branch.last, result.rays);
+    branch.last.hasLamps = true;
+}
+
 void PhotonIntegrator::follow(Branch& branch, const Tree& tree) const {
     const PathWalk& path = branch.path;
     SampleRadiance& result = tree.result;
@@ -174,6 +184,7 @@ bool PhotonIntegrator::followLobes(const Surface& surface, const Bsdf& bsdf, Sti
             if (part.path.isCut()) tree.result.addCut(part.path.amount());
             continue;
         }
+        addLampsAlong(part, tree);
         part.lampSamples = bsdf.reflectsLamps() ? 1
                                                 : std::min(branch.lampSamples,
                                                            raysOfShare(m_lampSamples, part.share));
@@ -282,9 +293,12 @@ void PhotonIntegrator::followBroad(const Surface& surface, const Bsdf& bsdf, con
     SampleRadiance& result = tree.result;
     const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle,
                            branch.lampSamples};
-    const GatherEnds ends{*m_maps.global, m_maps.lamps, 1, &m_lights, true, &last};
-    const Gathered found =
-        finalGather(m_scene, ends, rayFrom(surface, sample.direction), 1.0f, tree.sampler);
+    const Ray ray = rayFrom(surface, sample.direction);
+    const bool findsLamps = !m_scene.viewersDiffer();
+    const GatherEnds ends{*m_maps.global, m_maps.lamps, 1,
+                          &m_lights,      true,         findsLamps ? &last : nullptr};
+    Gathered found = finalGather(m_scene, ends, ray, 1.0f, tree.sampler);
+    if (!findsLamps) found.lampsStraight = lightAlong(m_scene, m_lights, ray, last, found.rays);
     result.rays += found.rays;
     const Rgb weight = branch.path.throughput * sample.weight / survival;
     result.indirect += weight * found.radiance.wide;
@@ -312,13 +326,12 @@ void PhotonIntegrator::gatherAlong(const Ray& ray, const LastScatter& last, Stil
                                    const Rgb& weight, std::uint32_t rays, float cosine,
                                    Sampler& sampler, SampleRadiance& result) const {
     const bool findsLamps = still.lamps == LampStrategy::kBoth;
-    if (!still.indirect) {
-        if (findsLamps)
-            result.direct += weight * lightAlong(m_scene, m_lights, ray, last, result.rays);
-        return;
-    }
+    const bool aside = !still.indirect || m_scene.viewersDiffer();
+    if (findsLamps && aside)
+        result.direct += weight * lightAlong(m_scene, m_lights, ray, last, result.rays);
+    if (!still.indirect) return;
     const GatherEnds ends{*m_maps.global, m_maps.lamps, rays,
-                          &m_lights,      false,        findsLamps ? &last : nullptr};
+                          &m_lights,      false,        findsLamps && !aside ? &last : nullptr};
     const Gathered found = finalGather(m_scene, ends, ray, cosine, sampler);
     result.rays += found.rays;
     result.indirect += weight * found.radiance.wide;

@@ -84,6 +84,7 @@ class PhotonIntegrator {
     using Survival = std::array<float, kLobeCount>;
     // diffuse: whether that lobe is one to follow.
     static Survival divide(const Bsdf& bsdf, const Carried& path, bool diffuse, Sampler& sampler);
+    void addLampsAlong(Branch& branch, const Tree& tree) const;
     // To its end.
     void follow(Branch& branch, const Tree& tree) const;
     // Along all lobes but one, which `branch` then is on. False: there is none.

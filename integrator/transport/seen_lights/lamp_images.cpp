@@ -115,12 +115,15 @@ struct Arrival {
             bsdf.emplace(scene.materials(), surface, -ray.direction, Transport::kRadiance,
                          carried.throughput);
     }
-    // The next ray by way of a lobe; false where there is none.
+    // By way of a lobe, next: the ray that led here, then the one onwards; false where there is
+    // none.
     bool follow(Lobe lobe, Carried& carried, Ray& next) const {
         BsdfSample sample;
         if (!bsdf || !bsdf->follow(lobe, sample)) return false;
         carried.followLobe(*bsdf, sample);
+        const Viewers viewer = next.viewer;
         next = rayFrom(surface, sample.direction);
+        if (lobe == Lobe::kStraight) next.viewer = viewer;
         return true;
     }
 };

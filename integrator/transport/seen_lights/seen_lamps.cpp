@@ -214,7 +214,9 @@ bool SeenLamps::goOn(const Branch& from, const Surface& surface, const Bsdf& bsd
         if (!(sampler.next1D() < survival)) return false;
         next.carried.throughput *= 1.0f / survival;
     }
+    const Viewers viewer = from.ray.viewer;
     next.ray = rayFrom(surface, sample.direction);
+    if (sample.lobe == Lobe::kStraight) next.ray.viewer = viewer;
     return true;
 }
 
