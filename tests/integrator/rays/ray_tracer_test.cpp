@@ -183,8 +183,8 @@ TEST(RayTracer, InstructionSets) {
 }
 
 TEST(RayTracer, SaysWhenEmbreeHasNoMemory) {
-#ifdef __SANITIZE_ADDRESS__
-    GTEST_SKIP() << "the address sanitizer needs address space of its own";
+#if defined(PM_ADDRESS_SANITIZER) || defined(PM_THREAD_SANITIZER)
+    GTEST_SKIP() << "a sanitizer needs address space of its own";
 #else
     GTEST_FLAG_SET(death_test_style, "threadsafe");
     EXPECT_EXIT(traceWithoutMemory(), testing::ExitedWithCode(0), "out of memory: Embree");
