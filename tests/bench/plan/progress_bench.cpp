@@ -3,13 +3,13 @@
 // How right the remaining time is that a render tells: over the time that then remained, when so
 // much of its time had passed. Renders by pm_host, which tells it once a second at most.
 #include <fmt/format.h>
-#include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
 
 #include "integrator/values/error.h"
 #include "tests/bench/plot/report.h"

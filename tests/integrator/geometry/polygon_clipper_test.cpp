@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 // The clipper finds its ears by a tree and by marks. Here is what it has to find: the same ears as
 // by a look at every corner.
+#include "integrator/geometry/polygon_clipper.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 #include <random>
 #include <vector>
 
-#include "integrator/geometry/polygon_clipper.h"
 #include "integrator/geometry/reflex_points.h"
 #include "integrator/geometry/ring_marks.h"
 

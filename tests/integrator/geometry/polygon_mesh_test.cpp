@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
+#include "integrator/geometry/polygon_mesh.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <string>
 
-#include "integrator/geometry/polygon_mesh.h"
 #include "integrator/geometry/triangulate.h"
 #include "integrator/values/error.h"
 #include "tests/integrator/geometry/obj_cage.h"

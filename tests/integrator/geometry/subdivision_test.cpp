@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 // Where the limit surface lies, against closed forms and against refinements by another
 // implementation (Hbr), whose refined meshes are taken to the limit by the closed form.
+#include "integrator/geometry/subdivision.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,7 +14,6 @@
 #include <string>
 #include <vector>
 
-#include "integrator/geometry/subdivision.h"
 #include "integrator/geometry/triangulate.h"
 #include "tests/integrator/geometry/obj_cage.h"
 

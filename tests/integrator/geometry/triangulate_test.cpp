@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
+#include "integrator/geometry/triangulate.h"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -9,7 +11,6 @@
 #include <vector>
 
 #include "integrator/geometry/polygon_clipper.h"
-#include "integrator/geometry/triangulate.h"
 #include "tests/integrator/geometry/obj_cage.h"
 
 namespace pm {

@@ -3,13 +3,13 @@
 #include "scheduler/film/frame_store.h"
 
 #include <gtest/gtest.h>
-#include <algorithm>
-#include <vector>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <limits>
 #include <random>
+#include <vector>
 
 #include "integrator/values/error.h"
 #include "scheduler/buckets/fp_environment.h"

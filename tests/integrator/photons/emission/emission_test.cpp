@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Aimed emission: the expectation of the unaimed, more of it where caustics are cast.
-#include "integrator/photons/emission/aimed_emission.h"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -13,6 +11,7 @@
 #include <cstring>
 #include <functional>
 
+#include "integrator/photons/emission/aimed_emission.h"
 #include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/sampling/sampler.h"
 #include "tests/support/aimed.h"

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 // Photons on their own: what is emitted arrives, dies or escapes and nothing is lost; form factors;
 // the same bits for any number of threads; the flux of a caustic.
-#include "integrator/photons/trace/photon_tracer.h"
-
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <tbb/task_arena.h>
@@ -13,6 +11,7 @@
 #include <cstring>
 #include <set>
 
+#include "integrator/photons/trace/photon_tracer.h"
 #include "tests/support/scene_maker.h"
 
 namespace pm::test {
