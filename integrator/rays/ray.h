@@ -14,7 +14,7 @@ using Viewers = std::uint32_t;
 inline constexpr Viewers kCameraRays = 1;      // from the camera, as far as they go straight on
 inline constexpr Viewers kShadowRays = 2;      // between a surface and a light
 inline constexpr Viewers kReflectionRays = 4;  // all others that leave a surface
-inline constexpr Viewers kLampRays = 8;        // that look for lamps along a shadow ray's way
+inline constexpr Viewers kLightRays = 8;       // that look for lamps along a shadow ray's way
 inline constexpr Viewers kAllRays = 15;
 
 // A ray in the scene's own coordinates (its centre at the origin). The direction need not have unit

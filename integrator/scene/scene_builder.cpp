@@ -444,7 +444,7 @@ class Scene::Builder {
         Viewers seen = kCameraRays | kShadowRays | kReflectionRays;
         seen &= ~instance.hiddenFrom;
         if ((seen & kShadowRays) != 0 || std::ranges::any_of(instance.materials, shines))
-            seen |= kLampRays;
+            seen |= kLightRays;
         return seen;
     }
 

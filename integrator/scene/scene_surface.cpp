@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 // Points on surfaces: of a hit only the primitive is taken; where it is met is computed again in
 // double and rounded once, so that the error is known (see surfaceOffset).
-#include "integrator/shapes/surface.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -12,6 +10,7 @@
 #include "integrator/scene/coincident_faces.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/shape_record.h"
+#include "integrator/shapes/surface.h"
 
 namespace pm {
 

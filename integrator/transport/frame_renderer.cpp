@@ -7,7 +7,7 @@
 #include <mutex>
 #include <utility>
 
-#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/light_sampling/light_sampler.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/camera/camera.h"
 #include "integrator/scene/scene.h"

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 
 // What is read out of the frame store, beside frame_store.cpp, which fills it.
-#include "scheduler/film/frame_store.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +12,7 @@
 
 #include "integrator/values/error.h"
 #include "scheduler/buckets/fp_environment.h"
+#include "scheduler/film/frame_store.h"
 
 namespace pm {
 

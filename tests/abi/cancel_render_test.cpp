@@ -14,12 +14,7 @@ namespace pm::test {
 
 namespace {
 
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define PM_SLOWED_DOWN
-#endif
-#endif
-#ifdef PM_SLOWED_DOWN
+#if defined(PM_ADDRESS_SANITIZER) || defined(PM_THREAD_SANITIZER)
 constexpr double kMostStartSeconds = 10;
 #else
 constexpr double kMostStartSeconds = 0.1;

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 // Builds that are given up from another thread, in every phase that may take long.
 // PM_TRIANGLES=10000000 takes so large a mesh, PM_TEXELS=8192 a picture of so many columns.
+#include "tests/abi/cancel.h"
+
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -9,8 +11,6 @@
 #include <string>
 #include <thread>
 #include <vector>
-
-#include "tests/abi/cancel.h"
 
 namespace pm::test {
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // pm_host check on suites of one or two small scenes.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
 #include "host_shim/check/reference.h"
 #include "host_shim/check/scene_check.h"
 #include "tests/robust/host_process.h"
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 namespace pm::host::test {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Display pictures as references of pm_host, and how two of them differ.
+#include <cmath>
+
 #include "host_shim/pictures/display_compare.h"
 #include "tests/robust/host_process.h"
-
-#include <cmath>
 
 namespace pm::host::test {
 namespace {

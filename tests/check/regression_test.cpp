@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Our own scenes against their references: scenes/regression, see the README there.
-#include "tests/robust/host_process.h"
-
 #include <cstdlib>
 #include <iostream>
+
+#include "tests/robust/host_process.h"
 
 namespace pm::host::test {
 namespace {

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/pictures/compare.h"
 
+#include <limits>
+
 #include "tests/colour/scratch.h"
 #include "tests/colour/test_pictures.h"
-
-#include <limits>
 
 namespace pm::host::test {
 namespace {

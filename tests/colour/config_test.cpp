@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/colour/colour_pipeline.h"
-#include "tests/colour/scratch.h"
-#include "tests/colour/stored_ramps.h"
-
 #include <clocale>
 #include <cmath>
 #include <cstdlib>
+
+#include "host_shim/colour/colour_pipeline.h"
+#include "tests/colour/scratch.h"
+#include "tests/colour/stored_ramps.h"
 
 namespace pm::host::test {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/pictures/picture_io.h"
-#include "tests/colour/scratch.h"
-
 #include <OpenImageIO/imageio.h>
 
 #include <cmath>
 #include <limits>
+
+#include "host_shim/pictures/picture_io.h"
+#include "tests/colour/scratch.h"
 
 namespace pm::host::test {
 namespace {

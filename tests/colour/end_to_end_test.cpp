@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Scene-linear picture -> view -> file -> codes, one file for each view.
+#include <OpenImageIO/imageio.h>
+
+#include <limits>
+
 #include "host_shim/colour/colour_pipeline.h"
 #include "host_shim/colour/display_picture.h"
 #include "host_shim/pictures/picture_io.h"
 #include "tests/colour/picture_compare.h"
 #include "tests/colour/stored_ramps.h"
-
-#include <OpenImageIO/imageio.h>
-
-#include <limits>
 
 namespace pm::host::test {
 namespace {

@@ -3,12 +3,12 @@
 // Exposure as a camera would choose it, and what it does to a display picture.
 #include "host_shim/colour/exposure.h"
 
-#include "host_shim/colour/colour_pipeline.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
+
+#include "host_shim/colour/colour_pipeline.h"
 
 namespace pm::host::test {
 namespace {

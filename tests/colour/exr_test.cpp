@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/pictures/picture_io.h"
-#include "tests/colour/picture_compare.h"
-#include "tests/colour/test_pictures.h"
-
 #include <OpenImageIO/imageio.h>
 
 #include <cmath>
+
+#include "host_shim/pictures/picture_io.h"
+#include "tests/colour/picture_compare.h"
+#include "tests/colour/test_pictures.h"
 
 namespace pm::host::test {
 namespace {

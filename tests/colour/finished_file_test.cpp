@@ -2,15 +2,16 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/pictures/finished_file.h"
 
-#include "host_shim/pictures/picture_io.h"
-#include "tests/colour/scratch.h"
-#include "tests/colour/test_pictures.h"
-
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
 #include <csignal>
 #include <functional>
+
+#include "host_shim/pictures/picture_io.h"
+#include "tests/colour/scratch.h"
+#include "tests/colour/test_pictures.h"
 
 namespace pm::host::test {
 namespace {

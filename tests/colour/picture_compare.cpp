@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "tests/colour/picture_compare.h"
 
-#include "host_shim/pictures/picture_io.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
+
+#include "host_shim/pictures/picture_io.h"
 
 namespace pm::host::test {
 namespace {

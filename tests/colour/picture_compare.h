@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/picture.h"
-#include "tests/colour/scratch.h"
-
 #include <gtest/gtest.h>
 
 #include <set>
 #include <string>
+
+#include "host_shim/pictures/picture.h"
+#include "tests/colour/scratch.h"
 
 namespace pm::host::test {
 

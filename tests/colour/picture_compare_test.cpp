@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "tests/colour/picture_compare.h"
 
-#include "tests/colour/test_pictures.h"
-
 #include <cstdlib>
 #include <limits>
+
+#include "tests/colour/test_pictures.h"
 
 namespace pm::host::test {
 namespace {

@@ -4,14 +4,14 @@
 // [1] IEC 61966-2-1 (sRGB)  [2] ITU-R BT.1886
 // [3] ACES 1.0.3, CTL reference: RRT and ODT.Academy.RGBmonitor_100nits_dim, whose tone
 //     scales are quadratic B-splines in log10
-#include "host_shim/colour/colour_pipeline.h"
-#include "tests/colour/scratch.h"
-#include "tests/colour/stored_ramps.h"
-
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <span>
+
+#include "host_shim/colour/colour_pipeline.h"
+#include "tests/colour/scratch.h"
+#include "tests/colour/stored_ramps.h"
 
 namespace pm::host::test {
 namespace {

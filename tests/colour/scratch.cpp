@@ -3,6 +3,7 @@
 #include "tests/colour/scratch.h"
 
 #include <unistd.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>

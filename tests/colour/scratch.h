@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/host_error.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <string>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host::test {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
+#include <cmath>
+
 #include "host_shim/colour/colour_pipeline.h"
 #include "tests/colour/scratch.h"
 #include "tests/colour/stored_ramps.h"
-
-#include <cmath>
 
 namespace pm::host::test {
 namespace {

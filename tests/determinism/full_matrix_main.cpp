@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "tests/bench/timing.h"
+#include "tests/bench/run/timing.h"
 #include "tests/determinism/same_bits_matrix.h"
 
 namespace pm::test {

@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "tests/determinism/mixed_scene.h"
 
-#include "host_shim/pictures/picture_io.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <fstream>
 #include <numbers>
 #include <string>
+
+#include "host_shim/pictures/picture_io.h"
 
 namespace pm::host::test {
 namespace {

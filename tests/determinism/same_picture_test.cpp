@@ -1,12 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // A picture is a function of scene, settings and seed: what else may differ must not change a bit.
-#include "host_shim/pictures/picture_io.h"
-#include "tests/colour/scratch.h"
-#include "tests/determinism/mixed_scene.h"
-#include "tests/scene/host_test.h"
-#include "tests/scene/picture_measures.h"
-
 #include <fmt/format.h>
 #include <langinfo.h>
 #include <locale.h>
@@ -14,6 +8,12 @@
 #include <algorithm>
 #include <cstdlib>
 #include <cstring>
+
+#include "host_shim/pictures/picture_io.h"
+#include "tests/colour/scratch.h"
+#include "tests/determinism/mixed_scene.h"
+#include "tests/scene/host_test.h"
+#include "tests/scene/picture_measures.h"
 
 namespace pm::host::test {
 namespace {

@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "tests/golden/golden_compare.h"
 
-#include "tests/colour/picture_compare.h"
-#include "tests/scene/picture_measures.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
+
+#include "tests/colour/picture_compare.h"
+#include "tests/scene/picture_measures.h"
 
 namespace pm::host::test {
 namespace {

@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/picture.h"
-
 #include <gtest/gtest.h>
 
 #include <set>
 #include <string>
 #include <vector>
+
+#include "host_shim/pictures/picture.h"
 
 namespace pm::host::test {
 

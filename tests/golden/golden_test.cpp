@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 // Our scenes rendered by photons, against path-traced pictures stored beside this file. README.md
 // tells when those may change.
-#include "host_shim/pictures/picture_io.h"
-#include "tests/golden/golden_compare.h"
-#include "tests/scene/host_test.h"
-#include "tests/scene/picture_measures.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <limits>
+
+#include "host_shim/pictures/picture_io.h"
+#include "tests/golden/golden_compare.h"
+#include "tests/scene/host_test.h"
+#include "tests/scene/picture_measures.h"
 
 namespace pm::host::test {
 namespace {

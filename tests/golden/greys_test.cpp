@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 // A colour space has its own red, green and blue, but grey is grey in all of them: a scene without
 // colour is the same picture in linear Rec.709 and in ACEScg.
-#include "tests/scene/host_test.h"
-#include "tests/scene/picture_measures.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
+
+#include "tests/scene/host_test.h"
+#include "tests/scene/picture_measures.h"
 
 namespace pm::host::test {
 namespace {

@@ -18,9 +18,12 @@ TOOLS = {
     "apt-get": LOG + 'echo noise; echo "E: the text of apt" >&2; exit "${APT_STATUS:-0}"\n',
     "id": 'echo "${USER_ID:-0}"\n',
     "sudo": LOG + '[ "${SUDO_WORKS:-0}" = 1 ] || exit 1; shift; exec "$@"\n',
-    "cmake": LOG + 'mkdir -p build/release && touch build/release/build.ninja\n',
+    # As cmake --preset NAME makes build/NAME; --install is only written down.
+    "cmake": LOG + '[ "$1" != --preset ] || { mkdir -p "build/$2" && touch "build/$2/build.ninja"; }\n',
+    "clang++": "",
     "ninja": LOG + 'echo "ninja speaks"; exit "${NINJA_STATUS:-0}"\n',
-    "ctest": LOG + 'echo "100% tests passed, 0 tests failed out of 3"\n',
+    "ctest": LOG + 'echo "100% tests passed, 0 tests failed out of 3"\n'
+                   'echo "$TSAN_OPTIONS" >>"$DEV_TEST_LOG"\n',
 }
 HOST = 'printf "%s|" "$PWD" "$@"; exit "${HOST_STATUS:-0}"\n'
 
@@ -39,7 +42,9 @@ class DevScript(unittest.TestCase):
         for name, text in TOOLS.items():
             self.program(self.tools / name, text)
         self.program(self.root / "build/release/bin/pm_host", HOST)
-        self.packages = re.search(r"packages=\((.*?)\)", DEV.read_text(), re.DOTALL).group(1).split()
+        lists = re.findall(r"^(?:\w+_)?packages=\((.*?)\)", DEV.read_text(), re.DOTALL | re.MULTILINE)
+        self.assertEqual(len(lists), 3)
+        self.packages = " ".join(lists).split()
 
     @staticmethod
     def program(path, text):
@@ -90,6 +95,46 @@ class DevScript(unittest.TestCase):
         self.dev("render", "a.obj")
         self.assertEqual([c.split()[0] for c in self.calls], ["ninja"])
 
+    def test_render_and_install_build_neither_tests_nor_benches(self):
+        program = "cmake --preset release -D PM_BUILD_TESTS=OFF -D PM_BUILD_BENCHMARKS=OFF"
+        tests = ("libgtest-dev", "libbenchmark-dev")
+        for verb in (["render", "a.obj"], ["install", "--prefix", "p"]):
+            self.setUp()
+            for turn in range(2):
+                done = self.dev(*verb, missing=tests)
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(program in self.calls, turn == 0, self.calls)
+                (ninja,) = (c for c in self.calls if c.startswith("ninja"))
+                self.assertTrue(ninja.endswith(" pm_host pm_plugin"), ninja)
+                self.assertNotIn("apt-get", " ".join(self.calls))
+
+    def test_tests_are_configured_after_a_render_and_stay(self):
+        self.dev("render", "a.obj")
+        self.dev("test", missing=("libgtest-dev",))
+        self.assertIn("apt-get install -y --no-install-recommends libgtest-dev", self.calls)
+        self.assertIn("cmake --preset release -D PM_BUILD_TESTS=ON", self.calls)
+        for verb in ("test", "render"):
+            self.dev(verb)
+            self.assertNotIn("cmake", " ".join(self.calls))
+
+    def test_presets_that_changed_are_configured_again(self):
+        self.dev("test")
+        stamp = self.root / "build/release/.configured"
+        os.utime(stamp, (0, 0))
+        self.dev("test")
+        self.assertIn("cmake --preset release -D PM_BUILD_TESTS=ON", self.calls)
+
+    def test_sanitizers_have_builds_of_their_own(self):
+        (self.root / "tests").mkdir()
+        for name in ("asan", "tsan"):
+            done = self.dev("test", f"--{name}", "-R", "x", missing=("clang",))
+            self.assertEqual(done.returncode, 0, done.stderr)
+            self.assertIn("apt-get install -y --no-install-recommends clang", self.calls)
+            self.assertIn(f"cmake --preset {name} -D PM_BUILD_TESTS=ON", self.calls)
+            self.assertIn(f"ctest --test-dir {self.root}/build/{name} ", " ".join(self.calls))
+            self.assertTrue(self.calls[-2].endswith("-R x"), self.calls)
+        self.assertIn(f"suppressions={self.root}/tests/tsan_suppressions.txt:", self.calls[-1])
+
     def test_missing_packages_as_root(self):
         done = self.dev("setup", missing=("cmake", "libosd-dev"))
         self.assertEqual(done.returncode, 0, done.stderr)
@@ -121,8 +166,8 @@ class DevScript(unittest.TestCase):
     def test_test_keeps_the_closing_line(self):
         done = self.dev("test", "-R", "x")
         self.assertEqual(done.stdout, "100% tests passed, 0 tests failed out of 3\n")
-        self.assertIn("--output-on-failure --no-tests=error", self.calls[-1])
-        self.assertTrue(self.calls[-1].endswith("-R x"))
+        self.assertIn("--output-on-failure --no-tests=error", self.calls[-2])
+        self.assertTrue(self.calls[-2].endswith("-R x"))
 
 
 if __name__ == "__main__":

@@ -65,7 +65,7 @@ def uneven_tables():
 
 def unknown_tests():
     named = set()
-    for source in ROOT.glob("tests/*/*.cpp"):
+    for source in ROOT.glob("tests/**/*.cpp"):
         text = source.read_text(encoding="utf-8")
         named |= set(map(".".join, re.findall(r"\bTEST(?:_[PF])?\(\s*(\w+),\s*(\w+)", text)))
     text = (ROOT / "docs" / "testing.md").read_text(encoding="utf-8")

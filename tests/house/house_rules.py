@@ -6,6 +6,7 @@
 Prints one line for each breach, `file:line: what and what is allowed`, and exits 1 if there is any.
 
 usage: house_rules.py [REPOSITORY]
+       house_rules.py --rooms    print the table of rooms.py as the includes are today
 """
 import hashlib
 import pathlib
@@ -13,7 +14,9 @@ import re
 import subprocess
 import sys
 
-PARTS = ("integrator", "scheduler", "plugin", "host_shim")
+import rooms
+from rooms import PARTS
+
 LIBRARY_PARTS = ("integrator", "scheduler", "plugin")  # what lives inside a host's process
 TOP_LEVEL = {
     "CMakeLists.txt", "CMakePresets.json", "README.md", "CONTRIBUTING.md", "CHANGELOG.md",
@@ -29,14 +32,22 @@ OWN = {
     "plugin": ("plugin/", "scheduler/", "integrator/"),
     "host_shim": ("host_shim/", PUBLIC_HEADER),
 }
-# Third party include -> the folders that may have it.
+# Third party include -> the folders that may have it: one place in each part.
 THIRD_PARTY = [
     (re.compile(r"embree\d*/"), ("integrator/rays/",)),
     (re.compile(r"opensubdiv/"), ("integrator/geometry/",)),
-    (re.compile(r"OpenImageIO/"), ("plugin/", "host_shim/")),
-    (re.compile(r"OpenColorIO/"), ("host_shim/",)),
-    (re.compile(r"tiny_obj_loader|CLI/"), ("host_shim/",)),
+    (re.compile(r"(?:oneapi/)?tbb/"), ("integrator/", "scheduler/buckets/", "plugin/")),
+    (re.compile(r"OpenImageIO/"), ("plugin/", "host_shim/pictures/", "host_shim/textures/")),
+    (re.compile(r"OpenColorIO/"), ("host_shim/colour/",)),
+    (re.compile(r"tiny_obj_loader"), ("host_shim/ingest/", "host_shim/formats/")),
+    (re.compile(r"CLI/"), ("host_shim/cli/",)),
+    (re.compile(r"nlohmann/"), ("plugin/", "host_shim/app/", "host_shim/check/")),
+    (re.compile(r"xxhash"), ("plugin/", "host_shim/colour/", "host_shim/textures/")),
+    # Programs of their own, signals and a loaded library.
+    (re.compile(r"(?:spawn|signal|sys/wait)\.h"), ("host_shim/process/",)),
+    (re.compile(r"dlfcn\.h"), ("host_shim/app/",)),
 ]
+LISTS = pathlib.Path(__file__).resolve().parent
 # Pattern, where it is not allowed, why.
 FORBIDDEN = [
     (re.compile(r"\b(?:OIIO|OpenImageIO(?:_v\w+)?)::attribute\s*\("), PARTS,
@@ -106,27 +117,103 @@ def check_forbidden(root):
                     yield f"{name}:{number}: {match.group().strip('( ')} {why}"
 
 
-def check_cycles(root):
-    """Folders that include each other in a ring, each ring once."""
+def room_of(name):
+    return name.rsplit("/", 1)[0]
+
+
+def room_graph(root):
+    """Room -> the other rooms that it includes, of all rooms that have sources."""
     graph = {}
     for name in sources(root):
-        folder = name.rsplit("/", 1)[0]
-        for _, _, what in includes(root, name):
-            if what.split("/")[0] in PARTS and "/" in what and what.rsplit("/", 1)[0] != folder:
-                graph.setdefault(folder, set()).add(what.rsplit("/", 1)[0])
+        included = graph.setdefault(room_of(name), set())
+        for _, quoted, what in includes(root, name):
+            if quoted and what.split("/")[0] in PARTS and "/" in what:
+                included.add(room_of(what))
+        included.discard(room_of(name))
+    return graph
+
+
+def check_rooms(root):
+    """Each room has a row, and includes what its row has."""
+    rows_of = "tests/house/rooms.py"
+    for room in sorted(room_graph(root)):
+        if rooms.allowed(room) is None:
+            yield f"{room}: is a room without a row in {rows_of}"
+    for name in sources(root):
+        allowed = rooms.allowed(room_of(name))
+        for number, quoted, what in includes(root, name):
+            ours = quoted and "/" in what and what.split("/")[0] in PARTS
+            if not ours or allowed is None or room_of(what) in allowed:
+                continue
+            others = ", ".join(sorted(allowed - {room_of(name)})) or "no other room"
+            yield (f"{name}:{number}: includes {what}; by {rows_of} {room_of(name)} may include "
+                   f"{others}")  # fmt: skip
+
+
+def check_rows(root):
+    """No row of rooms.py is of a room that is not there, or allows what nobody does."""
+    graph = room_graph(root)
+    for room in sorted(rooms.MAY_INCLUDE):
+        if room not in graph:
+            yield f"tests/house/rooms.py: there is no room {room}"
+            continue
+        for other in sorted(rooms.allowed(room) - graph[room] - {room}):
+            yield f"tests/house/rooms.py: {room} does not include {other}; take it out of its row"
+
+
+def rings(graph):
+    """One way round for each ring of a graph that a walk meets."""
     seen = set()
 
-    def visit(folder, way):
-        if folder in way:
-            ring = way[way.index(folder):] + [folder]
-            yield f"{folder}: folders include each other in a ring: {' -> '.join(ring)}"
-        elif folder not in seen:
-            seen.add(folder)
-            for following in sorted(graph.get(folder, ())):
-                yield from visit(following, way + [folder])
+    def visit(node, way):
+        if node in way:
+            yield way[way.index(node):] + [node]
+        elif node not in seen:
+            seen.add(node)
+            for following in sorted(graph.get(node, ())):
+                yield from visit(following, way + [node])
 
-    for folder in sorted(graph):
-        yield from visit(folder, [])
+    for node in sorted(graph):
+        yield from visit(node, [])
+
+
+def check_cycles(root):
+    """No ring of rooms, nor of what they lie in: photons and transport, say, whatever their rooms."""
+    graph = room_graph(root)
+    depth = max((room.count("/") + 1 for room in graph), default=0)
+    found = set()
+    for length in range(depth, 0, -1):
+        outer = lambda room: "/".join(room.split("/")[:length])
+        short = {}
+        for room, others in graph.items():
+            short.setdefault(outer(room), set()).update(map(outer, others))
+        for node in short:
+            short[node].discard(node)
+        for ring in rings(short):
+            # A ring of rooms is one of their parents, too: told once, where it is narrowest.
+            if not any(set(ring) <= set(map(outer, other)) for other in found):
+                found.add(tuple(ring))
+                yield f"{ring[0]}: folders include each other in a ring: {' -> '.join(ring)}"
+
+
+def lamp_files(root):
+    """Sources with the word lamp in a name, in code or their own: file's name -> its path."""
+    word = re.compile(r"(?<![A-Za-z])lamps?(?![a-z])|Lamps?(?![a-z])|LAMPS?(?![A-Z])")
+    for name in sources(root):
+        text = "\n".join(code_lines((root / name).read_text(encoding="utf-8")))
+        if word.search(name.rsplit("/", 1)[1]) or word.search(text):
+            yield name.rsplit("/", 1)[1], name
+
+
+def check_light(root):
+    """A light is called light. files_with_lamp.txt has the files that still call it otherwise."""
+    known = set((LISTS / "files_with_lamp.txt").read_text(encoding="utf-8").split())
+    found = dict(lamp_files(root))
+    for name in sorted(set(found) - known):
+        yield f"{found[name]}: has the word lamp in a name; a light is called light"
+    if (root / "tests/house/files_with_lamp.txt").is_file():
+        for name in sorted(known - set(found)):
+            yield f"tests/house/files_with_lamp.txt: {name} has no lamp any more; take it out"
 
 
 def check_heads(root):
@@ -182,15 +269,37 @@ def check_shared(root):
                 yield f"{name}: is a copy of ../shared/{path.relative_to(shared)}"
 
 
-CHECKS = (check_includes, check_forbidden, check_cycles, check_heads, check_top_level, check_shared)
+CHECKS = (check_includes, check_rooms, check_rows, check_forbidden, check_cycles, check_light, check_heads,
+          check_top_level, check_shared)  # fmt: skip
 
 
 def breaches(root):
     return [line for check in CHECKS for line in check(root)]
 
 
+def ranked(graph):
+    """The rooms by part, in each those that include no others first; names where they are alike."""
+    def rank(room):
+        part = room.split("/")[0]
+        return 1 + max((rank(other) for other in graph[room] if other.split("/")[0] == part), default=0)
+
+    return sorted(graph, key=lambda room: (PARTS.index(room.split("/")[0]), rank(room), room))
+
+
+def print_rooms(root):
+    """The rows of rooms.py as the includes are."""
+    graph = room_graph(root)
+    for room in ranked(graph):
+        part = room.split("/")[0] + "/"
+        names = " ".join(sorted(other.removeprefix(part) for other in graph[room]))
+        print(f'    "{room}": "{names}",')
+
+
 def main():
     default = pathlib.Path(__file__).resolve().parents[2]
+    if sys.argv[1:] == ["--rooms"]:
+        print_rooms(default)
+        return 0
     root = pathlib.Path(sys.argv[1]).resolve() if len(sys.argv) > 1 else default
     found = breaches(root)
     for line in found:

@@ -3,10 +3,13 @@
 # SPDX-FileCopyrightText: The pm authors
 """That house_rules.py can fail: each rule meets a tree that breaks it, and one that does not."""
 import pathlib
+import re
 import tempfile
 import unittest
+from unittest import mock
 
 import house_rules
+import rooms
 
 HEAD = "// SPDX-License-Identifier: Apache-2.0\n// SPDX-FileCopyrightText: The pm authors\n"
 
@@ -17,8 +20,19 @@ class HouseRules(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.root = pathlib.Path(folder.name, "repository")
         self.root.mkdir()
+        (self.root.parent / "files_with_lamp.txt").write_text("old.cpp\n")
+        for where, what, value in ((rooms, "MAY_INCLUDE", {}), (house_rules, "LISTS", self.root.parent)):
+            patch = mock.patch.object(where, what, value)
+            patch.start()
+            self.addCleanup(patch.stop)
 
     def write(self, name, text, head=HEAD):
+        """A file, and in the table of rooms what it includes."""
+        room = name.rsplit("/", 1)[0]
+        if room.split("/")[0] in rooms.PARTS:
+            others = {w.rsplit("/", 1)[0] for w in re.findall(r'include "([^"]+/[^"]+)"', text)} - {room, ".."}
+            others |= set(rooms.MAY_INCLUDE.get(room, "").split())
+            rooms.MAY_INCLUDE[room] = " ".join(sorted(others))
         path = self.root / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_text(head + text)
@@ -36,7 +50,7 @@ class HouseRules(unittest.TestCase):
         self.write("plugin/include/pm_plugin.h", "")
         self.write("plugin/src/p.cpp", '#include "scheduler/s.h"\n#include "plugin/include/pm_plugin.h"\n')
         self.write("scheduler/s.h", "#pragma once\n")
-        self.write("host_shim/h.cpp", '#include "plugin/include/pm_plugin.h"\n#include <OpenColorIO/x.h>\n')
+        self.write("host_shim/colour/h.cpp", '#include "plugin/include/pm_plugin.h"\n#include <OpenColorIO/x.h>\n')
         self.assertEqual(house_rules.breaches(self.root), [])
 
     def test_layers(self):
@@ -76,6 +90,42 @@ class HouseRules(unittest.TestCase):
         self.write("integrator/b/b.h", '#pragma once\n#include "integrator/c/c.h"\n')
         self.write("integrator/c/c.h", '#pragma once\n#include "integrator/a/a.h"\n')
         self.one_breach("integrator/a -> integrator/b -> integrator/c -> integrator/a")
+
+    def test_cycle_between_parents(self):
+        self.write("integrator/a/x/1.h", '#pragma once\n#include "integrator/b/y/2.h"\n')
+        self.write("integrator/b/y/2.h", "#pragma once\n")
+        self.write("integrator/b/z/3.h", '#pragma once\n#include "integrator/a/w/4.h"\n')
+        self.write("integrator/a/w/4.h", "#pragma once\n")
+        self.one_breach("integrator/a -> integrator/b -> integrator/a")
+
+    def test_rooms(self):
+        self.write("integrator/a/a.h", '#pragma once\n#include "integrator/b/b.h"\n')
+        self.write("integrator/b/b.h", "#pragma once\n")
+        rooms.MAY_INCLUDE["integrator/a"] = "c"
+        self.write("integrator/c/c.h", "#pragma once\n")
+        found = house_rules.breaches(self.root)
+        self.assertEqual(len(found), 2, found)
+        self.assertIn("integrator/a/a.h:4: includes integrator/b/b.h; by tests/house/rooms.py integrator/a "
+                      "may include integrator/c", found[0])  # fmt: skip
+        self.assertIn("integrator/a does not include integrator/c", found[1])
+        rooms.MAY_INCLUDE.update({"integrator/a": "b", "integrator/gone": ""})
+        self.one_breach("no room integrator/gone")
+        del rooms.MAY_INCLUDE["integrator/gone"], rooms.MAY_INCLUDE["integrator/b"]
+        self.one_breach("integrator/b: is a room without a row")
+
+    def test_a_light_is_called_light(self):
+        for code in ("int lampCount;", "struct Lamp {};", "int first_lamp;", "kLamps"):
+            with self.subTest(code=code):
+                self.setUp()
+                self.write("integrator/a/new.cpp", code)
+                self.one_breach("integrator/a/new.cpp: has the word lamp")
+        self.setUp()
+        self.write("integrator/a/old.cpp", "int lampCount;")
+        self.write("integrator/a/new.cpp", 'clamp(kClampMost, "lamp"); // lamp')
+        self.assertEqual(house_rules.breaches(self.root), [])
+        self.write("tests/house/files_with_lamp.txt", "")
+        self.write("integrator/a/old.cpp", "int lightCount;")
+        self.one_breach("old.cpp has no lamp any more")
 
     def test_heads_and_places(self):
         self.write("integrator/a.h", "#pragma once\n", head="")

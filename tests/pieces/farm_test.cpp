@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 // Three machines render runs of one picture's buckets, and pm_host merge makes the picture of them:
 // the command line of docs/farm.md.
-#include "tests/robust/host_process.h"
-
 #include <nlohmann/json.hpp>
+
+#include "tests/robust/host_process.h"
 
 namespace pm::host::test {
 namespace {

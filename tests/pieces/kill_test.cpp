@@ -2,15 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 // pm_host killed again and again, as a farm may do it: each render that is gone on with gives the
 // bytes of one that was left alone. PM_KILLS=100 kills so many times.
-#include "tests/robust/host_process.h"
-
-#include <nlohmann/json.hpp>
-
 #include <chrono>
+#include <nlohmann/json.hpp>
 #include <random>
 #include <string>
 #include <thread>
 #include <utility>
+
+#include "tests/robust/host_process.h"
 
 namespace pm::host::test {
 namespace {

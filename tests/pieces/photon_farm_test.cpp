@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Photons once, then parts and other views of the scene: the command lines of docs/farm.md.
-#include "tests/robust/host_process.h"
-
 #include <nlohmann/json.hpp>
+
+#include "tests/robust/host_process.h"
 
 namespace pm::host::test {
 namespace {

@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 // Photon-map files: a picture rendered with one has the bits of one that traced its own photons,
 // and a file that is of other photons is refused by what differs.
-#include "tests/pieces/photon_host.h"
-
 #include <sys/resource.h>
 
 #include <array>
 #include <csignal>
+
+#include "tests/pieces/photon_host.h"
 
 namespace pm::test {
 

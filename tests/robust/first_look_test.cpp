@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // What a first picture shows: exposure, a light to see by, and why a picture is black.
-#include "tests/robust/host_process.h"
-
 #include <OpenImageIO/imageio.h>
+
 #include <nlohmann/json.hpp>
+
+#include "tests/robust/host_process.h"
 
 namespace pm::host::test {
 namespace {

@@ -7,10 +7,6 @@
 // N seconds of processor time it is SIGXCPU's or SIGKILL's, beyond 20 N of a clock SIGALRM's.
 //
 // usage: pm_host_forks PLUGIN
-#include "host_shim/app/host.h"
-
-#include <nlohmann/json.hpp>
-
 #include <dlfcn.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -19,8 +15,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
+
+#include "host_shim/app/host.h"
 
 namespace {
 

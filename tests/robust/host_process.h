@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/picture_io.h"
-
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -19,6 +17,8 @@
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "host_shim/pictures/picture_io.h"
 
 namespace pm::host::test {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Ctrl-C and termination: what is finished is kept under NAME.partial.EXT, nothing else is left.
-#include "host_shim/pictures/picture_io.h"
-#include "tests/robust/host_process.h"
-
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <chrono>
 #include <cstdlib>
 #include <functional>
 #include <initializer_list>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <thread>
+
+#include "host_shim/pictures/picture_io.h"
+#include "tests/robust/host_process.h"
 
 namespace pm::host::test {
 namespace {

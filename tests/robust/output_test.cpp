@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 // Outputs of the real pm_host: checked before the first ray, whole under their names, the same in
 // any locale.
+#include <nlohmann/json.hpp>
+
 #include "host_shim/pictures/host_error.h"
 #include "host_shim/pictures/image_output.h"
 #include "host_shim/pictures/picture_io.h"
 #include "tests/robust/host_process.h"
-
-#include <nlohmann/json.hpp>
 
 namespace pm::host::test {
 namespace {

@@ -2,9 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 // Names come from files and may hold anything: none of it reaches what a terminal or a page obeys.
 #include "host_shim/process/plain_text.h"
-#include "tests/robust/host_process.h"
 
 #include <nlohmann/json.hpp>
+
+#include "tests/robust/host_process.h"
 
 namespace pm::host::test {
 namespace {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // --progress: what programs read of a render on its way, and that it goes on when nobody reads.
-#include "tests/robust/host_process.h"
-
-#include <nlohmann/json.hpp>
-
 #include <cstdlib>
+#include <nlohmann/json.hpp>
 #include <regex>
+
+#include "tests/robust/host_process.h"
 
 namespace pm::host::test {
 namespace {

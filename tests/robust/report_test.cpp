@@ -3,14 +3,15 @@
 // --report of the real pm_host: a page that needs no other file, for renders that end in whatever
 // way, and that changes nothing of the picture.
 #include "host_shim/app/report.h"
-#include "host_shim/report/report_command.h"
-#include "host_shim/report/report_html.h"
-#include "host_shim/report/report_pictures.h"
-#include "tests/robust/host_process.h"
 
 #include <cmath>
 #include <cstdint>
 #include <limits>
+
+#include "host_shim/report/report_command.h"
+#include "host_shim/report/report_html.h"
+#include "host_shim/report/report_pictures.h"
+#include "tests/robust/host_process.h"
 
 namespace pm::host::test {
 namespace {

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 // --error-target and --time-limit of the real pm_host: exit 0, the reason in the statistics, and
 // the picture of so many passes.
+#include <nlohmann/json.hpp>
+
 #include "host_shim/pictures/picture_io.h"
 #include "tests/robust/host_process.h"
-
-#include <nlohmann/json.hpp>
 
 namespace pm::host::test {
 namespace {

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Samples that are no light: counted, named, and an error with --strict.
-#include "tests/robust/host_process.h"
-
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "tests/robust/host_process.h"
 
 namespace pm::host::test {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Pictures that are hard to read, and the folder of prepared ones, as a user sees them.
-#include "tests/robust/host_process.h"
-
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
+
+#include "tests/robust/host_process.h"
 
 namespace pm::host::test {
 namespace {

@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 // Pictures that don't fit into the memory limit, by the real pm_host: in tiles, with the pixels of
 // the whole, within the limit; and what can't be done so is refused with what it would need.
-#include "tests/robust/host_process.h"
-
 #include <OpenImageIO/imageio.h>
-#include <nlohmann/json.hpp>
 
 #include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "tests/robust/host_process.h"
 
 namespace pm::host::test {
 namespace {

@@ -35,7 +35,7 @@ TEST_F(BakeRefusal, BrokenFiles) {
     writeBytes(file("empty.jpg"), "");
     EXPECT_TRUE(refusesWith(refused({file("empty.jpg")}), 3, {"empty.jpg"}));
     std::vector<std::string> names{"a.jpg", "a.tif", "a.exr"};
-#ifndef __SANITIZE_ADDRESS__
+#ifndef PM_ADDRESS_SANITIZER
     // OpenImageIO 2.4.7's PNG reader leaks its message when libpng jumps out of a cut file.
     names.emplace_back("a.png");
 #endif

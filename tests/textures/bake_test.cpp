@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "tests/textures/texture_support.h"
-
 #include <cmath>
+
+#include "tests/textures/texture_support.h"
 
 namespace pm::host::test {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/textures/row_halver.h"
-#include "tests/textures/texture_support.h"
-
 #include <xxhash.h>
 
 #include <cmath>
 #include <cstring>
 #include <numeric>
+
+#include "host_shim/textures/row_halver.h"
+#include "tests/textures/texture_support.h"
 
 namespace pm::host::test {
 namespace {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // What the channels, windows, layers and statements of a picture mean for a texture.
-#include "tests/textures/texture_support.h"
-
 #include <array>
 #include <cmath>
 #include <limits>
+
+#include "tests/textures/texture_support.h"
 
 namespace pm::host::test {
 namespace {

@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "tests/textures/texture_support.h"
-
-#include <fmt/format.h>
-
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -13,6 +10,8 @@
 #include <ctime>
 #include <fstream>
 #include <thread>
+
+#include "tests/textures/texture_support.h"
 
 namespace pm::host::test {
 namespace {

@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/textures/texture_preparation.h"
-#include "tests/colour/scratch.h"
-
 #include <OpenImageIO/imageio.h>
 
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "host_shim/textures/texture_preparation.h"
+#include "tests/colour/scratch.h"
 
 namespace pm::host::test {
 

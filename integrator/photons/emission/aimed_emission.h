@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "integrator/lights/samplers/light_choice.h"
-#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/light_sampling/light_choice.h"
+#include "integrator/light_sampling/light_sampler.h"
 #include "integrator/photons/emission/aim_mixture.h"
 #include "integrator/photons/emission/focus.h"
 #include "integrator/photons/emission/sky_parts.h"

@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/light_sampling/light_sampler.h"
 #include "integrator/photons/emission/aimed_emission.h"
 #include "integrator/photons/map/big_array.h"
 #include "integrator/photons/map/photon_map.h"

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/light_sampling/light_sampler.h"
 #include "integrator/photons/estimate/irradiance_sites.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/scene.h"

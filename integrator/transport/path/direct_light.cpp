@@ -119,7 +119,7 @@ Rgb lightAlong(const Scene& scene, const LightSampler& lights, const Ray& ray,
     Rgb sum, share(1.0f);
     EventCount events;
     Ray next = ray;
-    for (next.viewer = kLampRays; !events.isOver(); next.viewer = kLampRays) {
+    for (next.viewer = kLightRays; !events.isOver(); next.viewer = kLightRays) {
         Surface surface;
         ++rays;
         if (!scene.intersect(next, surface))

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/light_sampling/light_sampler.h"
 #include "integrator/materials/bsdf.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/scene.h"

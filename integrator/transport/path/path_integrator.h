@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/light_sampling/light_sampler.h"
 #include "integrator/rays/ray_tracer.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/scene.h"

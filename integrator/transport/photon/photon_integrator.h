@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/light_sampling/light_sampler.h"
 #include "integrator/photons/estimate/caustic_map.h"
 #include "integrator/photons/estimate/irradiance_sites.h"
 #include "integrator/sampling/sampler.h"

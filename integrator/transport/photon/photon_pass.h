@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/light_sampling/light_sampler.h"
 #include "integrator/photons/emission/aimed_emission.h"
 #include "integrator/photons/emission/focus.h"
 #include "integrator/photons/estimate/caustic_map.h"

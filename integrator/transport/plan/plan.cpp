@@ -8,7 +8,7 @@
 #include <bit>
 #include <cmath>
 
-#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/light_sampling/light_sampler.h"
 #include "integrator/photons/emission/caustic_casters.h"
 #include "integrator/photons/estimate/caustic_map.h"
 #include "integrator/photons/trace/photon_tracer.h"

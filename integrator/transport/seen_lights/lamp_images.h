@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/light_sampling/light_sampler.h"
 #include "integrator/materials/bsdf.h"
 #include "integrator/scene/camera/camera.h"
 #include "integrator/scene/scene.h"

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/light_sampling/light_sampler.h"
 #include "integrator/materials/bsdf.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/camera/camera.h"

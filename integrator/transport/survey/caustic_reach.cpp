@@ -4,7 +4,7 @@
 
 #include <atomic>
 
-#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/light_sampling/light_sampler.h"
 #include "integrator/photons/emission/aimed_emission.h"
 #include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/scene/scene.h"

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <atomic>
 
-#include "integrator/lights/samplers/light_sampler.h"
+#include "integrator/light_sampling/light_sampler.h"
 #include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame/transport_plan.h"

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: The pm authors
+"""The rooms of the code, and whom each may include: one line a room, held by house_rules.py.
+
+A room is a folder with sources. A name that begins with a part's is whole; others are of the room's own
+part. Each room may include itself. `house_rules.py --rooms` prints the lines as the includes are today.
+"""
+
+PARTS = ("integrator", "scheduler", "plugin", "host_shim")
+
+# fmt: off
+MAY_INCLUDE = {
+    "integrator/values": "",
+    "integrator/geometry": "values",
+    "integrator/photons/map": "values",
+    "integrator/rays": "values",
+    "integrator/sampling": "values",
+    "integrator/shapes": "geometry rays values",
+    "integrator/materials": "sampling shapes values",
+    "integrator/lights": "materials sampling shapes values",
+    "integrator/scene": "lights materials rays sampling shapes values",
+    "integrator/light_sampling": "lights rays sampling scene shapes values",
+    "integrator/scene/camera": "rays scene values",
+    "integrator/photons/emission": "light_sampling lights materials photons/map sampling scene values",
+    "integrator/transport/path": "light_sampling materials rays sampling scene shapes values",
+    "integrator/photons/trace": "light_sampling materials photons/emission photons/map sampling scene values",
+    "integrator/transport/frame": "sampling transport/path values",
+    "integrator/photons/estimate": "photons/emission photons/map photons/trace sampling scene",
+    "integrator/transport/seen_lights": "light_sampling materials sampling scene scene/camera transport/frame transport/path values",
+    "integrator/transport/gather": "light_sampling materials photons/emission photons/estimate photons/map sampling scene scene/camera transport/path values",
+    "integrator/transport/survey": "light_sampling materials photons/emission photons/trace sampling scene scene/camera transport/frame transport/gather transport/path values",
+    "integrator/transport/photon": "light_sampling photons/emission photons/estimate photons/map photons/trace sampling scene scene/camera transport/frame transport/gather transport/path transport/survey values",
+    "integrator/transport/plan": "light_sampling materials photons/emission photons/estimate photons/map photons/trace scene transport/frame transport/gather transport/survey",
+    "integrator/transport": "light_sampling sampling scene scene/camera transport/frame transport/path transport/photon transport/plan transport/seen_lights transport/survey values",
+    "scheduler/buckets": "integrator/values",
+    "scheduler/film": "buckets integrator/values",
+    "plugin/include": "",
+    "plugin/src": "include integrator/geometry integrator/materials integrator/photons/map integrator/photons/trace integrator/scene integrator/transport integrator/transport/frame integrator/transport/gather integrator/transport/plan integrator/values scheduler/buckets scheduler/film",
+    "host_shim/pictures": "",
+    "host_shim/colour": "pictures",
+    "host_shim/ingest": "pictures",
+    "host_shim/process": "pictures",
+    "host_shim/cli": "colour ingest pictures",
+    "host_shim/report": "pictures plugin/include process",
+    "host_shim/textures": "colour pictures",
+    "host_shim/check": "cli colour pictures process report",
+    "host_shim/app": "check cli colour ingest pictures plugin/include process report textures",
+    "host_shim": "app",
+}
+# fmt: on
+
+
+def whole(room, name):
+    """The room that a word of the row of `room` names."""
+    if name.split("/")[0] in PARTS:
+        return name
+    return f"{room.split('/')[0]}/{name}"
+
+
+def allowed(room):
+    """The rooms that `room` may include, itself among them; nothing when it is in no row."""
+    row = MAY_INCLUDE.get(room)
+    return None if row is None else {room, *(whole(room, name) for name in row.split())}
