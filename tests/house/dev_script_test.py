@@ -103,10 +103,19 @@ class DevScript(unittest.TestCase):
             for turn in range(2):
                 done = self.dev(*verb, missing=tests)
                 self.assertEqual(done.returncode, 0, done.stderr)
-                self.assertEqual(program in self.calls, turn == 0, self.calls)
+                self.assertEqual(f"{program} -D CMAKE_UNITY_BUILD=ON" in self.calls, turn == 0, self.calls)
                 (ninja,) = (c for c in self.calls if c.startswith("ninja"))
                 self.assertTrue(ninja.endswith(" pm_host pm_plugin"), ninja)
                 self.assertNotIn("apt-get", " ".join(self.calls))
+
+    def test_files_together_or_not(self):
+        for value, option in (("0", " -D CMAKE_UNITY_BUILD=OFF"), ("1", " -D CMAKE_UNITY_BUILD=ON"), ("", "")):
+            self.setUp()
+            self.dev("test", PM_TOGETHER=value)
+            self.assertIn(f"cmake --preset release -D PM_BUILD_TESTS=ON{option}", self.calls)
+        self.setUp()
+        self.dev("render", "a.obj", PM_TOGETHER="0")
+        self.assertTrue(self.calls[0].endswith("CMAKE_UNITY_BUILD=OFF"), self.calls)
 
     def test_tests_are_configured_after_a_render_and_stay(self):
         self.dev("render", "a.obj")
