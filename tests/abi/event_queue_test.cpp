@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // What waits for a slow host is bounded, and merged in an order that makes sense.
-#include "plugin/src/event_queue.h"
+#include "plugin/session/event_queue.h"
 
 #include <gtest/gtest.h>
 
@@ -15,34 +15,29 @@ namespace {
 
 using Calls = std::vector<std::string>;
 
-Calls& callsOf(void* user) {
-    return *static_cast<Calls*>(user);
+RenderListener listenerFor(Calls& calls) {
+    RenderListener listener;
+    listener.message = [&](MessageLevel, std::int32_t, const std::string& text) {
+        calls.push_back(text);
+    };
+    listener.progress = [&](double fraction, double) {
+        calls.push_back("progress " + std::to_string(std::lround(fraction * 100)));
+    };
+    listener.bucketStarted = [&](const BucketInfo& bucket) {
+        calls.push_back("start " + std::to_string(bucket.bucketIndex));
+    };
+    listener.bucketFinished = [&](const BucketInfo& bucket) {
+        calls.push_back("done " + std::to_string(bucket.bucketIndex) + " pass " +
+                        std::to_string(bucket.passIndex));
+    };
+    listener.finished = [&](CallStatus status) {
+        calls.push_back("finished " + std::to_string(static_cast<int>(status)));
+    };
+    return listener;
 }
 
-PmrRenderDesc sinksFor(Calls& calls) {
-    PmrRenderDesc desc = PMR_INIT(PmrRenderDesc);
-    desc.user = &calls;
-    desc.message = [](void* user, PmrRender, std::int32_t, std::int32_t, const char* text) {
-        callsOf(user).push_back(text);
-    };
-    desc.progress = [](void* user, PmrRender, double fraction, double) {
-        callsOf(user).push_back("progress " + std::to_string(std::lround(fraction * 100)));
-    };
-    desc.bucketStarted = [](void* user, PmrRender, const PmrBucketInfo* bucket) {
-        callsOf(user).push_back("start " + std::to_string(bucket->bucketIndex));
-    };
-    desc.bucketFinished = [](void* user, PmrRender, const PmrBucketInfo* bucket) {
-        callsOf(user).push_back("done " + std::to_string(bucket->bucketIndex) + " pass " +
-                                std::to_string(bucket->passIndex));
-    };
-    desc.finished = [](void* user, PmrRender, PmrStatus status) {
-        callsOf(user).push_back("finished " + std::to_string(status));
-    };
-    return desc;
-}
-
-PmrBucketInfo bucket(std::uint32_t index, std::uint32_t pass) {
-    PmrBucketInfo info = PMR_INIT(PmrBucketInfo);
+BucketInfo bucket(std::uint32_t index, std::uint32_t pass) {
+    BucketInfo info;
     info.bucketIndex = index;
     info.passIndex = pass;
     return info;
@@ -55,8 +50,8 @@ void deliverAll(EventQueue& queue) {
 
 TEST(EventQueue, MergesWhatWaits) {
     Calls calls;
-    EventQueue queue(sinksFor(calls));
-    queue.open(nullptr);
+    EventQueue queue(listenerFor(calls));
+    queue.open({});
     for (std::uint32_t pass = 0; pass < 1000; ++pass)
         for (std::uint32_t i = 0; i < 2; ++i) {
             queue.bucketStarted(bucket(i, pass));
@@ -71,20 +66,20 @@ TEST(EventQueue, MergesWhatWaits) {
 
 TEST(EventQueue, MessagesAreBounded) {
     Calls calls;
-    EventQueue queue(sinksFor(calls));
-    queue.open(nullptr);
-    for (int i = 0; i < 100000; ++i) queue.message(PMR_LEVEL_INFO, PMR_MESSAGE_PHASE, "m");
+    EventQueue queue(listenerFor(calls));
+    queue.open({});
+    for (int i = 0; i < 100000; ++i) queue.message(MessageLevel::kInfo, kMessagePhase, "m");
     deliverAll(queue);
     EXPECT_EQ(EventQueue::kMaxWaitingMessages, calls.size());
 }
 
 TEST(EventQueue, DropsAllButFinished) {
     Calls calls;
-    EventQueue queue(sinksFor(calls));
-    queue.open(nullptr);
-    queue.message(PMR_LEVEL_INFO, 0, "lost");
+    EventQueue queue(listenerFor(calls));
+    queue.open({});
+    queue.message(MessageLevel::kInfo, 0, "lost");
     queue.bucketFinished(bucket(0, 0));
-    queue.finished(PMR_ERROR_CANCELLED);
+    queue.finished(CallStatus::kCancelled);
     queue.dropAllButFinished();
     queue.progress(0.5, 1.0);
     deliverAll(queue);
@@ -99,30 +94,29 @@ TEST(EventQueue, FinishedOnceWhenDroppedInsideIt) {
         EventQueue* queue = nullptr;
         int finished = 0;
     } host;
-    PmrRenderDesc desc = PMR_INIT(PmrRenderDesc);
-    desc.user = &host;
-    desc.finished = [](void* user, PmrRender, PmrStatus) {
-        ++static_cast<Host*>(user)->finished;
-        static_cast<Host*>(user)->queue->dropAllButFinished();
+    RenderListener listener;
+    listener.finished = [&host](CallStatus) {
+        ++host.finished;
+        host.queue->dropAllButFinished();
     };
-    EventQueue queue(desc);
+    EventQueue queue(listener);
     host.queue = &queue;
-    queue.open(nullptr);
-    queue.finished(PMR_OK);
+    queue.open({});
+    queue.finished(CallStatus::kOk);
     EXPECT_EQ(EventQueue::Delivery::kDelivered, queue.deliverOne(deadlineAfter(0.0)));
     EXPECT_EQ(EventQueue::Delivery::kOver, queue.deliverOne(deadlineAfter(0.0)));
     EXPECT_EQ(1, host.finished);
 }
 
 TEST(EventQueue, NoCallbacksIsFine) {
-    EventQueue queue(PMR_INIT(PmrRenderDesc));
-    queue.open(nullptr);
+    EventQueue queue(RenderListener{});
+    queue.open({});
     queue.bucketStarted(bucket(0, 0));
     queue.bucketFinished(bucket(0, 0));
-    queue.message(0, 0, "");
+    queue.message(MessageLevel::kDebug, 0, "");
     queue.progress(0, 0);
     EXPECT_EQ(EventQueue::Delivery::kTimeout, queue.deliverOne(deadlineAfter(0.0)));
-    queue.finished(PMR_OK);
+    queue.finished(CallStatus::kOk);
     EXPECT_EQ(EventQueue::Delivery::kDelivered, queue.deliverOne(std::nullopt));
     EXPECT_TRUE(queue.waitUntilOver(std::nullopt));
 }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Work that can't be told to stop, and who cancels doesn't wait for it.
-#include "plugin/src/leave_behind.h"
+#include "plugin/session/leave_behind.h"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // How far a render is, whatever is to end it.
-#include "plugin/src/progress_clock.h"
+#include "plugin/session/progress_clock.h"
 
 #include <gtest/gtest.h>
 

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // When a render ends, and which of its passes stand in its error curve.
-#include "plugin/src/stop_rule.h"
+#include "plugin/session/stop_rule.h"
 
 #include <gtest/gtest.h>
 
 #include <map>
 #include <string>
 
-#include "plugin/src/error_curve.h"
+#include "plugin/session/error_curve.h"
 
 namespace pm::plugin {
 
@@ -28,14 +28,14 @@ FrameError errorOf(double noise, double bias) {
 }
 
 TEST(StopRule, PassesAreFourOrAsManyAsATargetNeeds) {
-    EXPECT_EQ(PMR_STOP_NONE, ruleOf({}).after({3, 1e9, 1e9, {}}));
-    EXPECT_EQ(PMR_STOP_PASSES, ruleOf({}).after({4, 1, 1, {}}));
+    EXPECT_EQ(StopReason::kNone, ruleOf({}).after({3, 1e9, 1e9, {}}));
+    EXPECT_EQ(StopReason::kPasses, ruleOf({}).after({4, 1, 1, {}}));
     for (const char* target : {"errorTarget", "timeLimitSeconds"}) {
         EXPECT_EQ(4u, ruleOf({{target, "0"}}).passes());
         EXPECT_FALSE(ruleOf({{target, "0.5"}}).passes());
         EXPECT_EQ(7u, ruleOf({{target, "0.5"}, {"passes", "7"}}).passes());
         EXPECT_EQ(4u, ruleOf({{target, "0.5"}, {"passes", "4"}}).passes());
-        EXPECT_EQ(PMR_STOP_PASSES, ruleOf({{target, "1000"}}).after({1000000, 1, 0, {}}));
+        EXPECT_EQ(StopReason::kPasses, ruleOf({{target, "1000"}}).after({1000000, 1, 0, {}}));
     }
     SettingValues refused;
     EXPECT_ANY_THROW(refused.setText("passes", "0"));
@@ -45,13 +45,13 @@ TEST(StopRule, PassesAreFourOrAsManyAsATargetNeeds) {
 
 TEST(StopRule, ErrorTargetHoldsForNoiseAndBias) {
     const StopRule rule = ruleOf({{"errorTarget", "0.01"}});
-    EXPECT_EQ(PMR_STOP_NONE, rule.after({5, 1, 1, {}}));
-    EXPECT_EQ(PMR_STOP_NONE, rule.after({5, 1, 1, errorOf(0.02, 0)}));
-    EXPECT_EQ(PMR_STOP_NONE, rule.after({5, 1, 1, errorOf(0.009, 0.002)}));
-    EXPECT_EQ(PMR_STOP_ERROR_TARGET, rule.after({5, 1, 1, errorOf(0.009, 0.001)}));
-    EXPECT_EQ(PMR_STOP_NONE, rule.after({5, 1, 1, errorOf(0.011, -0.005)}))
+    EXPECT_EQ(StopReason::kNone, rule.after({5, 1, 1, {}}));
+    EXPECT_EQ(StopReason::kNone, rule.after({5, 1, 1, errorOf(0.02, 0)}));
+    EXPECT_EQ(StopReason::kNone, rule.after({5, 1, 1, errorOf(0.009, 0.002)}));
+    EXPECT_EQ(StopReason::kErrorTarget, rule.after({5, 1, 1, errorOf(0.009, 0.001)}));
+    EXPECT_EQ(StopReason::kNone, rule.after({5, 1, 1, errorOf(0.011, -0.005)}))
         << "bias below 0 is noise";
-    EXPECT_EQ(PMR_STOP_NONE, rule.after({1, 1, 1, errorOf(0, 0)}));
+    EXPECT_EQ(StopReason::kNone, rule.after({1, 1, 1, errorOf(0, 0)}));
     EXPECT_NEAR(20, rule.passesToErrorTarget({5, 1, 1, errorOf(0.04, 0)}).value(), 1e-9);
     EXPECT_NEAR(50, rule.passesToErrorTarget({5, 1, 1, errorOf(0.05, 0.005)}).value(), 1e-9);
     EXPECT_GT(rule.passesToErrorTarget({5, 1, 1, errorOf(0.05, 0.05)}).value(), 5);
@@ -60,9 +60,9 @@ TEST(StopRule, ErrorTargetHoldsForNoiseAndBias) {
 
 TEST(StopRule, TimeLimitBeginsNoPassThatWouldNotFit) {
     const StopRule rule = ruleOf({{"timeLimitSeconds", "10"}});
-    EXPECT_EQ(PMR_STOP_NONE, rule.after({2, 6, 3, {}}));
-    EXPECT_EQ(PMR_STOP_TIME_LIMIT, rule.after({2, 6, 4.5, {}}));
-    EXPECT_EQ(PMR_STOP_TIME_LIMIT, rule.after({1, 60, 60, {}}));
+    EXPECT_EQ(StopReason::kNone, rule.after({2, 6, 3, {}}));
+    EXPECT_EQ(StopReason::kTimeLimit, rule.after({2, 6, 4.5, {}}));
+    EXPECT_EQ(StopReason::kTimeLimit, rule.after({1, 60, 60, {}}));
 }
 
 // At level 1 four passes make a picture without holes, and eight its error known everywhere.
@@ -70,11 +70,11 @@ TEST(StopRule, Level1EndsWithWholePicturesOnly) {
     const std::map<std::string, std::string> both = {
         {"aaLevel", "1"}, {"timeLimitSeconds", "0.001"}, {"errorTarget", "1"}};
     const StopRule rule = ruleOf(both);
-    EXPECT_EQ(PMR_STOP_NONE, rule.after({3, 60, 20, errorOf(0, 0)}));
-    EXPECT_EQ(PMR_STOP_TIME_LIMIT, rule.after({4, 60, 20, errorOf(0, 0)}));
-    EXPECT_EQ(PMR_STOP_NONE,
+    EXPECT_EQ(StopReason::kNone, rule.after({3, 60, 20, errorOf(0, 0)}));
+    EXPECT_EQ(StopReason::kTimeLimit, rule.after({4, 60, 20, errorOf(0, 0)}));
+    EXPECT_EQ(StopReason::kNone,
               ruleOf({{"aaLevel", "1"}, {"errorTarget", "1"}}).after({7, 60, 20, errorOf(0, 0)}));
-    EXPECT_EQ(PMR_STOP_ERROR_TARGET, rule.after({8, 60, 20, errorOf(0, 0)}));
+    EXPECT_EQ(StopReason::kErrorTarget, rule.after({8, 60, 20, errorOf(0, 0)}));
 }
 
 TEST(ErrorCurve, IsBounded) {

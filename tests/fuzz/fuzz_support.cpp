@@ -43,7 +43,7 @@ std::string writeFile(const std::string& name, std::string_view bytes) {
     return whole;
 }
 
-// As in plugin/src/piece_file.cpp: the magic, then records, each with kind, a reserved number,
+// As in plugin/storage/piece_file.cpp: the magic, then records, each with kind, a reserved number,
 // length and checksum.
 std::string withChecksums(std::string_view bytes) {
     constexpr std::string_view kMagic = "pmpiece1";

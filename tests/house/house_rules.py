@@ -37,7 +37,7 @@ THIRD_PARTY = [
     (re.compile(r"embree\d*/"), ("integrator/rays/",)),
     (re.compile(r"opensubdiv/"), ("integrator/geometry/",)),
     (re.compile(r"(?:oneapi/)?tbb/"), ("integrator/", "scheduler/buckets/", "plugin/")),
-    (re.compile(r"OpenImageIO/"), ("plugin/", "host_shim/pictures/", "host_shim/textures/")),
+    (re.compile(r"OpenImageIO/"), ("plugin/textures/", "plugin/values/version.cpp", "host_shim/pictures/", "host_shim/textures/")),
     (re.compile(r"OpenColorIO/"), ("host_shim/colour/",)),
     (re.compile(r"tiny_obj_loader"), ("host_shim/ingest/", "host_shim/formats/")),
     (re.compile(r"CLI/"), ("host_shim/cli/",)),
@@ -64,6 +64,9 @@ FORBIDDEN = [
     (re.compile(r"\b(?:strto[df]|strtold|sto[df]|stold|atof|sscanf|setlocale)\s*\("), PARTS,
      "goes through the locale; use std::from_chars or fmt"),
 ]  # fmt: skip
+# Names of the C interface, and the rooms of the plugin that may use them.
+INTERFACE_NAME = re.compile(r"\b(?:Pmr[A-Z]|PMR_|pmr[A-Z])\w*")
+INTERFACE_ROOMS = ("plugin/api/", "plugin/include/")
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 COMMENT_OR_STRING = re.compile(
     r'//[^\n]*|/\*.*?\*/|(?P<s>"(?:\\.|[^"\\\n])*")|\'(?:\\.|[^\'\\\n])\'', re.DOTALL
@@ -115,6 +118,18 @@ def check_forbidden(root):
                 match = pattern.search(line)
                 if match and name.split("/")[0] in parts:
                     yield f"{name}:{number}: {match.group().strip('( ')} {why}"
+
+
+def check_interface_names(root):
+    """The C interface is known in few rooms of the plugin; the others have names of their own."""
+    for name in sources(root, ("plugin",)):
+        if name.startswith(INTERFACE_ROOMS):
+            continue
+        lines = code_lines((root / name).read_text(encoding="utf-8"))
+        for number, line in enumerate(lines, 1):
+            match = INTERFACE_NAME.search(line)
+            if match:
+                yield f"{name}:{number}: names {match.group()}; allowed only in {', '.join(INTERFACE_ROOMS)}"
 
 
 def room_of(name):
@@ -269,7 +284,7 @@ def check_shared(root):
                 yield f"{name}: is a copy of ../shared/{path.relative_to(shared)}"
 
 
-CHECKS = (check_includes, check_rooms, check_rows, check_forbidden, check_cycles, check_light, check_heads,
+CHECKS = (check_includes, check_rooms, check_rows, check_forbidden, check_interface_names, check_cycles, check_light, check_heads,
           check_top_level, check_shared)  # fmt: skip
 
 

@@ -48,7 +48,8 @@ class HouseRules(unittest.TestCase):
         self.write("integrator/rays/r.cpp", "#include <embree3/rtcore.h>\n")
         self.write("scheduler/s.cpp", '#include "integrator/values/v.h"\n// never abort() here\n')
         self.write("plugin/include/pm_plugin.h", "")
-        self.write("plugin/src/p.cpp", '#include "scheduler/s.h"\n#include "plugin/include/pm_plugin.h"\n')
+        self.write("plugin/api/p.cpp", '#include "scheduler/s.h"\n#include "plugin/include/pm_plugin.h"\nPmrStatus s = PMR_OK;\n')
+        self.write("plugin/session/p.cpp", '// PmrStatus\nconst char* s = "PMR_OK";\n')
         self.write("scheduler/s.h", "#pragma once\n")
         self.write("host_shim/colour/h.cpp", '#include "plugin/include/pm_plugin.h"\n#include <OpenColorIO/x.h>\n')
         self.assertEqual(house_rules.breaches(self.root), [])
@@ -56,7 +57,7 @@ class HouseRules(unittest.TestCase):
     def test_layers(self):
         cases = [("integrator", "scheduler"), ("integrator", "plugin"), ("integrator", "host_shim"),
                  ("scheduler", "plugin"), ("scheduler", "integrator/light"), ("plugin", "host_shim"),
-                 ("host_shim", "integrator/values"), ("host_shim", "plugin/src")]  # fmt: skip
+                 ("host_shim", "integrator/values"), ("host_shim", "plugin/session")]  # fmt: skip
         for who, whom in cases:
             with self.subTest(who=who, whom=whom):
                 self.setUp()
@@ -84,6 +85,14 @@ class HouseRules(unittest.TestCase):
                 self.setUp()
                 self.write(f"{folder}/y.cpp", f"/* a\n comment */\n{code}\n")
                 self.one_breach(f"{folder}/y.cpp:5")
+
+    def test_interface_names(self):
+        for room, code in [("session", "PmrStatus s;"), ("storage", "return PMR_OK;"),
+                           ("values", "pmrGetApi(1, &api);")]:  # fmt: skip
+            with self.subTest(code=code):
+                self.setUp()
+                self.write(f"plugin/{room}/y.cpp", f"/* PmrApi */\n{code}\n")
+                self.one_breach(f"plugin/{room}/y.cpp:4", "allowed only in plugin/api/")
 
     def test_cycle_between_subfolders(self):
         self.write("integrator/a/a.h", '#pragma once\n#include "integrator/b/b.h"\n')

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "plugin/src/bucket_range.h"
+#include "plugin/storage/bucket_range.h"
 
 #include <gtest/gtest.h>
 
-#include "plugin/src/call_error.h"
+#include "plugin/values/call_error.h"
 
 namespace pm::plugin::test {
 

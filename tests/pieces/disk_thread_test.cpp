@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // The thread that waits for disks.
-#include "plugin/src/disk_thread.h"
+#include "plugin/storage/disk_thread.h"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "plugin/src/done_pixels.h"
+#include "plugin/storage/done_pixels.h"
 
 #include <gtest/gtest.h>
 

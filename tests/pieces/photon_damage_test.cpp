@@ -13,7 +13,7 @@
 #include <random>
 
 #include "integrator/photons/trace/photon_bytes.h"
-#include "plugin/src/piece_file.h"
+#include "plugin/storage/piece_file.h"
 #include "tests/pieces/photon_host.h"
 
 namespace pm::test {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "plugin/src/piece_file.h"
+#include "plugin/storage/piece_file.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

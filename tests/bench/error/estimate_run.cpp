@@ -7,7 +7,7 @@
 #include <bit>
 #include <fstream>
 
-#include "plugin/src/frame_samples.h"
+#include "plugin/session/frame_samples.h"
 #include "tests/bench/run/pass_renderer.h"
 #include "tests/bench/run/timing.h"
 

@@ -8,7 +8,7 @@
 #include <atomic>
 #include <cstddef>
 
-#include "plugin/src/frame_samples.h"
+#include "plugin/session/frame_samples.h"
 
 namespace pm::bench {
 

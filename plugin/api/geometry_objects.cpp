@@ -1,0 +1,301 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <vector>
+
+#include "integrator/geometry/subdivision.h"
+#include "integrator/geometry/triangulate.h"
+#include "integrator/values/error.h"
+#include "plugin/api/objects.h"
+#include "plugin/api/struct_reader.h"
+#include "plugin/session/leave_behind.h"
+#include "plugin/session/memory_limit.h"
+#include "plugin/values/call_error.h"
+#include "scheduler/buckets/worker_arena.h"
+
+namespace pm::plugin {
+
+namespace {
+
+// Indices are 32 bits wide and signed inside.
+constexpr std::uint64_t kMaxElements = std::numeric_limits<std::int32_t>::max();
+constexpr std::uint64_t kMaxSlots = 65536;
+constexpr std::uint64_t kIndicesOfALargeMesh = 1'000'000;
+constexpr std::uint64_t kIndicesOfALargeCage = 256;
+constexpr std::uint32_t kMaxHostTessellationRate = 64;
+constexpr std::uint32_t kDefaultTessellationRate = 4;
+
+void checkArray(const void* array, std::uint64_t count, const char* name) {
+    if (count > kMaxElements)
+        throw argumentError(
+            fmt::format("{}: the count is {}; it must be at most {}", name, count, kMaxElements));
+    if (array == nullptr && count > 0)
+        throw argumentError(fmt::format("{} is null, but its count is {}", name, count));
+}
+
+// The description of a mesh, copied and checked; looks now and then whether to go on.
+class MeshReader {
+  public:
+    explicit MeshReader(const CancelCheck& cancel) : m_cancel(cancel) {}
+
+    PolygonMesh read(const PmrMeshDesc& desc) const;
+
+    template <typename Element, typename Source>
+    std::vector<Element> copyArray(const Source* array, std::uint64_t count,
+                                   const char* name) const {
+        static_assert(sizeof(Element) % sizeof(Source) == 0);
+        checkArray(array, count, name);
+        std::vector<Element> copy;
+        copy.reserve(count);
+        for (std::uint64_t done = 0; done < count; done = copy.size()) {
+            goOn();
+            copy.resize(std::min(count, done + kElementsBetweenLooks));
+            std::memcpy(static_cast<void*>(copy.data() + done),
+                        array + done * (sizeof(Element) / sizeof(Source)),
+                        (copy.size() - done) * sizeof(Element));
+        }
+        return copy;
+    }
+
+  private:
+    static constexpr std::uint64_t kElementsBetweenLooks = 1 << 16;
+
+    void goOn() const { m_cancel.throwIfSet("reading a mesh"); }
+    std::vector<std::int32_t> cornerIndices(const std::uint32_t* given, const PmrMeshDesc& desc,
+                                            std::uint64_t valueCount, const char* name) const;
+    std::vector<std::uint32_t> materialSlots(const PmrMeshDesc& desc,
+                                             std::uint64_t slotCount) const;
+
+    const CancelCheck m_cancel;
+};
+
+// The host's indices; PMR_NO_INDEX becomes -1, as do the numbers beyond 31 bits that no array has.
+std::vector<std::int32_t> MeshReader::cornerIndices(const std::uint32_t* given,
+                                                    const PmrMeshDesc& desc,
+                                                    std::uint64_t valueCount,
+                                                    const char* name) const {
+    const std::uint32_t* source = given == nullptr ? desc.indices : given;
+    std::vector<std::int32_t> indices(desc.indexCount);
+    for (std::uint64_t i = 0; i < desc.indexCount; ++i) {
+        if (i % kElementsBetweenLooks == 0) goOn();
+        if (source[i] == PMR_NO_INDEX && given != nullptr) {
+            indices[i] = -1;
+            continue;
+        }
+        if (source[i] >= valueCount)
+            throw Error(Status::kInvalidScene, fmt::format("{}[{}] is {}; it must be below {}",
+                                                           name, i, source[i], valueCount));
+        indices[i] = static_cast<std::int32_t>(source[i]);
+    }
+    return indices;
+}
+
+std::vector<std::uint32_t> MeshReader::materialSlots(const PmrMeshDesc& desc,
+                                                     std::uint64_t slotCount) const {
+    if (desc.materialSlots == nullptr) return {};
+    auto slots = copyArray<std::uint32_t>(desc.materialSlots, desc.faceCount, "materialSlots");
+    for (std::size_t face = 0; face < slots.size(); ++face) {
+        if (slots[face] >= slotCount)
+            throw argumentError(fmt::format("materialSlots[{}] is {}; slotCount is {}", face,
+                                            slots[face], slotCount));
+    }
+    return slots;
+}
+
+std::uint64_t slotCountOf(const PmrMeshDesc& desc) {
+    if (desc.slotCount > kMaxSlots)
+        throw argumentError(
+            fmt::format("slotCount is {}; it must be 0 to {}", desc.slotCount, kMaxSlots));
+    return desc.slotCount == 0 ? 1 : desc.slotCount;
+}
+
+PolygonMesh MeshReader::read(const PmrMeshDesc& desc) const {
+    PolygonMesh mesh;
+    mesh.positions = copyArray<Vec3f>(desc.positions, desc.positionCount, "positions");
+    checkArray(&desc, desc.faceCount, "faceCount");
+    if (desc.faceSizes != nullptr)
+        mesh.faceVertexCounts =
+            copyArray<std::uint32_t>(desc.faceSizes, desc.faceCount, "faceSizes");
+    else if (desc.indexCount == 3 * desc.faceCount)
+        mesh.faceVertexCounts.assign(desc.faceCount, 3);
+    else
+        throw argumentError(fmt::format("indexCount is {}; {} triangles need {}", desc.indexCount,
+                                        desc.faceCount, 3 * desc.faceCount));
+    mesh.vertexIndices = copyArray<std::uint32_t>(desc.indices, desc.indexCount, "indices");
+    mesh.normals = copyArray<Vec3f>(desc.normals, desc.normalCount, "normals");
+    if (desc.normalCount > 0)
+        mesh.normalIndices =
+            cornerIndices(desc.normalIndices, desc, desc.normalCount, "normalIndices");
+    mesh.texcoords = copyArray<Vec2f>(desc.uvs, desc.uvCount, "uvs");
+    if (desc.uvCount > 0)
+        mesh.texcoordIndices = cornerIndices(desc.uvIndices, desc, desc.uvCount, "uvIndices");
+    mesh.faceMaterials = materialSlots(desc, slotCountOf(desc));
+    return mesh;
+}
+
+void reportRepairs(const Context& context, const MeshRepairs& repairs) {
+    const auto report = [&context](std::size_t count, const char* what) {
+        if (count > 0)
+            context.sendNotice(
+                {NoticeCode::kDegenerateGeometry, fmt::format("{} {}", count, what)});
+    };
+    report(repairs.droppedTriangles, "triangles without area were left out");
+    report(repairs.replacedNormals, "unusable normals were replaced by their face's own");
+    report(repairs.fannedFaces, "faces cross themselves and were cut into fans");
+    report(repairs.ignoredCreases, "creases lie on no edge and were ignored");
+}
+
+std::shared_ptr<MeshObject> finishMesh(std::shared_ptr<Context> context, BuiltMesh built,
+                                       std::uint64_t slotCount) {
+    reportRepairs(*context, built.repairs);
+    Shape shape = std::make_shared<const TriangleMesh>(std::move(built.mesh));
+    return std::make_shared<MeshObject>(std::move(context), std::move(shape), slotCount);
+}
+
+std::uint32_t checkedRate(std::uint32_t rate) {
+    if (rate > kMaxHostTessellationRate)
+        throw argumentError(
+            fmt::format("tessellationRate is {}; it must be 0 (the default, {}) to {}", rate,
+                        kDefaultTessellationRate, kMaxHostTessellationRate));
+    return rate == 0 ? kDefaultTessellationRate : rate;
+}
+
+SubdivisionScheme toScheme(std::int32_t scheme) {
+    switch (scheme) {
+        case PMR_SCHEME_CATMULL_CLARK:
+            return SubdivisionScheme::kCatmullClark;
+        case PMR_SCHEME_LOOP:
+            return SubdivisionScheme::kLoop;
+        case PMR_SCHEME_BILINEAR:
+            return SubdivisionScheme::kBilinear;
+        default:
+            throw argumentError(
+                fmt::format("scheme is {}; it must be 0 to 2 (PMR_SCHEME_*)", scheme));
+    }
+}
+
+BoundaryInterpolation toBoundary(std::int32_t boundary) {
+    switch (boundary) {
+        case PMR_BOUNDARY_EDGE_AND_CORNER:
+            return BoundaryInterpolation::kEdgeAndCorner;
+        case PMR_BOUNDARY_EDGE_ONLY:
+            return BoundaryInterpolation::kEdgeOnly;
+        case PMR_BOUNDARY_NONE:
+            return BoundaryInterpolation::kNone;
+        default:
+            throw argumentError(
+                fmt::format("boundary is {}; it must be 0 to 2 (PMR_BOUNDARY_*)", boundary));
+    }
+}
+
+FaceVaryingInterpolation toFaceVarying(std::int32_t faceVarying) {
+    switch (faceVarying) {
+        case PMR_FACE_VARYING_BOUNDARIES:
+            return FaceVaryingInterpolation::kBoundaries;
+        case PMR_FACE_VARYING_SMOOTH:
+            return FaceVaryingInterpolation::kSmooth;
+        case PMR_FACE_VARYING_CORNERS_ONLY:
+            return FaceVaryingInterpolation::kCornersOnly;
+        case PMR_FACE_VARYING_CORNERS_PLUS1:
+            return FaceVaryingInterpolation::kCornersPlus1;
+        case PMR_FACE_VARYING_CORNERS_PLUS2:
+            return FaceVaryingInterpolation::kCornersPlus2;
+        case PMR_FACE_VARYING_ALL:
+            return FaceVaryingInterpolation::kAllLinear;
+        default:
+            throw argumentError(fmt::format(
+                "faceVarying is {}; it must be 0 to 5 (PMR_FACE_VARYING_*)", faceVarying));
+    }
+}
+
+SubdivisionCage toCage(const PmrCageDesc& desc, const PmrMeshDesc& meshDesc,
+                       const CancelCheck& cancel) {
+    const MeshReader reader(cancel);
+    SubdivisionCage cage;
+    cage.mesh = reader.read(meshDesc);
+    cage.scheme = toScheme(desc.scheme);
+    cage.boundary = toBoundary(desc.boundary);
+    cage.faceVarying = toFaceVarying(desc.faceVarying);
+    checkArray(desc.creases, desc.creaseCount, "creases");
+    checkArray(desc.creaseSharpness, desc.creaseCount, "creaseSharpness");
+    for (std::uint64_t i = 0; i < desc.creaseCount; ++i)
+        cage.creases.push_back(
+            {{desc.creases[2 * i], desc.creases[2 * i + 1]}, desc.creaseSharpness[i]});
+    checkArray(desc.corners, desc.cornerCount, "corners");
+    checkArray(desc.cornerSharpness, desc.cornerCount, "cornerSharpness");
+    for (std::uint64_t i = 0; i < desc.cornerCount; ++i)
+        cage.corners.push_back({desc.corners[i], desc.cornerSharpness[i]});
+    cage.holes = reader.copyArray<std::uint32_t>(desc.holes, desc.holeCount, "holes");
+    return cage;
+}
+
+void refuseTooLarge(const SubdivisionCage& cage, int rate) {
+    constexpr std::uint64_t kFitsAnywhere = 16 << 20;  // asking the system takes longer than that
+    const TessellationSize size = tessellationSize(cage, rate);
+    if (size.bytes <= kFitsAnywhere) return;
+    const std::uint64_t limit = memoryLimitBytes(0.0);
+    if (size.bytes > limit)
+        throw CallError(CallStatus::kMemory,
+                        fmt::format("tessellationRate {} makes {} triangles of {:.1f} GiB; the "
+                                    "memory limit is {:.1f} GiB",
+                                    rate, size.triangles, toGib(size.bytes), toGib(limit)));
+}
+
+}  // namespace
+
+std::shared_ptr<MeshObject> makeMesh(std::shared_ptr<Context> context, const PmrMeshDesc& desc) {
+    const std::uint64_t slotCount = slotCountOf(desc);
+    const CancelCheck cancel = context->buildCheck();
+    auto cut = [mesh = MeshReader(cancel).read(desc)](const CancelCheck& own) {
+        return triangulate(mesh, own);
+    };
+    // Of a large one the arrays alone take long to get and to give back; of many small ones threads
+    // would.
+    BuiltMesh built = desc.indexCount < kIndicesOfALargeMesh
+                          ? cut(cancel)
+                          : runLeavable(cancel, "cutting faces into triangles", std::move(cut));
+    return finishMesh(std::move(context), std::move(built), slotCount);
+}
+
+std::shared_ptr<MeshObject> makeCage(std::shared_ptr<Context> context, const PmrCageDesc& desc) {
+    PmrMeshDesc meshDesc = readStruct(desc.mesh, "PmrCageDesc.mesh");
+    meshDesc.normals = nullptr;
+    meshDesc.normalCount = 0;
+    meshDesc.normalIndices = nullptr;
+    const std::uint64_t slotCount = slotCountOf(meshDesc);
+    const int rate = static_cast<int>(checkedRate(desc.tessellationRate));
+    // Of many small ones threads would take longer than the work.
+    const bool isSmall = meshDesc.indexCount < kIndicesOfALargeCage;
+    const CancelCheck check = context->buildCheck();
+    auto cut = [cage = toCage(desc, meshDesc, check), rate,
+                threads = isSmall ? 1 : context->threads()](const CancelCheck& cancel) {
+        refuseTooLarge(cage, rate);
+        WorkerArena arena(threads);
+        return arena.execute([&] { return tessellate(cage, rate, cancel); });
+    };
+    BuiltMesh built = isSmall ? cut(check) : runLeavable(check, "tessellating", std::move(cut));
+    return finishMesh(std::move(context), std::move(built), slotCount);
+}
+
+std::shared_ptr<MeshObject> makeSphere(std::shared_ptr<Context> context,
+                                       const PmrSphereDesc& desc) {
+    const Vec3d centre{desc.centre[0], desc.centre[1], desc.centre[2]};
+    if (!isFinite(centre) || maxAbsComponent(centre) > kMaxCoordinate)
+        throw argumentError(
+            fmt::format("PmrSphereDesc: centre is {}, {}, {}; it must be finite and "
+                        "within {:g}",
+                        centre.x, centre.y, centre.z, kMaxCoordinate));
+    if (!(desc.radius > 0.0 && desc.radius <= kMaxCoordinate))
+        throw argumentError(
+            fmt::format("PmrSphereDesc: radius is {}; it must be above 0 and at most "
+                        "{:g} (scene units)",
+                        desc.radius, kMaxCoordinate));
+    return std::make_shared<MeshObject>(std::move(context), SphereShape{centre, desc.radius}, 1);
+}
+
+}  // namespace pm::plugin

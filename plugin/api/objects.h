@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// The reusable objects that a host makes from a context: geometry, textures, materials. All are
+// immutable once made, so any number of scenes and threads share them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "integrator/scene/scene_description.h"
+#include "plugin/api/context.h"
+#include "plugin/api/handle_table.h"
+#include "plugin/include/pm_plugin.h"
+#include "plugin/textures/texture.h"
+
+namespace pm::plugin {
+
+class MeshObject {
+  public:
+    static constexpr ObjectKind kKind = ObjectKind::kMesh;
+
+    MeshObject(std::shared_ptr<Context> context, Shape shape, std::uint64_t slotCount)
+        : m_context(std::move(context)), m_shape(std::move(shape)), m_slotCount(slotCount) {}
+
+    const std::shared_ptr<Context>& context() const { return m_context; }
+    const Shape& shape() const { return m_shape; }
+    std::uint64_t slotCount() const { return m_slotCount; }
+
+  private:
+    std::shared_ptr<Context> m_context;
+    Shape m_shape;
+    std::uint64_t m_slotCount;
+};
+
+// Copy, check and triangulate; a cage is tessellated on the context's threads. Warnings go to the
+// context's message function. Errors: CallError(ARGUMENT) for pointers, counts and enumerations,
+// Error(kInvalidScene) for bad indices and coordinates, MEMORY for a tessellation that can't fit.
+std::shared_ptr<MeshObject> makeMesh(std::shared_ptr<Context> context, const PmrMeshDesc& desc);
+std::shared_ptr<MeshObject> makeCage(std::shared_ptr<Context> context, const PmrCageDesc& desc);
+std::shared_ptr<MeshObject> makeSphere(std::shared_ptr<Context> context, const PmrSphereDesc& desc);
+
+class TextureObject {
+  public:
+    static constexpr ObjectKind kKind = ObjectKind::kTexture;
+
+    TextureObject(std::shared_ptr<Context> context, TexturePicture picture)
+        : m_context(std::move(context)),
+          m_texture(
+              std::make_shared<const Texture>(Texture{m_context->textures(), std::move(picture)})) {
+    }
+
+    const std::shared_ptr<Context>& context() const { return m_context; }
+    const std::shared_ptr<const Texture>& texture() const { return m_texture; }
+
+  private:
+    std::shared_ptr<Context> m_context;
+    std::shared_ptr<const Texture> m_texture;
+};
+
+std::shared_ptr<TextureObject> makeTexture(std::shared_ptr<Context> context,
+                                           const PmrTextureDesc& desc);
+
+// The textures of a material, in the order of PmrMaterialDesc; null where it has none.
+enum class TextureUse { kDiffuse, kGlossy, kGlossyExponent, kTransmission, kEmission, kOpacity };
+inline constexpr std::size_t kTextureUses = 6;
+using MaterialTextures = std::array<std::shared_ptr<TextureObject>, kTextureUses>;
+
+class MaterialObject {
+  public:
+    static constexpr ObjectKind kKind = ObjectKind::kMaterial;
+
+    MaterialObject(std::shared_ptr<Context> context, MaterialDescription description,
+                   MaterialTextures textures)
+        : m_context(std::move(context)),
+          m_description(std::move(description)),
+          m_textures(std::move(textures)) {}
+
+    const std::shared_ptr<Context>& context() const { return m_context; }
+    // Its texture indices are not filled: they belong to a scene.
+    const MaterialDescription& description() const { return m_description; }
+    const MaterialTextures& textures() const { return m_textures; }
+
+  private:
+    std::shared_ptr<Context> m_context;
+    MaterialDescription m_description;
+    MaterialTextures m_textures;
+};
+
+// Errors: CallError ARGUMENT naming member, value and range; HANDLE for a texture that is not live.
+std::shared_ptr<MaterialObject> makeMaterial(std::shared_ptr<Context> context,
+                                             const PmrMaterialDesc& desc);
+
+}  // namespace pm::plugin

@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/session/render_identity.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <memory>
+#include <span>
+#include <string_view>
+#include <variant>
+
+#include "plugin/session/setting_table.h"
+#include "plugin/values/call_error.h"
+#include "plugin/values/hasher.h"
+#include "plugin/values/version.h"
+
+namespace pm::plugin {
+
+namespace {
+
+constexpr std::uint32_t kPassesOfLevel1 = 4;
+constexpr const char* kCameraPart = "camera";
+
+void addMesh(Hasher& hasher, const TriangleMesh& mesh) {
+    hasher.addArray<Vec3f>(mesh.positions);
+    hasher.addArray<TriangleMesh::Corners>(mesh.triangles);
+    hasher.addArray<Vec3f>(mesh.normals);
+    hasher.addArray<TriangleMesh::Corners>(mesh.normalIndices);
+    hasher.addArray<Vec2f>(mesh.texcoords);
+    hasher.addArray<TriangleMesh::Corners>(mesh.texcoordIndices);
+    hasher.addArray<std::uint32_t>(mesh.materials);
+}
+
+void addMaterial(Hasher& hasher, const MaterialDescription& m) {
+    hasher.add(m.kind);
+    hasher.add(m.fresnelMirror);
+    hasher.add(m.diffuse);
+    hasher.add(m.glossy);
+    hasher.add(m.glossyExponent);
+    hasher.add(m.ior);
+    hasher.add(m.transmission);
+    hasher.add(m.emission);
+    hasher.add(m.transparency);
+    for (const std::int32_t texture : {m.diffuseTexture, m.glossyTexture, m.glossyExponentTexture,
+                                       m.transmissionTexture, m.emissionTexture, m.opacityTexture})
+        hasher.add(texture);
+}
+
+void addInstance(Hasher& hasher, const InstanceDescription& instance) {
+    hasher.add(instance.shape.index());
+    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape)) {
+        addMesh(hasher, **mesh);
+    } else {
+        const auto& sphere = std::get<SphereShape>(instance.shape);
+        hasher.add(sphere.centre);
+        hasher.add(sphere.radius);
+    }
+    hasher.addArray<double>(instance.transform);
+    hasher.addArray<std::uint32_t>(instance.materials);
+    // Only where there is some: scenes without keep the checksums that they have had.
+    if (instance.hiddenFrom != 0) hasher.add(instance.hiddenFrom);
+}
+
+// Only what is there: scenes without keep the checksums that they have had.
+void addLightsOfDirection(Hasher& hasher, const SceneDescription& d) {
+    for (const SpotLightDescription& spot : d.spotLights) {
+        hasher.add("spot");
+        hasher.add(spot.position);
+        hasher.add(spot.direction);
+        hasher.add(spot.intensity);
+        hasher.add(spot.coneAngle);
+        hasher.add(spot.coneFalloff);
+    }
+    for (const DirectionalLightDescription& light : d.directionalLights) {
+        hasher.add("directional");
+        hasher.add(light.direction);
+        hasher.add(light.irradiance);
+        hasher.add(light.angularRadius);
+    }
+    if (!d.environment) return;
+    hasher.add("environment");
+    hasher.add(d.environment->radiance);
+    hasher.add(d.environment->texture);
+    hasher.addArray<double>(d.environment->toWorld);
+}
+
+void addTexture(Hasher& hasher, const TexturePicture& picture, const CancelCheck& cancel) {
+    const bool isKnown = picture.texelHash != std::array<std::uint64_t, 2>{};
+    hasher.addArray<std::uint64_t>(isKnown ? picture.texelHash
+                                           : texelHash(picture.fileName, cancel));
+    hasher.add(static_cast<int>(picture.wrapS));
+    hasher.add(static_cast<int>(picture.wrapT));
+    for (const float v : {picture.uvScale.x, picture.uvScale.y, picture.uvOffset.x,
+                          picture.uvOffset.y, picture.gain, picture.base})
+        hasher.add(v);
+}
+
+}  // namespace
+
+Identity sceneIdentity(const Scene& scene, const SceneTextures& textures,
+                       const CancelCheck& cancel) {
+    const SceneDescription& d = scene.description();
+    Identity identity = {{"instruction set", scene.isa()}, {"rendering space", d.renderingSpace}};
+    const auto part = [&](const char* name, auto feed) {
+        identity.push_back({name, checksumOf(feed)});
+    };
+    part("colour matrix", [&](Hasher& hasher) { hasher.addArray<double>(d.rgbToXyz); });
+    part("geometry", [&](Hasher& hasher) {
+        hasher.add(d.instances.size());
+        for (const InstanceDescription& instance : d.instances) {
+            cancel.throwIfSet("hashing the scene");
+            addInstance(hasher, instance);
+        }
+    });
+    part("materials", [&](Hasher& hasher) {
+        hasher.add(d.materials.size());
+        for (const MaterialDescription& material : d.materials) addMaterial(hasher, material);
+    });
+    part("lights", [&](Hasher& hasher) {
+        hasher.add(d.pointLights.size());
+        for (const PointLightDescription& light : d.pointLights) {
+            hasher.add(light.position);
+            hasher.add(light.intensity);
+        }
+        addLightsOfDirection(hasher, d);
+    });
+    part(kCameraPart, [&](Hasher& hasher) {
+        hasher.add(d.camera.has_value());
+        if (!d.camera) return;
+        hasher.addArray<double>(d.camera->cameraToWorld);
+        hasher.add(d.camera->verticalFieldOfView);
+        hasher.add(d.camera->pixelAspect);
+    });
+    part("textures", [&](Hasher& hasher) {
+        for (const TexturePicture* picture : textures.pictures())
+            addTexture(hasher, *picture, cancel);
+    });
+    return identity;
+}
+
+Identity settingsIdentity(const SettingValues& settings) {
+    Identity identity = {{"version", versionText()}};
+    for (const SettingSpec& spec : settingSpecs()) {
+        if (!spec.changesPixels || spec.id == Setting::kPasses) continue;
+        identity.push_back({fmt::format("setting {}", spec.name), settings.text(spec.id)});
+    }
+    // Of the one sample of levels 0 and 1, the number of passes says in which of them it comes.
+    const RenderSettings render = settings.toRenderSettings();
+    const bool beginsWithGroups = render.hasGroups() && render.isAdaptive();
+    if (render.aaLevel <= 1 && !beginsWithGroups && render.passes < kPassesOfLevel1)
+        identity.push_back({"passes below level 2", fmt::format("{}", render.passes)});
+    return identity;
+}
+
+Identity photonIdentity(const Identity& scene, const SettingValues& settings, const Plan& plan) {
+    Identity identity = {{"version", versionText()}};
+    std::ranges::copy_if(scene, std::back_inserter(identity),
+                         [](const IdentityPart& part) { return part.name != kCameraPart; });
+    identity.push_back({"setting seed", settings.text(Setting::kSeed)});
+    // Not the setting, which may be left to the plan, and the plan to the size of the frame.
+    identity.push_back({"photons a pass", fmt::format("{} global, {} caustic", plan.globalPhotons,
+                                                      plan.causticPhotons)});
+    identity.push_back({"share of caustic photons followed on", fmt::format("{}", plan.descent)});
+    return identity;
+}
+
+Identity frameIdentity(const SettingValues& settings) {
+    const Rect window = settings.window();
+    Identity identity = {
+        {"window", fmt::format("{},{},{},{}", window.x0, window.y0, window.x1, window.y1)}};
+    std::string layers;
+    for (const char* layer : {"albedo", "N", "Z"})
+        if (settings.wantsLayer(layer)) layers += fmt::format("{} ", layer);
+    identity.push_back({"layers", layers});
+    std::string_view lines = settings.word(Setting::kHostIdentity);
+    while (!lines.empty()) {
+        const std::string_view line = lines.substr(0, lines.find('\n'));
+        lines.remove_prefix(std::min(lines.size(), line.size() + 1));
+        const std::size_t colon = std::min(line.find(": "), line.size());
+        if (line.empty()) continue;
+        identity.push_back({std::string(line.substr(0, colon)),
+                            std::string(line.substr(std::min(colon + 2, line.size())))});
+    }
+    return identity;
+}
+
+}  // namespace pm::plugin

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/textures/scene_textures.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace pm::plugin {
+
+std::int32_t SceneTextures::add(const std::shared_ptr<const Texture>& texture) {
+    if (!texture) return kNoTexture;
+    const auto found = std::find(m_textures.begin(), m_textures.end(), texture);
+    const auto index = static_cast<std::int32_t>(found - m_textures.begin());
+    if (found == m_textures.end()) m_textures.push_back(texture);
+    return index;
+}
+
+std::vector<const TexturePicture*> SceneTextures::pictures() const {
+    std::vector<const TexturePicture*> pictures;
+    for (const auto& texture : m_textures) pictures.push_back(&texture->picture);
+    return pictures;
+}
+
+std::uint64_t SceneTextures::texelBytes() const {
+    std::uint64_t bytes = 0;
+    for (const TexturePicture* picture : pictures())
+        bytes += std::uint64_t{picture->width} * picture->height *
+                 static_cast<std::uint64_t>(picture->channelCount) * sizeof(float);
+    return bytes + bytes / 3;
+}
+
+Texel SceneTextures::lookUp(std::int32_t index, Vec2f uv, float width) const {
+    Texel texel;
+    const Texture& texture = *m_textures[static_cast<std::size_t>(index)];
+    if (!texture.system->lookUp(texture.picture, uv, width, texel))
+        m_failures.fetch_add(1, std::memory_order_relaxed);
+    return texel;
+}
+
+Texel SceneTextures::lookUpOfLight(std::int32_t index, Vec2f uv) const {
+    Texel texel;
+    const Texture& texture = *m_textures[static_cast<std::size_t>(index)];
+    if (!texture.system->lookUpOfLight(texture.picture, uv, texel))
+        m_failures.fetch_add(1, std::memory_order_relaxed);
+    return texel;
+}
+
+BadTexels SceneTextures::badTexels(std::int32_t index, const CancelCheck& cancel) const {
+    const Texture& texture = *m_textures[static_cast<std::size_t>(index)];
+    return texture.system->badTexels(texture.picture, cancel);
+}
+
+std::string SceneTextures::name(std::int32_t index) const {
+    const std::string& file = m_textures[static_cast<std::size_t>(index)]->picture.fileName;
+    return file.substr(file.find_last_of('/') + 1);
+}
+
+std::array<std::uint32_t, 2> SceneTextures::texels(std::int32_t index) const {
+    const TexturePicture& picture = m_textures[static_cast<std::size_t>(index)]->picture;
+    const auto over = [](std::uint32_t texels, float scale) {
+        return static_cast<std::uint32_t>(std::clamp(
+            std::ceil(static_cast<double>(texels) * std::abs(static_cast<double>(scale))), 1.0,
+            1e6));
+    };
+    return {over(picture.width, picture.uvScale.x), over(picture.height, picture.uvScale.y)};
+}
+
+std::uint64_t SceneTextures::failureCount() const {
+    return m_failures.load(std::memory_order_relaxed);
+}
+
+}  // namespace pm::plugin

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/textures/texture_system.h"
+
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+#include <xxhash.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <new>
+#include <vector>
+
+#include "plugin/textures/picture_file.h"
+#include "plugin/values/call_error.h"
+
+namespace pm::plugin {
+
+namespace {
+
+constexpr float kFirstMegabytes = 256.0f;  // before a render says
+constexpr float kLeastMegabytes = 64.0f;
+// Pictures that are not tiled are cut into tiles of this size when they are read.
+constexpr int kTilePixels = 64;
+
+OIIO::TextureOpt::Wrap toOpenImageIo(Wrap wrap) {
+    switch (wrap) {
+        case Wrap::kRepeat:
+            break;
+        case Wrap::kClamp:
+            return OIIO::TextureOpt::WrapClamp;
+        case Wrap::kMirror:
+            return OIIO::TextureOpt::WrapMirror;
+        case Wrap::kBlack:
+            return OIIO::TextureOpt::WrapBlack;
+    }
+    return OIIO::TextureOpt::WrapPeriodic;
+}
+
+[[noreturn]] void throwUnreadable(const std::string& fileName, const std::string& why) {
+    throw CallError(CallStatus::kIo, fmt::format("texture {} can't be read: {}", fileName, why));
+}
+
+Texel toTexel(const std::array<float, 4>& values, int channelCount) {
+    switch (channelCount) {
+        case 1:
+            return {values[0], values[0], values[0], 1.0f};
+        case 2:
+            return {values[0], values[0], values[0], values[1]};
+        case 3:
+            return {values[0], values[1], values[2], 1.0f};
+        default:
+            return {values[0], values[1], values[2], values[3]};
+    }
+}
+
+// Origin upper left, as pictures are stored.
+Vec2f placeIn(const TexturePicture& picture, Vec2f uv) {
+    return {uv.x * picture.uvScale.x + picture.uvOffset.x,
+            1.0f - (uv.y * picture.uvScale.y + picture.uvOffset.y)};
+}
+
+Texel withGain(const TexturePicture& picture, Texel texel) {
+    texel.r = picture.base + picture.gain * texel.r;
+    texel.g = picture.base + picture.gain * texel.g;
+    texel.b = picture.base + picture.gain * texel.b;
+    return texel;
+}
+
+struct FreeHash {
+    void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
+};
+
+bool isFinite(const Texel& texel) {
+    return std::isfinite(texel.r) && std::isfinite(texel.g) && std::isfinite(texel.b) &&
+           std::isfinite(texel.a);
+}
+
+}  // namespace
+
+std::array<std::uint64_t, 2> texelHash(const std::string& fileName, const CancelCheck& cancel) {
+    const std::unique_ptr<OIIO::ImageInput> input = OIIO::ImageInput::open(fileName);
+    if (!input) throwUnreadable(fileName, OIIO::geterror());
+    const OIIO::ImageSpec& spec = input->spec();
+    const std::array<std::int64_t, 4> shape = {spec.width, spec.height, spec.nchannels,
+                                               spec.format.basetype};
+    const XXH128_hash_t ofShape = XXH3_128bits(shape.data(), sizeof shape);
+    const std::unique_ptr<XXH3_state_t, FreeHash> state(XXH3_createState());
+    if (!state) throw std::bad_alloc();
+    XXH3_128bits_reset_withSeed(state.get(), ofShape.low64);
+    // A few rows at a time: the whole may not fit.
+    const int step = spec.tile_height > 0 ? spec.tile_height : kTilePixels;
+    std::vector<std::byte> texels;
+    for (int row = 0; row < spec.height; row += step) {
+        cancel.throwIfSet("reading texels");
+        const int y0 = spec.y + row, y1 = y0 + std::min(step, spec.height - row);
+        texels.resize(static_cast<std::size_t>(y1 - y0) * spec.scanline_bytes(true));
+        const bool good =
+            spec.tile_width > 0
+                ? input->read_tiles(0, 0, spec.x, spec.x + spec.width, y0, y1, 0, 1, 0,
+                                    spec.nchannels, OIIO::TypeDesc::UNKNOWN, texels.data())
+                : input->read_scanlines(0, 0, y0, y1, 0, 0, spec.nchannels, OIIO::TypeDesc::UNKNOWN,
+                                        texels.data());
+        if (!good) throwUnreadable(fileName, input->geterror());
+        XXH3_128bits_update(state.get(), texels.data(), texels.size());
+    }
+    const XXH128_hash_t hash = XXH3_128bits_digest(state.get());
+    return {hash.low64, hash.high64};
+}
+
+TextureSystem::~TextureSystem() {
+    if (m_system != nullptr) OIIO::TextureSystem::destroy(m_system);
+}
+
+OIIO::TextureSystem& TextureSystem::system() {
+    std::call_once(m_once, [this] {
+        OIIO::TextureSystem* made = OIIO::TextureSystem::create(false);
+        if (made == nullptr) throw CallError(CallStatus::kInternal, "no texture system");
+        made->attribute("max_memory_MB", kFirstMegabytes);
+        made->attribute("autotile", kTilePixels);
+        made->attribute("automip", 0);
+        made->attribute("accept_untiled", 1);
+        made->attribute("accept_unmipped", 1);
+        // Together with autotile it trips an assertion of the library (2.4.7) and ends the process.
+        made->attribute("forcefloat", 0);
+        made->attribute("unassociatedalpha", 0);
+        made->attribute("gray_to_rgb", 0);
+        made->attribute("flip_t", 0);
+        made->attribute("substitute_image", "");
+        made->attribute("searchpath", "");
+        m_system = made;
+    });
+    return *m_system;
+}
+
+void TextureSystem::holdAtMost(std::uint64_t bytes) {
+    if (bytes == 0) return;
+    const float megabytes = static_cast<float>(bytes) / (1024.0f * 1024.0f);
+    system().attribute("max_memory_MB", std::max(megabytes, kLeastMegabytes));
+}
+
+TexturePicture TextureSystem::open(const TextureDescription& description) {
+    TexturePicture picture;
+    picture.fileName = description.fileName;
+    picture.wrapS = toOpenImageIo(description.wrapS);
+    picture.wrapT = toOpenImageIo(description.wrapT);
+    picture.uvScale = description.uvScale;
+    picture.uvOffset = description.uvOffset;
+    picture.gain = description.gain;
+    picture.base = description.base;
+    picture.texelHash = description.texelHash;
+
+    checkIsRegularFile(picture.fileName);
+    OIIO::TextureSystem& textures = system();
+    const OIIO::ustring name(picture.fileName);
+    picture.handle = textures.get_texture_handle(name);
+    std::array<int, 2> size{};
+    const bool good =
+        picture.handle != nullptr && textures.good(picture.handle) &&
+        textures.get_texture_info(name, 0, OIIO::ustring("channels"), OIIO::TypeInt,
+                                  &picture.channelCount) &&
+        textures.get_texture_info(name, 0, OIIO::ustring("resolution"),
+                                  OIIO::TypeDesc(OIIO::TypeDesc::INT, 2), size.data());
+    const std::string reason = textures.geterror();
+    if (!good || picture.channelCount < 1)
+        throw CallError(CallStatus::kIo, fmt::format("texture {}: {}", picture.fileName,
+                                                     reason.empty() ? "can't be read" : reason));
+    picture.width = static_cast<std::uint32_t>(std::max(1, size[0]));
+    picture.height = static_cast<std::uint32_t>(std::max(1, size[1]));
+    return picture;
+}
+
+bool TextureSystem::lookUp(const TexturePicture& picture, Vec2f uv, float width,
+                           Texel& texel) const {
+    texel = {0.0f, 0.0f, 0.0f, 0.0f};
+    const auto [s, t] = placeIn(picture, uv);
+    if (!std::isfinite(s) || !std::isfinite(t) || !std::isfinite(width)) return false;
+    OIIO::TextureOpt options;
+    options.swrap = picture.wrapS;
+    options.twrap = picture.wrapT;
+    options.mipmode = OIIO::TextureOpt::MipModeTrilinear;
+    options.interpmode = OIIO::TextureOpt::InterpBilinear;
+    const float widthS = std::abs(width * picture.uvScale.x);
+    const float widthT = std::abs(width * picture.uvScale.y);
+    const int channelCount = std::min(picture.channelCount, 4);
+    std::array<float, 4> values{};
+    const bool good = m_system->texture(picture.handle, m_system->get_perthread_info(), options, s,
+                                        t, widthS, 0.0f, 0.0f, widthT, channelCount, values.data());
+    if (!good) {
+        m_system->geterror();  // or the texts pile up
+        return false;
+    }
+    const Texel found = withGain(picture, toTexel(values, channelCount));
+    if (!isFinite(found)) return false;
+    texel = found;
+    return true;
+}
+
+bool TextureSystem::lookUpOfLight(const TexturePicture& picture, Vec2f uv, Texel& texel) const {
+    texel = {0.0f, 0.0f, 0.0f, 0.0f};
+    const auto [s, t] = placeIn(picture, uv);
+    if (!std::isfinite(s) || !std::isfinite(t)) return false;
+    OIIO::TextureOpt options;
+    options.swrap = picture.wrapS;
+    options.twrap = picture.wrapT;
+    options.mipmode = OIIO::TextureOpt::MipModeNoMIP;
+    options.interpmode = OIIO::TextureOpt::InterpClosest;
+    const auto width = static_cast<float>(picture.width),
+               height = static_cast<float>(picture.height);
+    const float x = s * width - 0.5f, y = t * height - 0.5f;
+    const float x0 = std::floor(x), y0 = std::floor(y);
+    const int channelCount = std::min(picture.channelCount, 4);
+    for (const float j : {0.0f, 1.0f})
+        for (const float i : {0.0f, 1.0f}) {
+            std::array<float, 4> values{};
+            if (!m_system->texture(picture.handle, m_system->get_perthread_info(), options,
+                                   (x0 + i + 0.5f) / width, (y0 + j + 0.5f) / height, 0.0f, 0.0f,
+                                   0.0f, 0.0f, channelCount, values.data())) {
+                m_system->geterror();  // or the texts pile up
+                return false;
+            }
+            const Texel found = withGain(picture, toTexel(values, channelCount));
+            const float weight =
+                (i > 0 ? x - x0 : 1.0f - (x - x0)) * (j > 0 ? y - y0 : 1.0f - (y - y0));
+            const Texel light = asLight(found);
+            texel.r += weight * light.r;
+            texel.g += weight * light.g;
+            texel.b += weight * light.b;
+            texel.a += weight * light.a;
+        }
+    return true;
+}
+
+BadTexels TextureSystem::badTexels(const TexturePicture& picture, const CancelCheck& cancel) const {
+    constexpr std::uint32_t kRows = kTilePixels;
+    const int channelCount = std::min(picture.channelCount, 4);
+    const auto channels = static_cast<std::size_t>(channelCount);
+    std::vector<float> texels(std::size_t{picture.width} * kRows * channels);
+    OIIO::TextureOpt options;
+    BadTexels bad;
+    for (std::uint32_t row = 0; row < picture.height; row += kRows) {
+        cancel.throwIfSet("looking at a light's texels");
+        const std::uint32_t rows = std::min(kRows, picture.height - row);
+        if (!m_system->get_texels(picture.handle, m_system->get_perthread_info(), options, 0, 0,
+                                  static_cast<int>(picture.width), static_cast<int>(row),
+                                  static_cast<int>(row + rows), 0, 1, 0, channelCount,
+                                  OIIO::TypeDesc::FLOAT, texels.data()))
+            throwUnreadable(picture.fileName, m_system->geterror());
+        const std::size_t count = std::size_t{picture.width} * rows;
+        for (std::size_t i = 0; i < count; ++i) {
+            std::array<float, 4> values{};
+            std::copy_n(&texels[i * channels], channels, values.begin());
+            const Texel texel = withGain(picture, toTexel(values, channelCount));
+            if (!std::isfinite(texel.r) || !std::isfinite(texel.g) || !std::isfinite(texel.b))
+                ++bad.notFinite;
+            else if (texel.r + texel.g + texel.b < 0.0f)
+                ++bad.negative;
+        }
+    }
+    return bad;
+}
+
+}  // namespace pm::plugin
