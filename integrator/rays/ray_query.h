@@ -12,7 +12,8 @@
 #include <limits>
 #include <span>
 
-#include "integrator/rays/ray.h"
+#include "integrator/shapes/roots.h"
+#include "integrator/values/ray.h"
 #include "integrator/values/transform.h"
 #include "integrator/values/vec.h"
 
@@ -51,14 +52,6 @@ struct RayQuery {
     static RayQuery& of(RTCIntersectContext* context) {
         return *reinterpret_cast<RayQuery*>(context);
     }
-};
-
-// Where a line meets a curved or exact primitive, nearest first.
-struct RayRoots {
-    std::array<double, 2> t;
-    std::uint32_t count = 0;
-
-    void add(double root) { t[count++] = root; }
 };
 
 // Embree's functions for a kind of shape of ours. Rays are traced one by one, so N is 1 and a

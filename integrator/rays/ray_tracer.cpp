@@ -73,7 +73,7 @@ struct RayTracer::Impl {
     std::shared_ptr<RayDevice> device;
     RTCScene scene = nullptr;
     // Deques: Embree keeps pointers to their elements.
-    std::deque<UserSphere> spheres;
+    std::deque<UserCurved> curved;
     std::deque<ExactTriangles> exact;
     std::deque<std::vector<std::array<std::uint32_t, 3>>> othersThanExact;
     std::deque<Transform> transforms;
@@ -121,11 +121,11 @@ std::uint32_t RayTracer::addTriangles(std::span<const Vec3f> positions,
     return m_impl->added(id, nullptr);
 }
 
-std::uint32_t RayTracer::addSphere(const Vec3d& centre, double radius, Viewers seenBy) {
-    m_impl->spheres.push_back({centre, radius});
+std::uint32_t RayTracer::addCurved(const CurvedShape& shape, Viewers seenBy) {
+    m_impl->curved.push_back({shape});
     const std::uint32_t id = attachUserGeometry(m_impl->device->handle(), m_impl->scene,
-                                                m_impl->spheres.back(), 1, seenBy);
-    m_impl->device->check("adding a sphere");
+                                                m_impl->curved.back(), 1, seenBy);
+    m_impl->device->check("adding a curved shape");
     return m_impl->added(id, nullptr);
 }
 

@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "integrator/rays/exact_triangle.h"
-#include "integrator/rays/ray.h"
 #include "integrator/rays/shared_mesh.h"
-#include "integrator/rays/sphere.h"
+#include "integrator/shapes/curved_shape.h"
 #include "integrator/values/cancel_check.h"
+#include "integrator/values/ray.h"
 #include "integrator/values/transform.h"
 #include "integrator/values/vec.h"
 
@@ -36,15 +36,15 @@ class RayTracer {
     RayTracer(const RayTracer&) = delete;
     RayTracer& operator=(const RayTracer&) = delete;
 
-    // Shapes are copied (spheres) or referred to (meshes: positions must stay until destruction,
-    // and must be followed by at least 4 readable bytes, which a spare last element gives).
-    // exact: those of the triangles that are to be intersected in double, copied.
-    // seenBy: rays that meet them.
+    // Shapes are copied (curved ones) or referred to (meshes: positions must stay until
+    // destruction, and must be followed by at least 4 readable bytes, which a spare last element
+    // gives). exact: those of the triangles that are to be intersected in double, copied. seenBy:
+    // rays that meet them.
     std::uint32_t addTriangles(std::span<const Vec3f> positions,
                                std::span<const std::array<std::uint32_t, 3>> triangles,
                                std::span<const ExactTriangle> exact = {},
                                Viewers seenBy = kAllRays);
-    std::uint32_t addSphere(const Vec3d& centre, double radius, Viewers seenBy = kAllRays);
+    std::uint32_t addCurved(const CurvedShape& shape, Viewers seenBy = kAllRays);
     // mesh: of this tracer's instruction set. toScene: object to scene, of any scale but 0.
     std::uint32_t addInstance(std::shared_ptr<const SharedMesh> mesh, const Transform& toScene,
                               Viewers seenBy = kAllRays);

@@ -12,28 +12,21 @@
 
 #include "integrator/rays/exact_triangle.h"
 #include "integrator/rays/ray_query.h"
-#include "integrator/rays/sphere.h"
+#include "integrator/shapes/curved_shape.h"
 
 namespace pm {
 
-struct UserSphere {
+struct UserCurved {
     static constexpr bool kIsCurved = true;
 
-    Vec3d centre;
-    double radius;
+    CurvedShape shape;
 
     void bounds(std::uint32_t, RTCBounds& bounds) const {
-        setBounds(bounds, centre - Vec3d(radius), centre + Vec3d(radius));
+        const Box3d box = shape.bounds();
+        setBounds(bounds, box.lo, box.hi);
     }
     RayRoots roots(std::uint32_t, const RayQuery&, const RTCRay& ray) const {
-        RayRoots roots;
-        SphereRoots both;
-        if (!findSphereRoots({ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z},
-                             centre, radius, both))
-            return roots;
-        roots.add(both.near);
-        roots.add(both.far);
-        return roots;
+        return shape.roots({ray.org_x, ray.org_y, ray.org_z}, {ray.dir_x, ray.dir_y, ray.dir_z});
     }
     RayHit name(std::uint32_t primitive, std::uint32_t geometry) const {
         return {geometry, primitive};

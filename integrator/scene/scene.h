@@ -203,7 +203,8 @@ class Scene {
                            const CancelCheck& cancel) const;
     // For the powers of textured lamps, and where on them light is.
     void lookAtTextures(const CancelCheck& cancel);
-    void surfaceOnSphere(const ShapeRecord& shape, const Vec3d& direction, Surface& surface) const;
+    // Which surface it is.
+    static void nameSurface(const ShapeRecord& shape, std::uint32_t primitive, Surface& surface);
 
     SceneDescription m_description;
     Materials m_materials{m_description.materials, m_description.textures.get()};

@@ -98,18 +98,6 @@ class Scene::Builder {
         std::uint32_t slots = 1;
         if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape)) {
             for (const std::uint32_t slot : (*mesh)->materials) slots = std::max(slots, slot + 1);
-        } else {
-            const auto& sphere = std::get<SphereShape>(instance.shape);
-            if (!(sphere.radius > 0) || !std::isfinite(sphere.radius) || !isFinite(sphere.centre))
-                throw Error(Status::kInvalidScene,
-                            fmt::format("sphere '{}' has radius {}; it must be > 0 and finite",
-                                        instance.name, sphere.radius));
-            if (uniformScale(instance.transform) == 0.0)
-                throw Error(Status::kUnsupported,
-                            fmt::format("sphere '{}' is under a transform that makes it an "
-                                        "ellipsoid; rotation, translation and uniform scale are "
-                                        "allowed",
-                                        instance.name));
         }
         if (instance.materials.size() < slots)
             throw Error(Status::kInvalidScene,
@@ -165,10 +153,9 @@ class Scene::Builder {
                     visit(box);
                 }
             } else {
-                const auto& sphere = std::get<SphereShape>(instance.shape);
-                const Vec3d centre = transformPoint(transform, sphere.centre);
-                const Vec3d r(sphere.radius * uniformScale(transform));
-                visit(Box3d{centre - r, centre + r});
+                const bool hasTexture = false;
+                visit(
+                    CurvedShape(instance.shape, transform, {}, hasTexture, instance.name).bounds());
             }
         }
     }
@@ -212,15 +199,8 @@ class Scene::Builder {
             else
                 addMesh(*mesh, instance.transform, record);
         } else {
-            const auto& sphere = std::get<SphereShape>(instance.shape);
-            const double scale = uniformScale(instance.transform);
-            record.sphere.centre =
-                transformPoint(instance.transform, sphere.centre) - m_scene.m_centre;
-            record.sphere.radius = sphere.radius * scale;
-            const Transform& m = instance.transform;
-            for (std::size_t i = 0; i < 3; ++i)
-                record.sphereAxes[i] = normalize(Vec3d{m[i], m[i + 4], m[i + 8]});
-            record.isTexturedSphere = hasTexture(m_scene.material(record.materials[0]));
+            record.curved.emplace(instance.shape, instance.transform, m_scene.m_centre,
+                                  hasTexture(m_scene.material(record.materials[0])), instance.name);
         }
         m_scene.m_shapes.push_back(std::move(record));
     }
@@ -298,7 +278,7 @@ class Scene::Builder {
     void forEachSize(const Visit& visit) {
         for (ShapeRecord& record : m_scene.m_shapes) {
             if (!record.mesh) {
-                visit(record, 0u, 2 * record.sphere.radius);
+                visit(record, 0u, record.curved->size());
                 continue;
             }
             if (record.placement) continue;
@@ -392,8 +372,7 @@ class Scene::Builder {
         for (std::uint32_t shape = 0; shape < m_scene.m_shapes.size(); ++shape) {
             const ShapeRecord& record = m_scene.m_shapes[shape];
             if (!record.mesh && record.visible.empty()) {
-                m_scene.m_tracer.addSphere(record.sphere.centre, record.sphere.radius,
-                                           seenBy(shape));
+                m_scene.m_tracer.addCurved(*record.curved, seenBy(shape));
                 continue;
             }
             if (record.placement) {
@@ -414,9 +393,10 @@ class Scene::Builder {
     void lookForCloseSpheres() {
         std::vector<GlassSphere> spheres;
         for (const ShapeRecord& record : m_scene.m_shapes)
-            if (!record.mesh &&
+            if (!record.mesh && record.curved->sphere() &&
                 m_scene.material(record.materials[0]).kind == MaterialKind::kDielectric)
-                spheres.push_back({record.sphere.centre, record.sphere.radius});
+                spheres.push_back({record.curved->sphere()->sphere().centre,
+                                   record.curved->sphere()->sphere().radius});
         if (const std::size_t count = countCloseSpheres(std::move(spheres)); count > 0)
             m_scene.m_notices.push_back(
                 {NoticeCode::kDegenerateGeometry,
@@ -463,14 +443,17 @@ class Scene::Builder {
                 return emits(m_scene.material(material));
             }))
             return;
+        if (record.curved && !record.curved->sphere())
+            throw Error(Status::kUnsupported,
+                        fmt::format("instance '{}' has a material that emits; meshes and spheres "
+                                    "may shine",
+                                    m_scene.m_description.instances[shape].name));
         const std::size_t primitives = record.mesh ? record.mesh->triangles.size() : 1;
         for (std::uint32_t i = 0; i < primitives; ++i) {
             goOn();
             const std::uint32_t material = record.materialOf(i);
             if (!emits(m_scene.material(material))) continue;
-            const double area = record.mesh
-                                    ? triangleArea(record, i)
-                                    : 4 * kPiDouble * record.sphere.radius * record.sphere.radius;
+            const double area = record.mesh ? triangleArea(record, i) : record.curved->area();
             if (!(area > 0)) continue;
             if (record.lightOfPrimitive.empty())
                 record.lightOfPrimitive.assign(primitives, kNoLight);

@@ -74,13 +74,6 @@ double distanceTo(const Box3d& box, const Vec3d& place) {
 
 }  // namespace
 
-void Box3d::grow(const Box3d& other) {
-    for (int axis = 0; axis < 3; ++axis) {
-        lo[axis] = std::min(lo[axis], other.lo[axis]);
-        hi[axis] = std::max(hi[axis], other.hi[axis]);
-    }
-}
-
 std::optional<Box3d> findCore(const Box3d& whole, const EachBox& forEachBox,
                               const std::optional<Vec3d>& eye) {
     const double most = maxAbsComponent(whole.size()) / kCoreTimes;

@@ -6,18 +6,9 @@
 #include <limits>
 #include <optional>
 
-#include "integrator/values/vec.h"
+#include "integrator/values/box.h"
 
 namespace pm {
-
-struct Box3d {
-    Vec3d lo{std::numeric_limits<double>::infinity()}, hi{-std::numeric_limits<double>::infinity()};
-
-    bool empty() const { return !(lo.x <= hi.x); }
-    Vec3d size() const { return hi - lo; }
-    Vec3d middle() const { return (lo + hi) * 0.5; }
-    void grow(const Box3d& other);
-};
 
 // Calls what it is given with the box of each triangle and sphere, always in the same order.
 using EachBox = std::function<void(const std::function<void(const Box3d&)>&)>;

@@ -9,10 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "integrator/cameras/camera_description.h"
 #include "integrator/lights/light_description.h"
 #include "integrator/materials/material_description.h"
-#include "integrator/rays/ray.h"
 #include "integrator/shapes/shape.h"
+#include "integrator/values/ray.h"
 #include "integrator/values/transform.h"
 
 namespace pm {
@@ -24,13 +25,6 @@ struct InstanceDescription {
     std::string name;
     std::uint32_t id = 0;
     Viewers hiddenFrom = 0;
-};
-
-// A pinhole camera that looks along -z of its transform, +y up, +x right.
-struct CameraDescription {
-    Transform cameraToWorld = kIdentityTransform;
-    double verticalFieldOfView = 0.7;  // radians, in (0, pi)
-    double pixelAspect = 1.0;          // width of a pixel over its height
 };
 
 struct SceneDescription {

@@ -4,8 +4,9 @@
 // double and rounded once, so that the error is known (see surfaceOffset).
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 
-#include "integrator/sampling/pinned_math.h"
 #include "integrator/sampling/warps.h"
 #include "integrator/scene/coincident_faces.h"
 #include "integrator/scene/scene.h"
@@ -73,19 +74,17 @@ Vec3f interpolateNormal(const Vec3f& n0, const Vec3f& n1, const Vec3f& n2, float
     return dot(n, geometricNormal) > 0.0f ? n : geometricNormal;
 }
 
-// Where in a latitude-longitude picture a point of a sphere lies; see SphereShape.
-Vec2f textureOnSphere(const Vec3d (&axes)[3], const Vec3d& normal) {
-    const double x = dot(axes[0], normal), y = dot(axes[1], normal), z = dot(axes[2], normal);
-    return {static_cast<float>(0.5 + pinnedAtan2Turns(x, z)),
-            static_cast<float>(2.0 * pinnedAtan2Turns(std::sqrt(x * x + z * z), -y))};
-}
-
-// That of both roots which a hit's distance was rounded from.
-double rootOf(const SphereShape& sphere, const Vec3d& origin, const Vec3d& direction, float t) {
+// That of a line's roots which a hit's distance was rounded from.
+double rootOf(const CurvedShape& shape, const Vec3d& origin, const Vec3d& direction, float t) {
     const auto told = static_cast<double>(t);
-    SphereRoots roots;
-    if (!findSphereRoots(origin, direction, sphere.centre, sphere.radius, roots)) return told;
-    return std::abs(roots.near - told) <= std::abs(roots.far - told) ? roots.near : roots.far;
+    const RayRoots roots = shape.roots(origin, direction);
+    double best = told, off = std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i < roots.count; ++i)
+        if (std::abs(roots.t[i] - told) < off) {
+            best = roots.t[i];
+            off = std::abs(best - told);
+        }
+    return best;
 }
 
 }  // namespace
@@ -135,8 +134,9 @@ void Scene::surfaceAt(const Ray& ray, const RayHit& hit, Surface& surface) const
         return;
     }
     const Vec3d origin(ray.origin), direction(ray.direction);
-    const Vec3d point = origin + direction * rootOf(record.sphere, origin, direction, hit.t);
-    surfaceOnSphere(record, point - record.sphere.centre, surface);
+    const Vec3d point = origin + direction * rootOf(*record.curved, origin, direction, hit.t);
+    record.curved->surfaceNear(point, surface);
+    nameSurface(record, 0, surface);
 }
 
 void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive,
@@ -162,24 +162,13 @@ void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive
         const float f0 = 1.0f - f1 - f2;
         surface.uv = {t0.x * f0 + t1.x * f1 + t2.x * f2, t0.y * f0 + t1.y * f1 + t2.y * f2};
     }
+    nameSurface(record, primitive, surface);
+}
+
+void Scene::nameSurface(const ShapeRecord& record, std::uint32_t primitive, Surface& surface) {
     surface.primitive = primitive;
     surface.material = record.materialOf(primitive);
     surface.light = record.lightOf(primitive);
-    surface.instanceId = record.instanceId;
-}
-
-void Scene::surfaceOnSphere(const ShapeRecord& record, const Vec3d& direction,
-                            Surface& surface) const {
-    const Vec3d n = normalize(direction);
-    surface.position = Vec3f(record.sphere.centre + n * record.sphere.radius);
-    // The sphere is intersected in double from a float origin, so that only roundings to float
-    // count.
-    surface.offset = 2.0f * surfaceOffset(surface.position, 0.0f);
-    surface.geometricNormal = surface.shadingNormal = Vec3f(n);
-    surface.uv = record.isTexturedSphere ? textureOnSphere(record.sphereAxes, n) : Vec2f{};
-    surface.primitive = 0;
-    surface.material = record.materials[0];
-    surface.light = record.lightOf(0);
     surface.instanceId = record.instanceId;
 }
 
@@ -197,12 +186,13 @@ Surface Scene::pointOnLight(const Light& light, Vec2f u) const {
 Surface Scene::pointOnSphere(std::uint32_t shape, const Vec3d& direction) const {
     Surface surface;
     surface.shape = shape;
-    surfaceOnSphere(m_shapes[shape], direction, surface);
+    m_shapes[shape].curved->sphere()->surfaceAlong(direction, surface);
+    nameSurface(m_shapes[shape], 0, surface);
     return surface;
 }
 
 SphereShape Scene::sphere(std::uint32_t shape) const {
-    return m_shapes[shape].sphere;
+    return m_shapes[shape].curved->sphere()->sphere();
 }
 
 }  // namespace pm

@@ -7,6 +7,7 @@
 
 #include "integrator/materials/invisible.h"
 #include "integrator/scene/scene.h"
+#include "integrator/shapes/curved_shape.h"
 #include "integrator/shapes/placement.h"
 
 namespace pm {
@@ -25,7 +26,7 @@ struct Scene::Facet {
 
 // One instance made ready: vertices in the scene's own coordinates.
 struct Scene::ShapeRecord {
-    std::shared_ptr<const TriangleMesh> mesh;  // null for a sphere
+    std::shared_ptr<const TriangleMesh> mesh;  // null for what is curved
     // Of a mesh that rays meet where its instances have it; else its vertices and all that follows
     // of them are kept, moved to the scene.
     std::optional<Placement> placement;
@@ -36,10 +37,8 @@ struct Scene::ShapeRecord {
     std::vector<ExactTriangle> exact;  // huge ones, by their numbers
     // The triangles, without area those that no ray is to meet; empty where rays meet all there is.
     std::vector<TriangleMesh::Corners> visible;
-    bool mirrored = false;  // the transform turns the winding round
-    SphereShape sphere;
-    Vec3d sphereAxes[3];  // of its object space, unit
-    bool isTexturedSphere = false;
+    bool mirrored = false;                       // the transform turns the winding round
+    std::optional<CurvedShape> curved;           // without a mesh
     std::vector<std::uint32_t> materials;        // of each slot
     std::vector<std::int32_t> lightOfPrimitive;  // empty when nothing here emits
     std::uint32_t instanceId = 0;
@@ -81,8 +80,9 @@ struct Scene::ShapeRecord {
     // Of a triangle, or the sphere.
     void bounds(std::uint32_t primitive, Vec3d& lo, Vec3d& hi) const {
         if (!mesh) {
-            lo = sphere.centre - Vec3d(sphere.radius);
-            hi = sphere.centre + Vec3d(sphere.radius);
+            const Box3d box = curved->bounds();
+            lo = box.lo;
+            hi = box.hi;
             return;
         }
         const auto& triangle = mesh->triangles[primitive];

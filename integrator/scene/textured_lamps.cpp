@@ -136,13 +136,9 @@ Surface Scene::pointOnLight(const Light& light, Vec2f u, float& density) const {
                           static_cast<double>(at.x), static_cast<double>(at.y), surface);
         return surface;
     }
-    // See SphereShape.
-    const SinCos turn = sinCosTurns(at.x - 0.5f), up = sinCosTurns(0.5f * at.y);
-    const Vec3d local(Vec3f{up.sin * turn.sin, -up.cos, up.sin * turn.cos});
-    surfaceOnSphere(record,
-                    record.sphereAxes[0] * local.x + record.sphereAxes[1] * local.y +
-                        record.sphereAxes[2] * local.z,
-                    surface);
+    const PlacedSphere& sphere = *record.curved->sphere();
+    sphere.surfaceAlong(sphere.directionOf(at), surface);
+    nameSurface(record, 0, surface);
     density *= 2.0f * kInvPi / sineOfRow(surface.uv.y);
     return surface;
 }

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "integrator/rays/ray_tracer.h"
+#include "integrator/values/ray.h"
 #include "integrator/values/vec.h"
 
 namespace pm {

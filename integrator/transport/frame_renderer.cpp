@@ -9,7 +9,7 @@
 
 #include "integrator/light_sampling/light_sampler.h"
 #include "integrator/sampling/sampler.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame/pixel_cell.h"
 #include "integrator/transport/frame/pixel_sums.h"

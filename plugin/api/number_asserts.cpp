@@ -88,8 +88,8 @@ static_assert(same(Wrap::kClamp, PMR_WRAP_CLAMP));
 static_assert(same(Wrap::kMirror, PMR_WRAP_MIRROR));
 static_assert(same(Wrap::kBlack, PMR_WRAP_BLACK));
 
-static_assert(same(Viewer::kCamera, PMR_HIDDEN_FROM_CAMERA));
-static_assert(same(Viewer::kShadow, PMR_HIDDEN_FROM_SHADOW));
-static_assert(same(Viewer::kReflection, PMR_HIDDEN_FROM_REFLECTION));
+static_assert(same(kCameraRays, PMR_HIDDEN_FROM_CAMERA));
+static_assert(same(kShadowRays, PMR_HIDDEN_FROM_SHADOW));
+static_assert(same(kReflectionRays, PMR_HIDDEN_FROM_REFLECTION));
 
 }  // namespace pm::plugin

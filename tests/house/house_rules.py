@@ -213,7 +213,7 @@ def check_cycles(root):
 
 def lamp_files(root):
     """Sources with the word lamp in a name, in code or their own: file's name -> its path."""
-    word = re.compile(r"(?<![A-Za-z])lamps?(?![a-z])|Lamps?(?![a-z])|LAMPS?(?![A-Z])")
+    word = re.compile(r"(?<![A-Za-z])lamps?(?![a-z])|Lamps?(?![a-z])|(?<![A-Z])LAMPS?(?![A-Z])")
     for name in sources(root):
         text = "\n".join(code_lines((root / name).read_text(encoding="utf-8")))
         if word.search(name.rsplit("/", 1)[1]) or word.search(text):

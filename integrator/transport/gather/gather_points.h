@@ -14,7 +14,7 @@
 #include "integrator/photons/estimate/irradiance_sites.h"
 #include "integrator/photons/estimate/surface_estimate.h"
 #include "integrator/sampling/sampler.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/gather/gather_guide.h"
 #include "integrator/transport/gather/point_tiles.h"

@@ -9,7 +9,7 @@
 #include "integrator/photons/estimate/caustic_map.h"
 #include "integrator/photons/estimate/irradiance_sites.h"
 #include "integrator/sampling/sampler.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/gather/gather_points.h"
 #include "integrator/transport/path/direct_light.h"

@@ -18,7 +18,7 @@
 #include "integrator/photons/map/photon_map.h"
 #include "integrator/photons/trace/photon_store.h"
 #include "integrator/photons/trace/photon_tracer.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame/render_settings.h"
 #include "integrator/transport/frame/transport_plan.h"

@@ -9,7 +9,7 @@
 
 #include "integrator/light_sampling/light_sampler.h"
 #include "integrator/materials/bsdf.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/values/rgb.h"
 #include "integrator/values/vec.h"

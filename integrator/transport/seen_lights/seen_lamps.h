@@ -15,7 +15,7 @@
 #include "integrator/light_sampling/light_sampler.h"
 #include "integrator/materials/bsdf.h"
 #include "integrator/sampling/sampler.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame/pixel_cell.h"
 #include "integrator/transport/frame/render_settings.h"

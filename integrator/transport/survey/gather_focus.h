@@ -3,7 +3,7 @@
 #pragma once
 
 #include "integrator/photons/emission/focus.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame/render_settings.h"
 #include "integrator/values/cancel_check.h"

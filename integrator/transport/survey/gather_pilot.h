@@ -5,7 +5,7 @@
 #include <cstdint>
 
 #include "integrator/light_sampling/light_sampler.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame/render_settings.h"
 #include "integrator/transport/gather/final_gather.h"

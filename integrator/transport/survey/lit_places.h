@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "integrator/light_sampling/light_sampler.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame/render_settings.h"
 #include "integrator/values/cancel_check.h"

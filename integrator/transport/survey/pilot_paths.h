@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame/render_settings.h"
 #include "integrator/transport/path/path_walk.h"

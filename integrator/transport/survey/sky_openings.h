@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "integrator/photons/emission/aim_cone.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame/render_settings.h"
 #include "integrator/values/cancel_check.h"

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "integrator/scene/camera/camera.h"
-
-#include <fmt/format.h>
+#include "integrator/scene/camera.h"
 
 #include <cmath>
-#include <numbers>
+#include <variant>
 
 #include "integrator/scene/scene.h"
 #include "integrator/values/error.h"
@@ -17,25 +15,25 @@ namespace {
 // From within so many of the scene's radii rounding takes no more of a ray than of the scene.
 constexpr double kNearRadii = 4.0;
 
+const CameraDescription& cameraOf(const Scene& scene) {
+    const auto& camera = scene.description().camera;
+    if (!camera) throw Error(Status::kInvalidScene, "the scene has no camera");
+    return *camera;
+}
+
 }  // namespace
 
 Camera::Camera(const Scene& scene, std::int32_t width, std::int32_t height)
     : m_scene(scene),
+      m_model(makeCameraModel(cameraOf(scene), 0.5 * height)),
       m_halfWidth(0.5 * width),
       m_halfHeight(0.5 * height),
       m_sceneRadius(scene.radius()) {
-    const auto& camera = scene.description().camera;
-    if (!camera) throw Error(Status::kInvalidScene, "the scene has no camera");
-    const Transform& m = camera->cameraToWorld;
+    const Transform& m = cameraOf(scene).cameraToWorld;
     for (const double v : m)
         if (!std::isfinite(v))
             throw Error(Status::kInvalidScene,
                         "the camera's transform has a value that is not finite");
-    if (!(camera->verticalFieldOfView > 0 && camera->verticalFieldOfView < std::numbers::pi))
-        throw Error(Status::kInvalidScene,
-                    fmt::format("the camera's vertical field of view is {} radians; it must be "
-                                "above 0 and below pi",
-                                camera->verticalFieldOfView));
     m_right = {m[0], m[4], m[8]};
     m_up = {m[1], m[5], m[9]};
     m_forward = -Vec3d{m[2], m[6], m[10]};
@@ -46,31 +44,31 @@ Camera::Camera(const Scene& scene, std::int32_t width, std::int32_t height)
     m_forward = normalize(m_forward);
     m_eye = Vec3d{m[3], m[7], m[11]} - scene.centre();
     m_isFar = length(m_eye) > kNearRadii * m_sceneRadius;
-    // sin/cos of the half angle by the double-precision library would differ between processors in
-    // the last bit of a double only; rounding the scale to float removes even that.
-    m_scale = static_cast<double>(static_cast<float>(std::tan(0.5 * camera->verticalFieldOfView))) /
-              m_halfHeight;
-    m_aspect = camera->pixelAspect > 0 ? camera->pixelAspect : 1.0;
+    m_pixel = std::visit([](const auto& model) { return model.pixelWidth(); }, m_model);
 }
 
 Ray Camera::ray(double x, double y) const {
+    const CameraRay own = std::visit(
+        [&](const auto& model) { return model.ray(x - m_halfWidth, m_halfHeight - y); }, m_model);
     const Vec3d direction =
-        normalize(m_forward + m_right * ((x - m_halfWidth) * m_scale * m_aspect) +
-                  m_up * ((m_halfHeight - y) * m_scale));
-    Ray ray{Vec3f(m_eye), Vec3f(direction)};
-    if (m_scene.hasCore()) ray = m_scene.rayFromAfar(m_eye, direction);
+        normalize(m_forward * own.direction.z + m_right * own.direction.x + m_up * own.direction.y);
+    const Vec3d eye =
+        m_eye + m_right * own.origin.x + m_up * own.origin.y + m_forward * own.origin.z;
+    Ray ray{Vec3f(eye), Vec3f(direction)};
+    if (m_scene.hasCore()) ray = m_scene.rayFromAfar(eye, direction);
     ray.viewer = kCameraRays;
     if (m_scene.hasCore() || !m_isFar) return ray;
     // Entry into a sphere slightly larger than the scene's.
     const double radius = m_sceneRadius * 1.01;
-    const double t = intersectSphere(m_eye, direction, 1e300, Vec3d(0.0), radius);
-    if (t > 0) ray.origin = Vec3f(m_eye + direction * t);
+    const double t = intersectSphere(eye, direction, 1e300, Vec3d(0.0), radius);
+    if (t > 0) ray.origin = Vec3f(eye + direction * t);
     return ray;
 }
 
 PixelBeam Camera::pixelBeam(const Ray& ray) const {
     const double way = m_isFar ? length(Vec3d(ray.origin) - m_eye) : 0.0;
-    return {static_cast<float>(way * m_scale), static_cast<float>(m_scale)};
+    return {static_cast<float>(m_pixel.width + way * m_pixel.spread),
+            static_cast<float>(m_pixel.spread)};
 }
 
 float Camera::depth(const Vec3f& position) const {

@@ -4,7 +4,8 @@
 
 #include <cstdint>
 
-#include "integrator/rays/ray_tracer.h"
+#include "integrator/cameras/camera_model.h"
+#include "integrator/values/ray.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
@@ -19,7 +20,7 @@ struct PixelBeam {
     float widthAfter(float way) const { return width + spread * way; }
 };
 
-// The pinhole camera of a scene and frame. Where it is more than a few of the scene's radii away
+// The camera of a scene and frame. Where it is more than a few of the scene's radii away
 // its rays start where they enter the sphere around the scene, computed in double: a camera a
 // thousand radii away loses no digits of the scene to its distance.
 class Camera {
@@ -41,8 +42,8 @@ class Camera {
     const Scene& m_scene;
     Vec3d m_eye;  // scene's own coordinates
     Vec3d m_right, m_up, m_forward;
-    double m_scale;                    // of a pixel on the plane at distance 1
-    double m_aspect;                   // width of a pixel over its height
+    CameraModel m_model;
+    PixelWidth m_pixel;
     double m_halfWidth, m_halfHeight;  // pixels
     double m_sceneRadius;
     bool m_isFar;  // from the scene

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "integrator/shapes/curved_shape.h"
+
+#include <type_traits>
+
+#include "integrator/values/error.h"
+
+namespace pm {
+
+namespace {
+
+using Kind = std::variant<PlacedSphere>;
+
+Kind place(const Shape& shape, const Transform& toWorld, const Vec3d& origin, bool hasTexture,
+           const std::string& name) {
+    return std::visit(
+        [&](const auto& kind) -> Kind {
+            using Given = std::decay_t<decltype(kind)>;
+            if constexpr (std::is_same_v<Given, std::shared_ptr<const TriangleMesh>>)
+                throw Error(Status::kInternal, "a mesh is no curved shape");
+            else
+                return PlacedSphere(kind, toWorld, origin, hasTexture, name);
+        },
+        shape);
+}
+
+}  // namespace
+
+CurvedShape::CurvedShape(const Shape& shape, const Transform& toWorld, const Vec3d& origin,
+                         bool hasTexture, const std::string& name)
+    : m_kind(place(shape, toWorld, origin, hasTexture, name)) {}
+
+}  // namespace pm

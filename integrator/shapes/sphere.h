@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "integrator/shapes/roots.h"
+#include "integrator/shapes/surface.h"
+#include "integrator/values/box.h"
+#include "integrator/values/transform.h"
+#include "integrator/values/vec.h"
+
+namespace pm {
+
+// An analytic sphere in object space; its front is outside. Under a transform it must stay a
+// sphere: rotation, translation, uniform scale. Textures are latitude-longitude pictures: in object
+// space their middle is towards +z, their right half towards +x, their upper edge at +y; so a
+// camera that isn't turned sees the middle as it is.
+struct SphereShape {
+    Vec3d centre;
+    double radius = 1.0;  // > 0, scene units
+};
+
+// Where a line meets a sphere, near before far, in units of the direction's length: either may be
+// outside the ray.
+struct SphereRoots {
+    double near, far;
+};
+
+// Intersects a line with a sphere in double precision; false: it passes the sphere, or touches it
+// at its origin. Source: Haines et al., "Precision Improvements for Ray/Sphere Intersection", Ray
+// Tracing Gems, 2019 (the stable quadratic).
+bool findSphereRoots(const Vec3d& origin, const Vec3d& direction, const Vec3d& centre,
+                     double radius, SphereRoots& roots);
+
+// The nearest root in (0, tMax], or a negative number.
+double intersectSphere(const Vec3d& origin, const Vec3d& direction, double tMax,
+                       const Vec3d& centre, double radius);
+
+// A sphere where it stands; see CurvedShape. position: of centre, scene's own coordinates.
+class PlacedSphere {
+  public:
+    // origin: of the scene's own coordinates, world. hasTexture: its points are asked for uv. name:
+    // of the instance, for errors. Throws Error(kInvalidScene, kUnsupported).
+    PlacedSphere(const SphereShape& sphere, const Transform& toWorld, const Vec3d& origin,
+                 bool hasTexture, const std::string& name);
+
+    const SphereShape& sphere() const { return m_sphere; }
+    Box3d bounds() const {
+        return {m_sphere.centre - Vec3d(m_sphere.radius), m_sphere.centre + Vec3d(m_sphere.radius)};
+    }
+    double size() const { return 2 * m_sphere.radius; }
+    double area() const;
+    RayRoots roots(const Vec3d& origin, const Vec3d& direction) const {
+        RayRoots roots;
+        SphereRoots both;
+        if (!findSphereRoots(origin, direction, m_sphere.centre, m_sphere.radius, both))
+            return roots;
+        roots.add(both.near);
+        roots.add(both.far);
+        return roots;
+    }
+    void surfaceNear(const Vec3d& point, Surface& surface) const {
+        surfaceAlong(point - m_sphere.centre, surface);
+    }
+    // Of the point that lies in a direction (of any length) from the centre.
+    void surfaceAlong(const Vec3d& direction, Surface& surface) const;
+    // The direction of a point of the texture.
+    Vec3d directionOf(Vec2f uv) const;
+
+  private:
+    SphereShape m_sphere;
+    Vec3d m_axes[3];  // of its object space, unit
+    bool m_hasTexture;
+};
+
+}  // namespace pm
