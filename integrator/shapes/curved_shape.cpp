@@ -10,17 +10,15 @@ namespace pm {
 
 namespace {
 
-using Kind = std::variant<PlacedSphere>;
-
-Kind place(const Shape& shape, const Transform& toWorld, const Vec3d& origin, bool hasTexture,
-           const std::string& name) {
+CurvedKind place(const Shape& shape, const Transform& toWorld, const Vec3d& origin, bool hasTexture,
+                 const std::string& name) {
     return std::visit(
-        [&](const auto& kind) -> Kind {
+        [&](const auto& kind) -> CurvedKind {
             using Given = std::decay_t<decltype(kind)>;
             if constexpr (std::is_same_v<Given, std::shared_ptr<const TriangleMesh>>)
                 throw Error(Status::kInternal, "a mesh is no curved shape");
             else
-                return PlacedSphere(kind, toWorld, origin, hasTexture, name);
+                return typename Given::Placed(kind, toWorld, origin, hasTexture, name);
         },
         shape);
 }

@@ -43,7 +43,7 @@ class CurvedShape {
     const PlacedSphere* sphere() const { return std::get_if<PlacedSphere>(&m_kind); }
 
   private:
-    std::variant<PlacedSphere> m_kind;
+    CurvedKind m_kind;
 };
 
 }  // namespace pm

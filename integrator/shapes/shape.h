@@ -10,8 +10,10 @@
 
 namespace pm {
 
-// What stands somewhere in a scene. A new kind: a file of its own with its description and what
-// CurvedShape asks of it, a line here and one in curved_shape.h.
+// What stands somewhere in a scene, and the kinds that are no meshes where they stand. A new kind:
+// a file of its own with its description and what CurvedShape asks of it, and a word in each of
+// these lines.
 using Shape = std::variant<std::shared_ptr<const TriangleMesh>, SphereShape>;
+using CurvedKind = std::variant<PlacedSphere>;
 
 }  // namespace pm

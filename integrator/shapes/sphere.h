@@ -13,11 +13,15 @@
 
 namespace pm {
 
+class PlacedSphere;
+
 // An analytic sphere in object space; its front is outside. Under a transform it must stay a
 // sphere: rotation, translation, uniform scale. Textures are latitude-longitude pictures: in object
 // space their middle is towards +z, their right half towards +x, their upper edge at +y; so a
 // camera that isn't turned sees the middle as it is.
 struct SphereShape {
+    using Placed = PlacedSphere;
+
     Vec3d centre;
     double radius = 1.0;  // > 0, scene units
 };

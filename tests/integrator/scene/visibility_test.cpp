@@ -89,7 +89,7 @@ TEST(Visibility, TheCameraAndItsMirrors) {
 // Light that goes to and fro, and through glass, past a ball that is hidden from some: photons know
 // of it what paths do.
 TEST(Visibility, PhotonsAndPathsAgree) {
-    for (Viewers hidden = 0; hidden < 8; ++hidden) {
+    for (const Viewers hidden : {kShadowRays, kReflectionRays, kShadowRays | kReflectionRays}) {
         SceneMaker maker = openRoom();
         ceilingLamp(maker, 0.4, Rgb(5.0f));
         maker.sphere({0.1, 0.3, 0}, 0.4, maker.diffuse(Rgb(0.6f)));
@@ -99,7 +99,7 @@ TEST(Visibility, PhotonsAndPathsAgree) {
         const MeasuredLayers photon =
             measure(scene, smallFrame(16, 16, IntegratorKind::kPhoton, 16, 2));
         const MeasuredLayers path =
-            measure(scene, smallFrame(16, 16, IntegratorKind::kPath, 64, 4));
+            measure(scene, smallFrame(16, 16, IntegratorKind::kPath, 40, 4));
         EXPECT_TRUE(agree(photon.direct, path.direct, 1e-3)) << hidden;
         EXPECT_TRUE(agree(photon.indirect, path.indirect, 0.02)) << hidden;
         EXPECT_TRUE(agree(photon.caustic, path.caustic, 0.1)) << hidden;
