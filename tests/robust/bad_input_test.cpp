@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // Bad input to the real pm_host: the right exit code and one line that says what, where and what is
 // allowed; nothing half-written.
-#include "host_shim/app/guarded.h"
+#include "host_shim/log/guarded.h"
 #include "tests/robust/host_process.h"
 
 #include <sys/stat.h>
