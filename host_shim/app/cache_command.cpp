@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/cache_command.h"
 
-#include "host_shim/app/texture_setup.h"
 #include "host_shim/pictures/host_error.h"
+#include "host_shim/render/texture_setup.h"
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>

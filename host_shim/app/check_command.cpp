@@ -5,7 +5,7 @@
 #include "host_shim/check/check_page.h"
 #include "host_shim/check/check_run.h"
 #include "host_shim/check/junit.h"
-#include "host_shim/ingest/warnings.h"
+#include "host_shim/formats/warnings.h"
 #include "host_shim/pictures/finished_file.h"
 #include "host_shim/process/outputs.h"
 #include "host_shim/process/plain_text.h"

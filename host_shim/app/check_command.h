@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/app/log.h"
 #include "host_shim/cli/options.h"
+#include "host_shim/log/log.h"
 
 namespace pm::host {
 

@@ -4,13 +4,13 @@
 
 #include "host_shim/app/cache_command.h"
 #include "host_shim/app/check_command.h"
-#include "host_shim/app/guarded.h"
 #include "host_shim/app/listings.h"
-#include "host_shim/app/session.h"
 #include "host_shim/cli/command_line.h"
+#include "host_shim/log/guarded.h"
 #include "host_shim/pictures/host_error.h"
 #include "host_shim/process/interrupt.h"
 #include "host_shim/process/plain_text.h"
+#include "host_shim/session/session.h"
 
 #include <fcntl.h>
 #include <fmt/format.h>

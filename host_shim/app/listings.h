@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/app/plugin.h"
 #include "host_shim/colour/colour_pipeline.h"
+#include "host_shim/render/plugin.h"
 
 #include <string>
 

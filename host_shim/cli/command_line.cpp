@@ -8,7 +8,8 @@
 #include "host_shim/cli/piece_options.h"
 #include "host_shim/cli/unknown_words.h"
 #include "host_shim/colour/exposure.h"
-#include "host_shim/ingest/text_lines.h"
+#include "host_shim/formats/mtl/mtl_dialect.h"
+#include "host_shim/formats/text_lines.h"
 #include "host_shim/pictures/picture_io.h"
 
 #include <fmt/format.h>
@@ -195,13 +196,14 @@ void readChoices(const Typed& typed, Options& options) {
     }
 }
 
-void readMaterialRules(const Typed& typed, Options& options) {
-    MaterialRules& rules = options.materials;
+void readReadRules(const Typed& typed, Options& options) {
+    ReadRules& rules = options.reading;
     if (!typed.mtlDialect.empty()) {
-        rules.dialect = dialectByName(typed.mtlDialect);
-        if (!rules.dialect)
+        const auto dialect = dialectByName(typed.mtlDialect);
+        if (!dialect)
             throw HostError(ExitCode::kUsage, fmt::format("--mtl-dialect '{}': allowed are {}",
                                                           typed.mtlDialect, allDialectNames()));
+        rules.mtlDialect = nameOf(*dialect).name;
     }
     for (const std::string& folder : typed.searchPaths)
         rules.files.searchPaths.emplace_back(folder);
@@ -316,7 +318,7 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
         checkMerge(options);
         return options;
     }
-    readMaterialRules(typed, options);
+    readReadRules(typed, options);
     readCamera(typed, options);
     readSettings(typed, frame, options);
     readPhotonMap(typed.photonMap, typed.settings, frame, options);

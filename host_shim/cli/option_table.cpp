@@ -2,7 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/cli/option_table.h"
 
-#include "host_shim/ingest/mtl_dialect.h"
+#include "host_shim/formats/mtl/mtl_dialect.h"
+#include "host_shim/pictures/picture_io.h"
 
 #include <CLI/CLI.hpp>
 
@@ -59,9 +60,9 @@ CLI::Option* addList(CLI::App& app, const std::string& name, std::vector<std::st
 }
 
 void addOutputOptions(CLI::App& app, Typed& typed, Options& options, bool isMerge) {
-    const std::string picture =
-        "picture to write, may be repeated: .exr is scene-linear, .png .jpg .tif go through "
-        "display and view";
+    const std::string picture = "picture to write, may be repeated: " + usualEndings(false) +
+                                " is scene-linear, " + usualEndings(true) +
+                                " go through display and view";
     addList(app, "-o,--output", typed.outputs, "FILE",
             picture + (isMerge ? ""
                                : ", .pmpart is a part for pm_host merge (SCENE.exr in the "
@@ -74,7 +75,7 @@ void addOutputOptions(CLI::App& app, Typed& typed, Options& options, bool isMerg
 
 void addUntrusted(CLI::App& app, Options& options) {
     app.add_flag_callback(
-        "--untrusted", [&options] { options.materials.files.isTrusted = false; },
+        "--untrusted", [&options] { options.reading.files.isTrusted = false; },
         "the scene reads only below its own folder, --search-path and the folder of the colour "
         "config");
 }
@@ -83,11 +84,17 @@ void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
     addText(app, "SCENE", typed.scene, "FILE", "the scene, an .obj");
     addOutputOptions(app, typed, options, false);
     addText(app, "--size", typed.size, "WxH", "pixels, 1 to 65536 each (640x480)");
+    addText(app, "--camera", options.cameraName, "NAME",
+            "one of the cameras that the sidecar of the scene describes (its first)");
     addText(app, "--eye", typed.eye, "x,y,z", "where the camera stands (framed from the bounds)");
     addText(app, "--look-at", typed.lookAt, "x,y,z", "what it looks at (centre of the bounds)");
     addText(app, "--up", typed.up, "x,y,z", "up in the picture (0,1,0)");
     addText(app, "--fov", typed.fov, "DEG", "vertical field of view, above 0 and below 180 (40)");
     addText(app, "--crop", typed.crop, "x0,y0,x1,y1", "half-open pixels; may exceed the frame");
+    app.add_flag("--no-sidecar", options.noSidecar,
+                 "leave out SCENE.pm.json, which is read where it stands beside SCENE");
+    app.add_flag("--write-sidecar", options.writeSidecar,
+                 "write the camera and light that were found for the scene to SCENE.pm.json");
     addText(app, "--subdivide", typed.subdivide, "all|tagged|none",
             "which groups become Catmull-Clark limit surfaces (tagged)");
     addText(app, "--mtl-dialect", typed.mtlDialect, "NAME",

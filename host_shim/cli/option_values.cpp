@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/cli/option_values.h"
 
-#include "host_shim/ingest/text_lines.h"
+#include "host_shim/formats/text_lines.h"
 #include "host_shim/pictures/host_error.h"
 
 #include <fmt/format.h>

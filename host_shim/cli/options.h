@@ -3,8 +3,8 @@
 #pragma once
 
 #include "host_shim/colour/colour_pipeline.h"
-#include "host_shim/ingest/framing.h"
-#include "host_shim/ingest/obj_reader.h"
+#include "host_shim/formats/scene_reader.h"
+#include "host_shim/look/framing.h"
 #include "host_shim/pictures/picture.h"
 
 #include <array>
@@ -56,13 +56,16 @@ struct Options {
     std::int32_t width{640};
     std::int32_t height{480};
     CameraOptions camera;
+    std::string cameraName;  // of those that the scene describes; empty: its first
     std::optional<PixelRect> crop;
     std::vector<GivenSetting> settings;
     std::string isa;
     std::uint32_t threads{0};  // 0 = all allowed
     Subdivide subdivide{Subdivide::kTagged};
-    MaterialRules materials;
-    std::string layers;  // separated by commas
+    ReadRules reading;
+    bool noSidecar{};     // SCENE.pm.json is not read
+    bool writeSidecar{};  // and is written
+    std::string layers;   // separated by commas
     ColourOptions colour;
     ExposureOption exposure;
     CameraLight cameraLight{CameraLight::kAuto};

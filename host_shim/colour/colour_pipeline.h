@@ -3,9 +3,9 @@
 #pragma once
 
 #include "host_shim/colour/display_transform.h"
-#include "host_shim/colour/host_error.h"
 #include "host_shim/colour/picture_statement.h"
 #include "host_shim/colour/space_conversion.h"
+#include "host_shim/pictures/host_error.h"
 
 #include <array>
 #include <filesystem>

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/colour/display_picture.h"
 
-#include "host_shim/colour/host_error.h"
+#include "host_shim/pictures/host_error.h"
 
 #include <algorithm>
 #include <array>

@@ -47,14 +47,18 @@ void forEachPair(const Picture& reference, const Picture& picture, const Use& us
 
 }  // namespace
 
+void checkSameSize(std::int32_t referenceWidth, std::int32_t referenceHeight, std::int32_t width,
+                   std::int32_t height) {
+    if (referenceWidth == width && referenceHeight == height) return;
+    throw HostError(ExitCode::kBadInput,
+                    fmt::format("the reference is {}x{}, the picture {}x{}; they must be the same "
+                                "(--size)",
+                                referenceWidth, referenceHeight, width, height));
+}
+
 void checkWindows(const Picture& reference, std::int32_t width, std::int32_t height,
                   const PixelRect& dataWindow) {
-    if (reference.width != width || reference.height != height) {
-        throw HostError(ExitCode::kBadInput,
-                        fmt::format("the reference is {}x{}, the picture {}x{}; they "
-                                    "must be the same (--size)",
-                                    reference.width, reference.height, width, height));
-    }
+    checkSameSize(reference.width, reference.height, width, height);
     const PixelRect& r = reference.dataWindow;
     const PixelRect& p = dataWindow;
     if (p.empty() || p.x0 < r.x0 || p.y0 < r.y0 || p.x1 > r.x1 || p.y1 > r.y1) {

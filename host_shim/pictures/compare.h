@@ -18,6 +18,10 @@ struct ErrorReport {
     std::optional<double> relMse;
 };
 
+// Errors: kBadInput where a reference is of another size than the picture that is to be compared.
+void checkSameSize(std::int32_t referenceWidth, std::int32_t referenceHeight, std::int32_t width,
+                   std::int32_t height);
+
 // Throws HostError(kBadInput), naming both, unless the reference's display window is width x height
 // and its data window holds `dataWindow`.
 void checkWindows(const Picture& reference, std::int32_t width, std::int32_t height,

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/pictures/display_compare.h"
 
+#include "host_shim/pictures/compare.h"
+#include "host_shim/pictures/picture_input.h"
 #include "host_shim/pictures/picture_io.h"
 
 #include <OpenImageIO/imagebuf.h>
@@ -16,10 +18,6 @@ namespace pm::host {
 namespace {
 
 constexpr float kFullCode = 255.0f;
-
-[[noreturn]] void bad(const std::filesystem::path& path, const std::string& text) {
-    throw HostError(ExitCode::kBadInput, fmt::format("{}: {}", path.string(), text));
-}
 
 DisplayPicture threeChannels(const std::vector<float>& values, std::size_t channels,
                              DisplayPicture result) {
@@ -50,28 +48,15 @@ std::int64_t visiblePixels(const DisplayPicture& reference, const DisplayPicture
 }  // namespace
 
 DisplayPicture readDisplayPicture(const std::filesystem::path& path) {
-    std::error_code failed;
-    if (!std::filesystem::is_regular_file(path, failed)) {
-        const char* reason =
-            std::filesystem::exists(path, failed) ? "is not a file" : "does not exist";
-        throw HostError(ExitCode::kFile, fmt::format("{}: {}", path.string(), reason));
-    }
     // Alpha is straight in what pm writes; left as it is in the file.
     OIIO::ImageSpec config;
     config.attribute("oiio:UnassociatedAlpha", 1);
-    const auto input = OIIO::ImageInput::open(path.string(), &config);
-    if (!input) bad(path, "can't be read as a picture: " + OIIO::geterror());
+    const auto input = openPicture(path, config);
     const OIIO::ImageSpec spec = input->spec();
     if (spec.nchannels > 4 || spec.nchannels < 1)
-        bad(path, fmt::format("{} channels; allowed are 1 to 4", spec.nchannels));
+        refusePicture(path, fmt::format("{} channels; allowed are 1 to 4", spec.nchannels));
     const auto channels = static_cast<std::size_t>(spec.nchannels);
-    std::vector<float> values(static_cast<std::size_t>(spec.width) *
-                              static_cast<std::size_t>(spec.height) * channels);
-    const bool good =
-        input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data());
-    if (const std::string text = input->geterror(); !good || !text.empty())
-        bad(path, "is broken or cut short: " + text);
-    return threeChannels(values, channels, {spec.width, spec.height, 3, {}});
+    return threeChannels(readValues(path, *input), channels, {spec.width, spec.height, 3, {}});
 }
 
 DisplayPicture asCodes(const DisplayPicture& picture) {
@@ -81,12 +66,7 @@ DisplayPicture asCodes(const DisplayPicture& picture) {
 }
 
 DisplayDifference compareDisplay(const DisplayPicture& reference, const DisplayPicture& picture) {
-    if (reference.width != picture.width || reference.height != picture.height)
-        throw HostError(
-            ExitCode::kBadInput,
-            fmt::format("the reference is {}x{}, the picture {}x{}; they must be the "
-                        "same (--size)",
-                        reference.width, reference.height, picture.width, picture.height));
+    checkSameSize(reference.width, reference.height, picture.width, picture.height);
     if (reference.channels != 3 || picture.channels != 3)
         throw HostError(ExitCode::kInternal, "display pictures are compared by three channels");
     DisplayDifference result;

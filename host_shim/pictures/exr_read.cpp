@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
+#include "host_shim/pictures/picture_input.h"
 #include "host_shim/pictures/picture_io.h"
 
 #include <OpenImageIO/imageio.h>
@@ -9,21 +10,10 @@
 namespace pm::host {
 namespace {
 
-[[noreturn]] void bad(const std::filesystem::path& path, const std::string& text) {
-    throw HostError(ExitCode::kBadInput, fmt::format("{}: {}", path.string(), text));
-}
-
 std::unique_ptr<OIIO::ImageInput> openExr(const std::filesystem::path& path) {
-    std::error_code failed;
-    if (!std::filesystem::is_regular_file(path, failed)) {
-        const char* reason =
-            std::filesystem::exists(path, failed) ? "is not a file" : "does not exist";
-        throw HostError(ExitCode::kFile, fmt::format("{}: {}", path.string(), reason));
-    }
-    auto input = OIIO::ImageInput::open(path.string());
-    if (!input) bad(path, "can't be read as a picture: " + OIIO::geterror());
+    auto input = openPicture(path, {});
     if (std::string(input->format_name()) != "openexr") {
-        bad(path, fmt::format("is {}; an OpenEXR file is needed", input->format_name()));
+        refusePicture(path, fmt::format("is {}; an OpenEXR file is needed", input->format_name()));
     }
     return input;
 }
@@ -52,8 +42,8 @@ Picture readExr(const std::filesystem::path& path) {
     const auto input = openExr(path);
     const OIIO::ImageSpec spec = input->spec();
     if (spec.full_x != 0 || spec.full_y != 0) {
-        bad(path, fmt::format("its display window begins at {},{}; allowed is 0,0", spec.full_x,
-                              spec.full_y));
+        refusePicture(path, fmt::format("its display window begins at {},{}; allowed is 0,0",
+                                        spec.full_x, spec.full_y));
     }
     Picture picture;
     picture.width = spec.full_width;
@@ -62,11 +52,7 @@ Picture readExr(const std::filesystem::path& path) {
     readAttributes(spec, picture.attributes);
     const auto count = static_cast<std::size_t>(spec.nchannels);
     const auto pixels = static_cast<std::size_t>(picture.dataWindow.area());
-    std::vector<float> values(pixels * count);
-    const bool good =
-        input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT, values.data());
-    const std::string text = input->geterror();
-    if (!good || !text.empty()) bad(path, "is broken or cut short: " + text);
+    const std::vector<float> values = readValues(path, *input);
     for (std::size_t c = 0; c < count; ++c) {
         Channel channel{spec.channelnames[c], isColourChannelName(spec.channelnames[c]), {}};
         channel.values.resize(pixels);

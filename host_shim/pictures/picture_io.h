@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include "host_shim/pictures/file_ending.h"
 #include "host_shim/pictures/finished_file.h"
 #include "host_shim/pictures/host_error.h"
 #include "host_shim/pictures/picture.h"
@@ -9,21 +10,25 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
+#include <vector>
 
 namespace pm::host {
 
-// The ending of a name with its dot, letters A to Z as a to z: ".exr" of "A.EXR".
-std::string lowerCaseExtension(const std::filesystem::path& path);
+// A kind of picture file; writers/picture_format.h.
+class PictureFormat;
 
-enum class PictureFormat { kExr, kPng, kJpeg, kTiff };
-
-// By the extension, in any case: .exr .png .jpg .jpeg .tif .tiff.
-// Errors: kUsage with the extensions allowed.
-PictureFormat pictureFormat(const std::filesystem::path& path);
-// Scene-linear (.exr) or through display and view.
-inline bool isDisplayReferred(PictureFormat format) {
-    return format != PictureFormat::kExr;
-}
+// By the extension, in any case. Errors: kUsage with the extensions allowed.
+const PictureFormat& pictureFormat(const std::filesystem::path& path);
+// All endings with their dots, in the order of messages: ".exr" first.
+std::vector<std::string_view> pictureEndings();
+// The usual endings of those that go through display and view, or of those that don't, with blanks
+// between them.
+std::string usualEndings(bool displayReferred);
+// Through display and view, or scene-linear (.exr).
+bool isDisplayReferred(const PictureFormat& format);
+// The same by a name of any ending; false for those of no format.
+bool isDisplayPictureName(const std::filesystem::path& path);
 
 // Before the first ray: the format is known (else kUsage) and a file can be made there and take the
 // name (else kFile): the folder exists, a temporary file can be created in it, and the name is not
@@ -44,6 +49,10 @@ struct ExrReport {
 // a name occurs twice.
 ExrReport writeExr(const std::filesystem::path& path, const Picture& picture,
                    const ExrOptions& options = {});
+
+// A scene-linear picture in the format of its name. Errors: as writeExr.
+ExrReport writeLinearPicture(const std::filesystem::path& path, const Picture& picture,
+                             const ExrOptions& options = {});
 
 struct DisplayWriteOptions {
     int bitDepth{8};      // 8 or 16; 16 for .png and .tif

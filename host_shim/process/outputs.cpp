@@ -8,6 +8,8 @@
 #include <fmt/format.h>
 
 #include <set>
+#include <string_view>
+#include <vector>
 
 namespace pm::host {
 namespace {
@@ -34,8 +36,10 @@ void makeFolder(const fs::path& file) {
 // Inputs are not all known before the scene is read, so a slip of the keyboard such as
 // `--log box.mtl` is caught by the name.
 void checkTextName(const fs::path& file) {
-    for (const char* extension : {".obj", ".mtl", ".pov", ".inc", ".ocio", ".exr", ".png", ".jpg",
-                                  ".jpeg", ".tif", ".tiff", ".tga", ".hdr", ".bmp", ".tx"}) {
+    std::vector<std::string_view> taken = pictureEndings();
+    taken.insert(taken.end(),
+                 {".obj", ".mtl", ".pov", ".inc", ".ocio", ".tga", ".hdr", ".bmp", ".tx"});
+    for (const std::string_view extension : taken) {
         if (lowerCaseExtension(identity(file)) != extension) continue;
         throw HostError(
             ExitCode::kUsage,

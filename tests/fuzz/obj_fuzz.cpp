@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // The input is an OBJ file.
-#include "host_shim/ingest/obj_reader.h"
+#include "host_shim/formats/obj/obj_reader.h"
 #include "host_shim/pictures/host_error.h"
 #include "tests/fuzz/fuzz_support.h"
 

@@ -37,15 +37,17 @@ THIRD_PARTY = [
     (re.compile(r"embree\d*/"), ("integrator/rays/",)),
     (re.compile(r"opensubdiv/"), ("integrator/geometry/",)),
     (re.compile(r"(?:oneapi/)?tbb/"), ("integrator/", "scheduler/buckets/", "plugin/")),
-    (re.compile(r"OpenImageIO/"), ("plugin/textures/", "plugin/values/version.cpp", "host_shim/pictures/", "host_shim/textures/")),
+    (re.compile(r"OpenImageIO/"),
+     ("plugin/textures/", "plugin/values/version.cpp", "host_shim/pictures/", "host_shim/textures/")),
     (re.compile(r"OpenColorIO/"), ("host_shim/colour/",)),
-    (re.compile(r"tiny_obj_loader"), ("host_shim/ingest/", "host_shim/formats/")),
+    (re.compile(r"tiny_obj_loader"), ("host_shim/formats/",)),
     (re.compile(r"CLI/"), ("host_shim/cli/",)),
-    (re.compile(r"nlohmann/"), ("plugin/", "host_shim/app/", "host_shim/check/")),
+    (re.compile(r"nlohmann/"), 
+     ("plugin/", "host_shim/check/", "host_shim/formats/sidecar/", "host_shim/render/", "host_shim/session/")),
     (re.compile(r"xxhash"), ("plugin/", "host_shim/colour/", "host_shim/textures/")),
     # Programs of their own, signals and a loaded library.
     (re.compile(r"(?:spawn|signal|sys/wait)\.h"), ("host_shim/process/",)),
-    (re.compile(r"dlfcn\.h"), ("host_shim/app/",)),
+    (re.compile(r"dlfcn\.h"), ("host_shim/render/",)),
 ]
 LISTS = pathlib.Path(__file__).resolve().parent
 # Pattern, where it is not allowed, why.

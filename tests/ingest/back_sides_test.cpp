@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Backs of lamps that shine from both sides.
-#include "host_shim/ingest/lamps.h"
+#include "host_shim/formats/lamps.h"
 #include "tests/ingest/heard.h"
 
 #include <gtest/gtest.h>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // The means that Blender's coats are translated by, against the integrals that they stand for.
-#include "host_shim/ingest/coat_albedo.h"
+#include "host_shim/formats/mtl/coat_albedo.h"
 
 #include <gtest/gtest.h>
 

@@ -308,15 +308,14 @@ TEST(CommandLine, checksHaveOptionsOfTheirOwn) {
 }
 
 TEST(CommandLine, whatAScenesMaterialsAre) {
-    const MaterialRules usual = parseCommandLine({"a.obj"}).materials;
-    EXPECT_FALSE(usual.dialect);
+    const ReadRules usual = parseCommandLine({"a.obj"}).reading;
+    EXPECT_EQ(usual.mtlDialect, "");
     EXPECT_TRUE(usual.files.isTrusted);
     EXPECT_TRUE(usual.files.searchPaths.empty());
-    const MaterialRules asked =
-        parseCommandLine({"a.obj", "--mtl-dialect", "Blender4", "--search-path", "a b",
-                          "--untrusted", "--search-path", "c"})
-            .materials;
-    EXPECT_EQ(asked.dialect, MtlDialect::kBlender4);
+    const ReadRules asked = parseCommandLine({"a.obj", "--mtl-dialect", "Blender4", "--search-path",
+                                              "a b", "--untrusted", "--search-path", "c"})
+                                .reading;
+    EXPECT_EQ(asked.mtlDialect, "blender4");
     EXPECT_FALSE(asked.files.isTrusted);
     EXPECT_EQ(asked.files.searchPaths, (std::vector<std::filesystem::path>{"a b", "c"}));
     EXPECT_EQ(refusal({"--mtl-dialect", "blender"}),

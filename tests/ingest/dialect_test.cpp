@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // What wrote an MTL file, by its header, and what its numbers mean then.
-#include "host_shim/ingest/coat_albedo.h"
-#include "host_shim/ingest/materials.h"
+#include "host_shim/formats/mtl/coat_albedo.h"
+#include "host_shim/formats/mtl/materials.h"
 #include "tests/ingest/heard.h"
 
 #include <gtest/gtest.h>
@@ -267,7 +267,7 @@ class MtlDialectFiles : public ::testing::Test {
         std::ofstream(m_folder / name, std::ios::binary) << text;
     }
     MaterialFile library(const std::string& sceneHeader, const std::string& libraryHeader,
-                         const MaterialRules& rules = {}) const {
+                         const ReadRules& rules = {}) const {
         write("s.obj",
               sceneHeader + "mtllib s.mtl\nusemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
         write("s.mtl", libraryHeader + "newmtl m\nKd 0.5 0.5 0.5\nKs 0.5 0.5 0.5\nNs 250\n");
@@ -290,7 +290,7 @@ TEST_F(MtlDialectFiles, AreChosenAndTheReasonIsTold) {
     // Old exporters wrote their version into the OBJ file only.
     EXPECT_EQ(library("# Blender v2.73 (sub 0) OBJ File: 'x'\n", old).dialect, "blender2.7");
     EXPECT_EQ(library("", old).dialect, "blender2.8");
-    const MaterialFile asked = library(blender3, max, {MtlDialect::kMaya, {}});
+    const MaterialFile asked = library(blender3, max, {"maya", {}, {}});
     EXPECT_EQ(asked.dialect, "maya");
     EXPECT_EQ(asked.reason, "--mtl-dialect asks for it");
 }

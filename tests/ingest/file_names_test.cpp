@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Names of files in scene files, as people and other systems write them.
-#include "host_shim/ingest/scene_files.h"
+#include "host_shim/formats/scene_files.h"
 #include "tests/ingest/heard.h"
 
 #include <gtest/gtest.h>

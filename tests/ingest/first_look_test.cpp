@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Where a camera stands that nobody placed: in rooms, and where much is seen of what is no room.
-#include "host_shim/ingest/framing.h"
-#include "host_shim/ingest/outside_view.h"
-#include "host_shim/ingest/room_view.h"
+#include "host_shim/look/framing.h"
+#include "host_shim/look/outside_view.h"
+#include "host_shim/look/room_view.h"
 
 #include <gtest/gtest.h>
 
@@ -69,6 +69,7 @@ class Maker {
     SceneData scene() const {
         SceneData made = m_scene;
         made.meshes = {m_mesh};
+        made.placeEachMesh();
         return made;
     }
 

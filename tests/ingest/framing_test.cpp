@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // The camera that is framed from the bounds.
-#include "host_shim/ingest/framing.h"
+#include "host_shim/look/framing.h"
 #include "tests/ingest/heard.h"
 
 #include <gtest/gtest.h>
@@ -86,6 +86,7 @@ TEST(Framing, standsWhereFrontsAreSeen) {
     quad.faceSizes = {4};
     quad.indices = {0, 1, 2, 3};
     scene.meshes = {quad};
+    scene.placeEachMesh();
     EXPECT_FALSE(opensTowardsNegativeZ(scene));
     scene.meshes[0].indices = {0, 3, 2, 1};
     EXPECT_TRUE(opensTowardsNegativeZ(scene));

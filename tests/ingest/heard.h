@@ -2,8 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/ingest/obj_reader.h"
-#include "host_shim/ingest/warnings.h"
+#include "host_shim/formats/obj/obj_reader.h"
+#include "host_shim/formats/warnings.h"
 #include "host_shim/pictures/host_error.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Map lines of MTL files: options before the name and after it, and names that look like options.
-#include "host_shim/ingest/map_line.h"
+#include "host_shim/formats/mtl/map_line.h"
 
 #include <gtest/gtest.h>
 

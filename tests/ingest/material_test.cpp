@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // MTL sections to materials, as section by section.
-#include "host_shim/ingest/material_checks.h"
-#include "host_shim/ingest/materials.h"
+#include "host_shim/formats/mtl/material_checks.h"
+#include "host_shim/formats/mtl/materials.h"
 #include "tests/ingest/heard.h"
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // docs/obj_mtl.md names what the readers dispatch on: all of it, and nothing else.
-#include "host_shim/ingest/cage_tags.h"
-#include "host_shim/ingest/mtl_keys.h"
-#include "host_shim/ingest/obj_keys.h"
+#include "host_shim/formats/mtl/mtl_keys.h"
+#include "host_shim/formats/obj/cage_tags.h"
+#include "host_shim/formats/obj/obj_keys.h"
 #include "tests/ingest/heard.h"
 
 #include <gtest/gtest.h>

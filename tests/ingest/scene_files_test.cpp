@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Which files the names in scene files lead to, and which they may not lead to.
-#include "host_shim/ingest/scene_files.h"
+#include "host_shim/formats/scene_files.h"
 #include "tests/ingest/heard.h"
 
 #include <gtest/gtest.h>
@@ -125,7 +125,7 @@ TEST_F(SceneFilesTest, EveryNameOfASceneIsAsked) {
     write("scene/a.obj", "mtllib ../secret.mtl\n" + geometry);
     write("scene/b.mtl", "newmtl m\nKd 0.5 0 0\nmap_Kd ../secret.png\nmap_d inside.png\n");
     write("scene/b.obj", "mtllib b.mtl\n" + geometry);
-    MaterialRules rules;
+    ReadRules rules;
     Heard trusted, heard;
     EXPECT_EQ(readObjFile(m_scene / "a.obj", trusted.sink).materials[0].diffuse[0], 0.25f);
     EXPECT_TRUE(readObjFile(m_scene / "b.obj", trusted.sink).materials[0].diffuseTexture);

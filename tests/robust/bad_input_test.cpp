@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
-#include "host_shim/app/guarded.h"
+#include "host_shim/log/guarded.h"
 #include "tests/robust/host_process.h"
 
 namespace pm::host::test {

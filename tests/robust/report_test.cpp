@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // --report of the real pm_host: a page that needs no other file, for renders that end in whatever
 // way, and that changes nothing of the picture.
-#include "host_shim/app/report.h"
+#include "host_shim/session/report.h"
 
 #include <cmath>
 #include <cstdint>

@@ -1,0 +1,266 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/formats/mtl/coat_albedo.h"
+#include "host_shim/formats/mtl/mtl_dialect.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace pm::host {
+namespace {
+
+using Colour = std::array<double, 3>;
+
+Colour operator*(const Colour& colour, double factor) {
+    return {colour[0] * factor, colour[1] * factor, colour[2] * factor};
+}
+
+double mean(const Colour& colour) {
+    return (colour[0] + colour[1] + colour[2]) / 3;
+}
+
+// Blender's Principled BSDF as its exporters write it.
+class PrincipledSection {
+  public:
+    PrincipledSection(MtlDialect dialect, MtlSection& section)
+        : m_dialect(dialect), m_section(section) {}
+
+    Translation translate() {
+        const double illum = m_section.number("illum").value_or(2);
+        // Never written by Blender: somebody made glass or a mirror of it, and means what it says.
+        if (illum == 4 || illum == 5 || illum == 7) return {};
+        m_isMetalOn = illum == 3 || illum == 6 || illum == 8;
+        if (illum != 0) m_section.numbers["illum"] = 2;
+        if (isGlass())
+            makeGlass();
+        else
+            makeSurface();
+        return std::move(m_translation);
+    }
+
+  private:
+    void note(const char* key, std::string text) {
+        m_translation.notes.push_back({key, std::move(text)});
+    }
+
+    double number(const char* key, double otherwise) const {
+        return m_section.number(key).value_or(otherwise);
+    }
+
+    void drop(const char* key) {
+        m_section.colours.erase(key);
+        m_section.numbers.erase(key);
+        m_section.maps.erase(key);
+    }
+
+    // A number that a picture stands for is not written.
+    double roughness() {
+        constexpr double kOfPictures = 0.5;  // Blender's own default
+        for (const char* map : {"map_Pr", "map_Ns"}) {
+            if (!m_section.hasMap(map)) continue;
+            drop(map);
+            note(map, fmt::format("{} is a picture of roughness here, which is not rendered yet; "
+                                  "{} is taken for all",
+                                  map, number("Pr", kOfPictures)));
+            return std::clamp(number("Pr", kOfPictures), 0.0, 1.0);
+        }
+        if (const auto given = m_section.number("Pr")) return std::clamp(*given, 0.0, 1.0);
+        const auto exponent = m_section.number("Ns");
+        if (!exponent) return kOfPictures;
+        const double largest = m_dialect == MtlDialect::kBlender28 ? 900 : 1000;
+        return 1 - std::sqrt(std::clamp(*exponent / largest, 0.0, 1.0));
+    }
+
+    double metallic() {
+        for (const char* map : {"map_Pm", "refl"}) {
+            if (!m_section.hasMap(map)) continue;
+            drop(map);
+            note(map, fmt::format("{} is a picture of what is metal here, which is not rendered "
+                                  "yet; {} is taken for all",
+                                  map, number("Pm", m_isMetalOn ? 1 : 0)));
+        }
+        if (const auto given = m_section.number("Pm")) return std::clamp(*given, 0.0, 1.0);
+        if (!m_isMetalOn) return 0;
+        return std::clamp(mean(m_section.colour("Ka").value_or(Colour{1, 1, 1})), 0.0, 1.0);
+    }
+
+    // What a surface that is no metal reflects at normal incidence.
+    Colour specular() const {
+        const double usual = m_section.hasMap("map_Ks") ? 1 : 0.5;
+        const Colour level = m_section.colour("Ks").value_or(Colour{usual, usual, usual});
+        if (m_dialect != MtlDialect::kBlender4) return level * 0.08;
+        const double ior = number("Ni", 1.5);
+        const double root = ior > 0 ? (ior - 1) / (ior + 1) : 0;
+        return level * (2 * root * root);
+    }
+
+    // Tf is how much of it lets light through as glass does.
+    bool isGlass() {
+        const double share = mean(m_section.colour("Tf").value_or(Colour{}));
+        if (share > 0 && share < 0.5)
+            note("Tf", fmt::format("{:g} of it would be glass, which is not rendered together with "
+                                   "what is none; all is taken as none",
+                                   share));
+        return share >= 0.5;
+    }
+
+    void makeGlass() {
+        if (roughness() > 0.1) note("Pr", "rough glass is not rendered yet; it is taken as smooth");
+        Colour tint = m_section.colour("Kd").value_or(Colour{1, 1, 1});
+        // Since Blender 4 it is the colour of a way through two boundaries.
+        if (m_dialect == MtlDialect::kBlender4)
+            for (double& channel : tint) channel = std::sqrt(std::max(channel, 0.0));
+        if (m_section.hasMap("map_Kd")) m_section.maps["map_Tf"] = m_section.maps["map_Kd"];
+        for (const char* key : {"Kd", "map_Kd", "Ks", "map_Ks", "Pr", "Pm", "Ns"}) drop(key);
+        m_section.colours["Tf"] = tint;
+        m_section.numbers["illum"] = 7;
+        if (!m_section.number("Ni")) m_section.numbers["Ni"] = 1.45;
+    }
+
+    void makeSurface() {
+        const double rough = roughness(), metal = metallic();
+        const Colour base = m_section.colour("Kd").value_or(Colour{1, 1, 1});
+        const Colour coat = specular();
+        for (const char* key : {"Pr", "Pm", "Ns", "Tf"}) drop(key);
+        // Of what is cut away light goes straight on, whatever the index.
+        drop("Ni");
+        m_section.numbers["Ns"] = exponentOfRoughness(rough);
+        constexpr double kWholly = 0.999;
+        if (metal >= kWholly) {
+            makeMetal(base, rough);
+            return;
+        }
+        const bool hasMap = m_section.hasMap("map_Kd");
+        Colour diffuse{}, glossy{}, added{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            glossy[i] = metal * base[i] + (1 - metal) * coat[i];
+            added[i] = (1 - metal) * addedByCoat(coat[i], rough);
+            diffuse[i] = (1 - metal) * underCoat(base[i], coat[i], rough) + (hasMap ? 0 : added[i]);
+            diffuse[i] = std::min(diffuse[i], std::max(0.0, 1 - glossy[i]));
+        }
+        // Texels are multiplied by the number.
+        if (hasMap && mean(diffuse) > 0)
+            m_translation.addedToDiffuseMap = mean(added) / mean(diffuse);
+        m_section.colours["Kd"] = diffuse;
+        m_section.colours["Ks"] = glossy;
+        if (metal >= 0.5 && m_section.hasMap("map_Kd"))
+            m_section.maps["map_Ks"] = m_section.maps["map_Kd"];
+    }
+
+    // Before Blender 4 the coat takes nothing from what is below it.
+    double underCoat(double base, double coat, double rough) const {
+        return m_dialect == MtlDialect::kBlender4 && coat > 0 ? base * (1 - meanOfCoat(coat, rough))
+                                                              : base;
+    }
+
+    // The lobe has what the coat reflects at normal incidence and nothing of the rise towards
+    // grazing angles. What all that brings in the mean is spread evenly, or rooms of plastic would
+    // be a quarter darker.
+    static double addedByCoat(double coat, double rough) {
+        return coat > 0 ? std::max(0.0, meanOfCoat(coat, rough) - coat * meanOfLobe(rough)) : 0;
+    }
+
+    void makeMetal(const Colour& base, double rough) {
+        constexpr double kSmooth = 0.05;
+        if (m_section.hasMap("map_Kd")) m_section.maps["map_Ks"] = m_section.maps["map_Kd"];
+        drop("Kd");
+        drop("map_Kd");
+        m_section.colours["Ks"] = base;
+        m_section.numbers["illum"] = rough <= kSmooth ? 5 : 3;
+    }
+
+    MtlDialect m_dialect;
+    MtlSection& m_section;
+    Translation m_translation;
+    bool m_isMetalOn{};
+};
+
+// Programs whose Ks is the colour of a highlight that comes on top: colours keep what they are,
+// and the lobe gets no more than is left.
+void keepDiffuse(MtlSection& section) {
+    auto glossy = section.colour("Ks");
+    const auto diffuse = section.colour("Kd");
+    if (!glossy || !diffuse) return;
+    double factor = 1;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double left = std::max(0.0, 1 - (*diffuse)[i]);
+        if ((*glossy)[i] > left) factor = std::min(factor, left / (*glossy)[i]);
+    }
+    section.colours["Ks"] = *glossy * factor;
+}
+
+void dropHighlight(MtlSection& section) {
+    section.colours.erase("Ks");
+    section.maps.erase("map_Ks");
+}
+
+// Every material has Ni 1.5, glass or not: so of what is transparent light goes straight on,
+// unless somebody chose a kind of glass or another index.
+void translate3dsMax(MtlSection& section) {
+    keepDiffuse(section);
+    const double illum = section.number("illum").value_or(2);
+    if (illum <= 2 && section.number("Ni") == 1.5) section.numbers.erase("Ni");
+}
+
+// illum 4 stands on everything, and Tf is what is left of 1 by the transparency.
+void translateMaya(MtlSection& section) {
+    keepDiffuse(section);
+    if (section.number("illum") == 4) section.numbers["illum"] = 2;
+    const auto opacity = section.colour("Tf");
+    section.colours.erase("Tf");
+    if (!opacity || section.number("d") || section.number("Tr")) return;
+    const double mostly = std::clamp(mean(*opacity), 0.0, 1.0);
+    section.numbers["d"] = mostly;
+    if (section.lines.contains("Tf")) section.lines["d"] = section.lines["Tf"];
+    if (mostly < 1)
+        section.colours["Tf"] = {1 - std::clamp((*opacity)[0], 0.0, 1.0),
+                                 1 - std::clamp((*opacity)[1], 0.0, 1.0),
+                                 1 - std::clamp((*opacity)[2], 0.0, 1.0)};
+}
+
+// Tf 0 0 0 stands on everything, and Ns 0 on what has no gloss.
+void translateRhino(MtlSection& section) {
+    keepDiffuse(section);
+    section.colours.erase("Tf");
+    if (section.number("Ns").value_or(0) <= 0) dropHighlight(section);
+}
+
+}  // namespace
+
+bool emitsFromBothSides(MtlDialect dialect) {
+    return dialect == MtlDialect::kBlender28 || dialect == MtlDialect::kBlender3 ||
+           dialect == MtlDialect::kBlender4;
+}
+
+Translation translateToGeneric(MtlDialect dialect, MtlSection& section) {
+    switch (dialect) {
+        case MtlDialect::kBlender28:
+        case MtlDialect::kBlender3:
+        case MtlDialect::kBlender4:
+            return PrincipledSection(dialect, section).translate();
+        case MtlDialect::k3dsMax:
+            translate3dsMax(section);
+            break;
+        case MtlDialect::kMaya:
+            translateMaya(section);
+            break;
+        case MtlDialect::kRhino:
+            translateRhino(section);
+            break;
+        case MtlDialect::kSketchUp:
+            dropHighlight(section);  // Ks .33 on everything
+            break;
+        case MtlDialect::kBlender27:
+        case MtlDialect::kZBrush:
+            keepDiffuse(section);
+            break;
+        case MtlDialect::kGeneric:
+        case MtlDialect::kMcGuire:
+            break;
+    }
+    return {};
+}
+
+}  // namespace pm::host

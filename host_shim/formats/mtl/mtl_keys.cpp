@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/formats/mtl/mtl_keys.h"
+
+#include <algorithm>
+#include <array>
+
+namespace pm::host {
+namespace {
+
+using enum MtlKind;
+
+constexpr std::array<MtlKey, 50> kKeys{{
+    {"Kd", "Kd", kColour},
+    {"Ks", "Ks", kColour},
+    {"Ke", "Ke", kColour},
+    {"Tf", "Tf", kColour},
+    {"Kt", "Tf", kColour},
+    {"Ka", "Ka", kColour},
+    {"Ns", "Ns", kNumber},
+    {"Ni", "Ni", kNumber},
+    {"d", "d", kNumber},
+    {"Tr", "Tr", kNumber},
+    {"illum", "illum", kNumber},
+    {"Pr", "Pr", kNumberLeftOut},
+    {"Pm", "Pm", kNumberLeftOut},
+    {"Ps", "Ps", kNumberLeftOut},
+    {"Pc", "Pc", kNumberLeftOut},
+    {"map_Kd", "map_Kd", kMap},
+    {"map_Ks", "map_Ks", kMap},
+    {"map_Ke", "map_Ke", kMap},
+    {"map_Tf", "map_Tf", kMap},
+    {"map_Kt", "map_Tf", kMap},
+    {"map_Ns", "map_Ns", kMap},
+    {"map_d", "map_d", kMap},
+    {"map_opacity", "map_d", kMap},
+    {"map_Pr", "map_Pr", kMapLeftOut},
+    {"map_Pm", "map_Pm", kMapLeftOut},
+    {"map_Ps", "map_Ps", kMapLeftOut},
+    {"map_Pc", "map_Pc", kMapLeftOut},
+    {"map_Pcr", "map_Pcr", kMapLeftOut},
+    {"map_Tr", "map_Tr", kMapLeftOut},
+    {"map_Ni", "map_Ni", kMapLeftOut},
+    {"bump", "bump", kMapLeftOut},
+    {"map_bump", "map_bump", kMapLeftOut},
+    {"norm", "norm", kMapLeftOut},
+    {"map_norm", "map_norm", kMapLeftOut},
+    {"map_Kn", "map_Kn", kMapLeftOut},
+    {"disp", "disp", kMapLeftOut},
+    {"map_disp", "map_disp", kMapLeftOut},
+    {"refl", "refl", kMapLeftOut},
+    {"map_refl", "map_refl", kMapLeftOut},
+    {"map_ao", "map_ao", kNoWeight},
+    {"map_Ka", "map_Ka", kNoWeight},
+    {"map_aat", "map_aat", kNoWeight},
+    {"sharpness", "sharpness", kNoWeight},
+    {"aniso", "aniso", kNoWeight},
+    {"anisor", "anisor", kNoWeight},
+    {"Pcr", "Pcr", kNoWeight},
+    {"decal", "decal", kNoWeight},
+    {"Km", "Km", kNoWeight},
+    {"map_decal", "map_decal", kNoWeight},
+    {"newmtl", "newmtl", kNoWeight},
+}};
+
+constexpr std::array<MapOption, 14> kOptions{{
+    {"-s", MapOptionKind::kNumbers, 3, 1, true},
+    {"-o", MapOptionKind::kNumbers, 3, 0, true},
+    {"-mm", MapOptionKind::kNumbers, 2, 1, true},
+    {"-clamp", MapOptionKind::kOnOff, 0, 0, true},
+    {"-colorspace", MapOptionKind::kWord, 0, 0, true},
+    {"-imfchan", MapOptionKind::kWord, 0, 0, false},
+    {"-t", MapOptionKind::kNumbers, 3, 0, false},
+    {"-cc", MapOptionKind::kOnOff, 0, 0, false},
+    {"-blendu", MapOptionKind::kOnOff, 0, 0, false},
+    {"-blendv", MapOptionKind::kOnOff, 0, 0, false},
+    {"-boost", MapOptionKind::kNumbers, 1, 0, false},
+    {"-bm", MapOptionKind::kNumbers, 1, 0, false},
+    {"-type", MapOptionKind::kWord, 0, 0, false},
+    {"-texres", MapOptionKind::kWord, 0, 0, false},
+}};
+
+char lowerCase(char c) {
+    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+}
+
+}  // namespace
+
+bool equalInAnyCase(std::string_view a, std::string_view b) {
+    return std::ranges::equal(a, b, {}, lowerCase, lowerCase);
+}
+
+std::span<const MtlKey> mtlKeys() {
+    return kKeys;
+}
+
+const MtlKey* findMtlKey(std::string_view word) {
+    const auto found = std::ranges::find_if(
+        kKeys, [word](const MtlKey& key) { return equalInAnyCase(word, key.key); });
+    return found != kKeys.end() ? &*found : nullptr;
+}
+
+std::span<const MapOption> mapOptions() {
+    return kOptions;
+}
+
+const MapOption* findMapOption(std::string_view word) {
+    const auto found = std::ranges::find_if(
+        kOptions, [word](const MapOption& option) { return equalInAnyCase(word, option.option); });
+    return found != kOptions.end() ? &*found : nullptr;
+}
+
+}  // namespace pm::host

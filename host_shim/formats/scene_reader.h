@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/formats/scene_data.h"
+#include "host_shim/formats/scene_files.h"
+#include "host_shim/formats/warnings.h"
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace pm::host {
+
+// How a scene is read, and from which files.
+struct ReadRules {
+    std::string mtlDialect;  // of all MTL files, as --mtl-dialect names it; empty: by their headers
+    SceneFileRules files;
+    std::vector<std::string> materials;  // names that are wanted beside those that faces use
+};
+
+// What a reader is given.
+struct ReadRequest {
+    std::filesystem::path file;
+    const WarningSink& warn;
+    const GoOn& goOn;  // called again and again; what it throws ends the reading; may be empty
+    std::optional<std::array<double, 3>> eye;  // the camera's place, if it is known; see centreFor
+    const ReadRules& rules;
+};
+
+// A kind of scene file. scene_readers.cpp has the list of them. Immutable: any thread.
+class SceneReader {
+  public:
+    virtual ~SceneReader() = default;
+
+    // As messages call a file of this kind: "an OBJ file".
+    virtual std::string_view name() const = 0;
+    // The ends of names that it takes, with their dots, in small letters.
+    virtual std::span<const std::string_view> endings() const = 0;
+    // Reads a file and what it refers to. Every index of the answer is checked, and each file that
+    // was opened on the way is among filesOf it. What can do without is warned of.
+    // Errors: kFile when the file can't be read; kBadInput, "FILE:LINE: what", when it is bad.
+    virtual SceneData read(const ReadRequest& request) const = 0;
+};
+
+// The files that a scene refers to: what was read for it, and pictures that are still to be read.
+std::vector<std::filesystem::path> filesOf(const SceneData& scene);
+
+}  // namespace pm::host

@@ -1,0 +1,138 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/look/outside_view.h"
+
+#include "host_shim/look/framing.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace pm::host {
+namespace {
+
+using Point = std::array<double, 3>;
+
+// The front stays where it shows this share of what the best view does.
+constexpr double kGoodEnough = 2.0 / 3;
+// Of the cells that hold surface, so many are looked at.
+constexpr std::size_t kLookedAt = 4096;
+// What is seen from behind says less.
+constexpr double kBackWeight = 0.25;
+
+constexpr std::array<Point, 7> kDirections{{{0.7, 0.5, 1},
+                                            {-0.7, 0.5, 1},
+                                            {0.4, 1.2, 1},
+                                            {1, 0, 0},
+                                            {-1, 0, 0},
+                                            {0.7, 0.5, -1},
+                                            {-0.7, 0.5, -1}}};
+
+// Cells that hold surface, evenly out of all.
+std::vector<Cell> someCells(const OccupancyGrid& grid) {
+    std::vector<Cell> all;
+    const Cell& size = grid.size();
+    for (int z = 0; z < size[2]; ++z)
+        for (int y = 0; y < size[1]; ++y)
+            for (int x = 0; x < size[0]; ++x)
+                if (grid.holds({x, y, z})) all.push_back({x, y, z});
+    if (all.size() <= kLookedAt) return all;
+    std::vector<Cell> some;
+    for (std::size_t i = 0; i < kLookedAt; ++i) some.push_back(all[i * all.size() / kLookedAt]);
+    return some;
+}
+
+// Whether nothing stands between a cell and what lies in this direction (of unit length).
+bool isFree(const OccupancyGrid& grid, const Cell& from, const Point& along) {
+    const Point middle = grid.middleOf(from);
+    // The cells beside it are of the same surface.
+    constexpr double kFirst = 1.75, kStep = 0.75;
+    for (double gone = kFirst;; gone += kStep) {
+        Point at = middle;
+        for (std::size_t axis = 0; axis < 3; ++axis)
+            at[axis] += gone * grid.cellSize() * along[axis];
+        const Cell cell = grid.cellOf(at);
+        if (!grid.contains(cell)) return true;
+        if (grid.holds(cell)) return false;
+    }
+}
+
+// Of a cell's surface what can be seen from a direction: all of it, but less of what is seen at
+// more than 60 degrees.
+double seenArea(const OccupancyGrid& grid, const Cell& cell, const Point& along) {
+    double seen = 0;
+    for (const bool back : {false, true}) {
+        double projected = 0, squared = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const std::size_t towards = 2 * axis + ((along[axis] > 0) != back ? 1 : 0);
+            const double area = static_cast<double>(grid.areaSeenFrom(towards, cell));
+            projected += area * std::abs(along[axis]);
+            squared += area * area;
+        }
+        seen += std::min(std::sqrt(squared), 2 * projected) * (back ? kBackWeight : 1);
+    }
+    return seen;
+}
+
+double shown(const OccupancyGrid& grid, const std::vector<Cell>& cells, const Point& eye) {
+    double sum = 0;
+    for (const Cell& cell : cells) {
+        const Point at = grid.middleOf(cell);
+        Point along{eye[0] - at[0], eye[1] - at[1], eye[2] - at[2]};
+        const double length =
+            std::sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
+        if (!(length > 0)) continue;
+        for (double& part : along) part /= length;
+        if (isFree(grid, cell, along)) sum += seenArea(grid, cell, along);
+    }
+    return sum;
+}
+
+}  // namespace
+
+std::optional<Point> betterEye(const OccupancyGrid& grid, const OutsideView& view) {
+    if (!(grid.cellSize() > 0)) return std::nullopt;
+    const std::vector<Cell> cells = someCells(grid);
+    const double front = shown(grid, cells, view.frontEye);
+    // Of two that show the same the first: rounding doesn't decide.
+    constexpr double kClearly = 1.05;
+    double most = 0;
+    Point best{};
+    for (const Point& direction : kDirections) {
+        const Point eye = eyeFrom(direction, view.bounds, view.verticalFov, view.aspect);
+        const double here = shown(grid, cells, eye);
+        if (!(here > kClearly * most)) continue;
+        most = here;
+        best = eye;
+    }
+    if (front >= kGoodEnough * most) return std::nullopt;
+    return best;
+}
+
+namespace {
+
+// Of the lowest layer of cells along an axis the surface that lies across it.
+double levelArea(const OccupancyGrid& grid, std::size_t axis) {
+    double sum = 0;
+    const Cell& size = grid.size();
+    const std::size_t u = (axis + 1) % 3, v = (axis + 2) % 3;
+    Cell cell{};
+    cell[axis] = OccupancyGrid::kMargin;
+    for (cell[u] = 0; cell[u] < size[u]; ++cell[u])
+        for (cell[v] = 0; cell[v] < size[v]; ++cell[v])
+            sum += static_cast<double>(grid.areaSeenFrom(2 * axis, cell)) +
+                   static_cast<double>(grid.areaSeenFrom(2 * axis + 1, cell));
+    return sum;
+}
+
+}  // namespace
+
+bool standsOnZ(const OccupancyGrid& grid, const Bounds& bounds) {
+    constexpr double kTimes = 4, kRises = 0.15, kOnPlane = 1e-3;
+    const double longest = grid.cellSize() * OccupancyGrid::kCells;
+    if (!(longest > 0) || std::abs(bounds.low[2]) > kOnPlane * longest) return false;
+    if (bounds.high[2] - bounds.low[2] < kRises * longest) return false;
+    return levelArea(grid, 2) > kTimes * levelArea(grid, 1);
+}
+
+}  // namespace pm::host

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/render/material_builder.h"
+
+#include "host_shim/process/interrupt.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+namespace pm::host {
+namespace {
+
+int32_t kindOf(MaterialKind kind) {
+    switch (kind) {
+        case MaterialKind::kMirror:
+            return PMR_MATERIAL_MIRROR;
+        case MaterialKind::kDielectric:
+            return PMR_MATERIAL_DIELECTRIC;
+        default:
+            return PMR_MATERIAL_SURFACE;
+    }
+}
+
+// Between spaces a saturated colour may leave [0,1]; the plugin takes none that does.
+void store(const Rgb3& colour, float largest, float (&target)[3]) {
+    for (std::size_t i = 0; i < 3; ++i) target[i] = std::clamp(colour[i], 0.0f, largest);
+}
+
+using TextureOfKind = std::pair<const std::optional<TextureUse>*, TextureKind>;
+
+std::array<TextureOfKind, 6> usesOf(const MaterialData& material) {
+    return {{{&material.diffuseTexture, TextureKind::kColour},
+             {&material.glossyTexture, TextureKind::kColour},
+             {&material.glossyExponentTexture, TextureKind::kData},
+             {&material.transmissionTexture, TextureKind::kColour},
+             {&material.emissionTexture, TextureKind::kColour},
+             {&material.opacityTexture, TextureKind::kMask}}};
+}
+
+TextureRequest requestOf(const TextureUse& use, TextureKind kind) {
+    return {use.file, kind, use.colourSpace, use.channel};
+}
+
+}  // namespace
+
+MaterialBuilder::MaterialBuilder(const PluginContext& context, const ColourPipeline& colour,
+                                 MakePreparer textures, const WarningSink& warn)
+    : m_context(context), m_colour(colour), m_makePreparer(std::move(textures)), m_warn(warn) {}
+
+MaterialBuilder::~MaterialBuilder() {
+    for (PmrMaterial material : m_materials) m_context.api().releaseMaterial(material);
+    for (PmrTexture texture : m_textures) m_context.api().releaseTexture(texture);
+}
+
+TexturePreparer& MaterialBuilder::preparer() {
+    if (!m_preparer) m_preparer.emplace(m_makePreparer());
+    return *m_preparer;
+}
+
+TextureCounts MaterialBuilder::textureCounts() const {
+    return m_preparer ? m_preparer->counts() : TextureCounts{};
+}
+
+void MaterialBuilder::prepare(const std::vector<const MaterialData*>& materials) {
+    std::vector<TextureRequest> requests;
+    for (const MaterialData* material : materials)
+        for (const auto& [use, kind] : usesOf(*material))
+            if (*use) requests.push_back(requestOf(**use, kind));
+    if (!requests.empty()) preparer().prepare(requests);
+}
+
+// What a user should know of a picture, once.
+void MaterialBuilder::tell(const std::string& file, const BakedTexture& baked) {
+    const auto warn = [&](const std::string& text) {
+        if (m_told.insert(text).second) m_warn(Warning::kTexture, text);
+    };
+    const BadTexelCount& bad = baked.facts.bad;
+    if (bad.negative + bad.notFinite > 0)
+        warn(
+            fmt::format("{}: {} texels are below 0 and {} are infinite or not numbers; they are "
+                        "taken as 0",
+                        file, bad.negative, bad.notFinite));
+    if (!baked.facts.note.empty()) warn(fmt::format("{}: {}", file, baked.facts.note));
+    if (!baked.profile.empty() && baked.profile.find("sRGB") == std::string::npos)
+        warn(
+            fmt::format("{}: its colour profile '{}' is not obeyed; {} is taken (-colorspace, "
+                        "--texture-space)",
+                        file, baked.profile, baked.space.name));
+}
+
+PmrTexture MaterialBuilder::texture(const std::optional<TextureUse>& use, TextureKind kind,
+                                    const std::string& of) {
+    if (!use) return nullptr;
+    BakedTexture baked;
+    try {
+        baked = preparer().texture(requestOf(*use, kind));
+        tell(use->file, baked);
+    } catch (const HostError& error) {
+        m_warn(Warning::kTexture,
+               fmt::format("{}: {}: {}; its number is used alone", use->place, of, error.what()));
+        return nullptr;
+    }
+    const std::string file = baked.file.string();
+    auto desc = PMR_INIT(PmrTextureDesc);
+    desc.fileName = file.c_str();
+    desc.wrapS = desc.wrapT = use->clamp ? PMR_WRAP_CLAMP : PMR_WRAP_REPEAT;
+    for (std::size_t i = 0; i < 2; ++i) {
+        desc.uvScale[i] = use->scale[i];
+        desc.uvOffset[i] = use->offset[i];
+    }
+    // 0 would count as 1.
+    desc.gain = use->gain != 0 ? use->gain : std::numeric_limits<float>::min();
+    desc.base = use->base;
+    std::ranges::copy(baked.facts.texelHash, desc.texelHash);
+    PmrTexture texture = nullptr;
+    m_context.check(m_context.api().createTexture(m_context.handle(), &desc, &texture), use->file);
+    m_textures.push_back(texture);
+    return texture;
+}
+
+void MaterialBuilder::convertColours(const MaterialData& material, PmrMaterialDesc& desc) const {
+    store(m_colour.materialToRendering(material.diffuse), 1.0f, desc.diffuse);
+    store(m_colour.materialToRendering(material.glossy), 1.0f, desc.glossy);
+    store(m_colour.materialToRendering(material.transmission), 1.0f, desc.transmission);
+    store(m_colour.materialToRendering(material.emission), std::numeric_limits<float>::max(),
+          desc.emission);
+    // In the other space a channel's sum may have passed 1.
+    float largest = 1.0f;
+    for (std::size_t i = 0; i < 3; ++i) {
+        largest = std::max(largest, desc.diffuse[i] + desc.glossy[i]);
+    }
+    for (std::size_t i = 0; i < 3; ++i) {
+        desc.diffuse[i] /= largest;
+        desc.glossy[i] /= largest;
+    }
+}
+
+PmrMaterial MaterialBuilder::build(const MaterialData& material) {
+    auto desc = PMR_INIT(PmrMaterialDesc);
+    desc.name = material.name.c_str();
+    desc.kind = kindOf(material.kind);
+    desc.fresnel = material.fresnel ? 1 : 0;
+    desc.glossyExponent = material.glossyExponent;
+    desc.ior = material.ior;
+    desc.transparency = material.transparency;
+    convertColours(material, desc);
+    const std::string of = "material " + material.name;
+    desc.diffuseTexture = texture(material.diffuseTexture, TextureKind::kColour, of);
+    desc.glossyTexture = texture(material.glossyTexture, TextureKind::kColour, of);
+    desc.glossyExponentTexture = texture(material.glossyExponentTexture, TextureKind::kData, of);
+    desc.transmissionTexture = texture(material.transmissionTexture, TextureKind::kColour, of);
+    desc.emissionTexture = texture(material.emissionTexture, TextureKind::kColour, of);
+    desc.opacityTexture = texture(material.opacityTexture, TextureKind::kMask, of);
+    PmrMaterial handle = nullptr;
+    m_context.check(m_context.api().createMaterial(m_context.handle(), &desc, &handle), of);
+    m_materials.push_back(handle);
+    return handle;
+}
+
+}  // namespace pm::host

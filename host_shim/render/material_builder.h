@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/colour/colour_pipeline.h"
+#include "host_shim/formats/scene_data.h"
+#include "host_shim/formats/warnings.h"
+#include "host_shim/render/plugin.h"
+#include "host_shim/textures/texture_preparation.h"
+
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace pm::host {
+
+// Materials of the plugin from those of a file: numbers converted to the rendering space, pictures
+// prepared in it. Releases what it made when it ends; scenes keep what they use.
+class MaterialBuilder {
+  public:
+    // textures: makes what prepares them, called when a material has the first.
+    using MakePreparer = std::function<TexturePreparer()>;
+    MaterialBuilder(const PluginContext& context, const ColourPipeline& colour,
+                    MakePreparer textures, const WarningSink& warn);
+    ~MaterialBuilder();
+    MaterialBuilder(const MaterialBuilder&) = delete;
+    MaterialBuilder& operator=(const MaterialBuilder&) = delete;
+
+    // Prepares all textures of these materials, several at once.
+    void prepare(const std::vector<const MaterialData*>& materials);
+    // How many textures were found, made and opened; all 0 without any.
+    TextureCounts textureCounts() const;
+    // A picture that can't be had is warned of and left out. Errors: those of the plugin.
+    PmrMaterial build(const MaterialData& material);
+    // The same of one picture; null where there is none. of: what it is of, for messages.
+    PmrTexture texture(const std::optional<TextureUse>& use, TextureKind kind,
+                       const std::string& of);
+
+  private:
+    void tell(const std::string& file, const BakedTexture& baked);
+    TexturePreparer& preparer();
+    void convertColours(const MaterialData& material, PmrMaterialDesc& desc) const;
+
+    const PluginContext& m_context;
+    const ColourPipeline& m_colour;
+    MakePreparer m_makePreparer;
+    const WarningSink& m_warn;
+    std::optional<TexturePreparer> m_preparer;
+    std::set<std::string> m_told;  // texts about pictures
+    std::vector<PmrTexture> m_textures;
+    std::vector<PmrMaterial> m_materials;
+};
+
+}  // namespace pm::host

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/render/scene_memory.h"
+
+#include "host_shim/formats/text_lines.h"
+#include "host_shim/pictures/host_error.h"
+
+#include <fmt/format.h>
+
+#include <optional>
+
+namespace pm::host {
+namespace {
+
+constexpr int kOutOfMemory = 5;
+constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
+// Of a triangle of a cage: vertices, normals, their numbers, and the ray tracer's tree; measured.
+constexpr double kBytesOfTriangle = 150;
+// Of a byte of text: itself, cleaned, parsed, and the arrays; at most, of faces of bare numbers.
+constexpr double kBytesOfText = 8;
+
+// Nothing where it is not given: the library then goes by the machine.
+std::optional<double> limitGib(const Options& options) {
+    std::optional<double> limit;
+    for (const GivenSetting& setting : options.settings) {
+        double value = 0;
+        if (setting.name == "memoryLimitGib" && parseNumber(setting.value, value) && value > 0)
+            limit = value;
+    }
+    return limit;
+}
+
+// Catmull-Clark patches are quads: of other faces each corner has one, of half the rate.
+std::uint64_t trianglesOf(const MeshData& mesh) {
+    constexpr std::uint64_t kHalf = kTessellationRate / 2;
+    std::uint64_t triangles = 0;
+    for (const std::uint32_t size : mesh.faceSizes)
+        triangles += size == 4 ? std::uint64_t{2} * kTessellationRate * kTessellationRate
+                               : 2 * kHalf * kHalf * size;
+    return triangles;
+}
+
+void check(const Options& options, double gib, const std::string& what) {
+    const std::optional<double> limit = limitGib(options);
+    if (!limit || gib <= *limit) return;
+    throw HostError(static_cast<ExitCode>(kOutOfMemory),
+                    fmt::format("{}: {} about {:.2f} GiB; the memory limit is {:g} GiB "
+                                "(--memory-limit)",
+                                options.scene.string(), what, gib, *limit));
+}
+
+}  // namespace
+
+void checkFileFits(const Options& options) {
+    std::error_code unknown;
+    const auto bytes = std::filesystem::file_size(options.scene, unknown);
+    if (!unknown)
+        check(options, kBytesOfText * static_cast<double>(bytes) / kGib, "to read it takes");
+}
+
+void checkSceneFits(const Options& options, const SceneData& data) {
+    if (options.subdivide == Subdivide::kNone) return;
+    std::uint64_t triangles = 0;
+    for (const MeshData& mesh : data.meshes) {
+        if (options.subdivide == Subdivide::kAll || mesh.tags) triangles += trianglesOf(mesh);
+    }
+    check(options, kBytesOfTriangle * static_cast<double>(triangles) / kGib,
+          fmt::format("subdivided it has {} triangles of", triangles));
+}
+
+}  // namespace pm::host

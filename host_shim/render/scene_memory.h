@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/cli/options.h"
+#include "host_shim/formats/scene_data.h"
+
+#include <cstdint>
+
+namespace pm::host {
+
+inline constexpr std::uint32_t kTessellationRate = 8;  // of cages
+
+// Of what a scene file says and what it makes of it, before either is there.
+// Errors: HostError, exit code 5, where --memory-limit is given and is less.
+void checkFileFits(const Options& options);                          // the text and what is read
+void checkSceneFits(const Options& options, const SceneData& data);  // its triangles
+
+}  // namespace pm::host

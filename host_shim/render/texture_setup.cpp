@@ -1,0 +1,64 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/render/texture_setup.h"
+
+#include "host_shim/formats/warnings.h"
+#include "host_shim/render/memory_left.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <thread>
+
+namespace pm::host {
+namespace {
+
+// 20 GiB: some 150 colour textures of 4096 x 4096.
+constexpr double kUsualCacheGib = 20.0;
+constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
+
+double memoryLimitGib(const Options& options) {
+    for (const GivenSetting& setting : options.settings) {
+        if (setting.name != "memoryLimitGib") continue;
+        double value = 0;
+        const char* end = setting.value.data() + setting.value.size();
+        if (std::from_chars(setting.value.data(), end, value).ec == std::errc() && value > 0)
+            return value;
+    }
+    return 0;
+}
+
+}  // namespace
+
+std::filesystem::path textureCacheFolder(const Options& options) {
+    return options.textureCache.empty() ? usualCacheFolder() : options.textureCache;
+}
+
+std::uint64_t textureCacheBytes(const Options& options) {
+    return static_cast<std::uint64_t>(options.textureCacheGib.value_or(kUsualCacheGib) * kGib);
+}
+
+std::shared_ptr<TextureCache> openTextureCache(const Options& options, TemporaryFolder& temporary,
+                                               Log& log) {
+    const std::filesystem::path folder = textureCacheFolder(options);
+    if (!folder.empty()) {
+        auto cache = std::make_shared<TextureCache>(folder, textureCacheBytes(options));
+        if (cache->isWritable()) return cache;
+    }
+    const std::string text = fmt::format(
+        "{}: textures can't be kept here; they are made for this run only",
+        folder.empty() ? std::string("no folder for caches is known") : folder.string());
+    if (options.textureCache.empty())
+        log.message(Level::kDebug, text);
+    else
+        log.warning(static_cast<int>(Warning::kTexture), text);
+    return std::make_shared<TextureCache>(temporary.path(), textureCacheBytes(options));
+}
+
+TextureSettings textureSettings(const Options& options) {
+    const unsigned all = std::max(1u, std::thread::hardware_concurrency());
+    return {options.threads == 0 ? all : options.threads, memoryLeftBytes(memoryLimitGib(options))};
+}
+
+}  // namespace pm::host

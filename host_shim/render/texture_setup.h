@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/cli/options.h"
+#include "host_shim/log/log.h"
+#include "host_shim/process/temporary_folder.h"
+#include "host_shim/textures/texture_preparation.h"
+
+#include <memory>
+
+namespace pm::host {
+
+// What the command line says of the folder of prepared textures.
+std::filesystem::path textureCacheFolder(const Options& options);
+std::uint64_t textureCacheBytes(const Options& options);
+
+// The cache that the command line asks for, else the user's own; where that can't be written one in
+// the temporary folder, which is told. Errors: HostError kFile where there is no such folder
+// either.
+std::shared_ptr<TextureCache> openTextureCache(const Options& options, TemporaryFolder& temporary,
+                                               Log& log);
+
+// Threads and memory for preparing textures.
+TextureSettings textureSettings(const Options& options);
+
+}  // namespace pm::host

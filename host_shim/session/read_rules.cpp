@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/session/read_rules.h"
+
+#include "host_shim/formats/all/scene_readers.h"
+#include "host_shim/formats/sidecar/sidecar.h"
+#include "host_shim/process/interrupt.h"
+
+#include <fmt/format.h>
+
+#include <cstdlib>
+
+namespace pm::host {
+
+namespace fs = std::filesystem;
+
+ReadRules readRules(const Options& options) {
+    ReadRules rules = options.reading;
+    std::string config = options.colour.ocioFile;
+    if (const char* const variable = std::getenv("OCIO"); config.empty() && variable != nullptr)
+        config = variable;
+    std::error_code ignored;
+    if (!config.empty() && fs::is_regular_file(config, ignored))
+        rules.files.alsoAllowed.push_back(fs::path(config).parent_path());
+    return rules;
+}
+
+fs::path sidecarInUse(const Options& options) {
+    if (options.noSidecar || options.scene.empty()) return {};
+    const fs::path file = sidecarOf(options.scene);
+    std::error_code ignored;
+    return fs::exists(file, ignored) ? file : fs::path();
+}
+
+const CameraData* cameraInUse(const Options& options, const std::vector<CameraData>& cameras) {
+    if (options.cameraName.empty()) return cameras.empty() ? nullptr : &cameras.front();
+    std::string names;
+    for (const CameraData& camera : cameras) {
+        if (camera.name == options.cameraName) return &camera;
+        names += (names.empty() ? "" : ", ") + camera.name;
+    }
+    throw HostError(ExitCode::kUsage,
+                    fmt::format("--camera '{}': {}", options.cameraName,
+                                names.empty() ? "no sidecar of the scene describes a camera"
+                                              : "the cameras of the scene are " + names));
+}
+
+SceneData readScene(const Options& options, const WarningSink& warn,
+                    const std::optional<std::array<double, 3>>& eye) {
+    ReadRules rules = readRules(options);
+    const GoOn goOn = throwIfInterrupted;
+    std::optional<Sidecar> sidecar;
+    if (const fs::path file = sidecarInUse(options); !file.empty()) {
+        SceneFiles files(options.scene.parent_path(), rules.files);
+        sidecar = readSidecarFile(file, files);
+        rules.materials = sidecar->materialNames();
+    }
+    const CameraData* camera =
+        cameraInUse(options, sidecar ? sidecar->cameras : std::vector<CameraData>{});
+    std::optional<std::array<double, 3>> place = eye;
+    if (!place && camera != nullptr) place = placeOf(*camera);
+    SceneData scene = sceneReaderFor(options.scene).read({options.scene, warn, goOn, place, rules});
+    if (sidecar) addSidecar(*sidecar, scene);
+    return scene;
+}
+
+std::string explainMaterials(std::span<const MaterialFile> libraries) {
+    std::string text;
+    for (const MaterialFile& library : libraries)
+        text += fmt::format("materials: {} is read as {}, since {}\n", library.file,
+                            library.dialect, library.reason);
+    return text;
+}
+
+}  // namespace pm::host

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/cli/options.h"
+#include "host_shim/colour/colour_pipeline.h"
+#include "host_shim/colour/exposure.h"
+#include "host_shim/log/log.h"
+#include "host_shim/pictures/picture.h"
+#include "host_shim/render/render_run.h"
+#include "host_shim/render/tiled_output.h"
+#include "host_shim/session/report.h"
+#include "host_shim/session/statistics.h"
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pm::host {
+
+class MaterialBuilder;
+
+// One rendering from files to files, or one merging of parts.
+class Session {
+  public:
+    Session(const Options& options, Log& log);
+
+    // Renders or merges, and writes; returns the exit code. Statistics are written on failure too.
+    int run();
+
+  private:
+    int render();
+    void checkBeforeReading();
+    void readReference(const ColourPipeline& colour);
+    void readDisplayReference();
+    // Puts the reference's name before what check throws.
+    void namingReference(const std::function<void()>& check) const;
+    void buildScene(const ColourPipeline& colour, MaterialBuilder& materials,
+                    std::optional<PluginScene>& scene);
+    void noteFiles(const SceneData& data);
+    // SCENE.pm.json (session_sidecar.cpp). Errors: kUsage where it may not be written.
+    void checkSidecar() const;
+    void writeSidecar(const SceneData& data);
+    int renderScene(const ColourPipeline& colour, const PluginContext& context);
+    int merge();
+    void checkBeforeMerging();
+    PmrContextDesc contextDesc(const Plugin& plugin);
+    // Camera, light and exposure (session_look.cpp).
+    CameraPose frameScene(const SceneData& data);
+    void buildLit(SceneData& data, const CameraPose& camera, const ColourPipeline& colour,
+                  MaterialBuilder& materials, std::optional<PluginScene>& scene);
+    const Picture& pilot(const PluginScene& scene, const ColourPipeline& colour);
+    bool measuresExposure(const ColourPipeline& colour) const;
+    void expose(const PluginScene& scene, const ColourPipeline& colour,
+                std::optional<DisplayTransform>& display);
+    void exposeAsParts(const std::string& notes, const ColourPipeline& colour,
+                       DisplayTransform& display);
+    void tellExposure();
+    // What comes after the render (session_pictures.cpp).
+    [[noreturn]] static void throwStopped(PmrStatus status);
+    int finishPhotons(PmrStatus status);
+    int finish(const PictureSource& source, PmrStatus status, const ColourPipeline& colour,
+               const std::optional<DisplayTransform>& display);
+    // The same for a render whose buckets went to files as they came (session_tiles.cpp).
+    int finishTiles(PmrStatus status, TiledOutput& output);
+    void noteEnd();
+    // No picture is black without a word (session_dark.cpp).
+    void lookForLight(const Picture& picture);
+    void warnOfBlack();
+    bool standsInClosedSpace() const;
+    void lookForDarkness(const std::filesystem::path& file, const Picture& picture,
+                         const DisplayPicture& shown);
+    void warnOfClamped(const std::filesystem::path& file, const ExrReport& report);
+    // " estimated relMSE ..." for lines that tell what was written.
+    std::string errorText() const;
+    void writeOutputs(const Picture& picture, bool complete,
+                      const std::optional<DisplayTransform>& display);
+    void writeOutput(const std::filesystem::path& file, const Picture& picture,
+                     const std::optional<DisplayTransform>& display);
+    int compareWithReference(const Picture& picture);
+    int compareWithDisplayReference(const Picture& picture, const DisplayTransform& display);
+    int judgeAgainstLimit(const std::string& name, std::optional<double> value);
+    // Tells of samples that are no light; the exit code, which is 3 with --strict.
+    int judgeSamples();
+    void printPixel(const Picture& picture) const;
+    void writeStatistics();
+    void writeReport();
+    // Runs work and notes how long it took.
+    void phase(const std::string& name, const std::function<void()>& work);
+    void warn(Warning code, const std::string& text);
+
+    Options m_options;
+    Log& m_log;
+    Statistics m_statistics;
+    Report m_report;  // gathers only where one is wanted
+    std::optional<Picture> m_reference;
+    std::optional<DisplayPicture> m_displayReference;  // in place of it
+    std::optional<Picture> m_pilot;      // of the scene as it is rendered; see pilot()
+    Exposure m_exposure;                 // of display pictures
+    std::optional<CameraPose> m_camera;  // nothing before the scene is read, and of merges
+    Bounds m_bounds;                     // of the scene
+    bool m_hasLight{};                   // of its own
+    bool m_hasCameraLight{};
+    // Statistics and report; not before it is known that they overwrite no input.
+    bool m_mayWriteStatistics{};
+};
+
+}  // namespace pm::host

@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Session::merge: pm_host merge PART... -o FILE.
+#include "host_shim/cli/option_values.h"
+#include "host_shim/pictures/picture_io.h"
+#include "host_shim/process/interrupt.h"
+#include "host_shim/process/outputs.h"
+#include "host_shim/render/merge_run.h"
+#include "host_shim/render/picture_assembly.h"
+#include "host_shim/session/session.h"
+#include "host_shim/session/session_files.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace pm::host {
+namespace {
+
+// Takes from the parts what a command line says of a render.
+void takeFrame(const MergeRun& run, Options& options) {
+    constexpr std::int32_t kMost = 1 << 24;
+    const auto pixels = [&](const char* setting) {
+        return static_cast<std::int32_t>(integerValue(setting, run.settingText(setting), 1, kMost));
+    };
+    options.width = pixels("width");
+    options.height = pixels("height");
+    const std::string crop = run.settingText("crop");
+    if (!crop.empty()) options.crop = cropValue("crop", crop);
+}
+
+// The first few of the lines A:B, for a message.
+std::string shownRanges(const std::string& lines) {
+    constexpr std::ptrdiff_t kShown = 8;
+    const auto count = std::ranges::count(lines, '\n');
+    std::size_t end = 0;
+    for (std::ptrdiff_t i = 0; i < std::min(count, kShown); ++i) end = lines.find('\n', end) + 1;
+    std::string text = lines.substr(0, end > 0 ? end - 1 : lines.size());
+    std::ranges::replace(text, '\n', ' ');
+    return count > kShown ? text + fmt::format(" and {} more", count - kShown) : text;
+}
+
+}  // namespace
+
+void Session::checkBeforeMerging() {
+    checkNotInputs(allOutputs(m_options), inputsOf(m_options, nullptr));
+    checkOutputs({}, otherOutputs(m_options), m_options.makeOutputPath);
+    m_mayWriteStatistics = true;
+    checkOutputs(m_options.outputs, otherOutputs(m_options), m_options.makeOutputPath);
+    if (!m_options.log.empty()) m_log.openFile(m_options.log);
+}
+
+int Session::merge() {
+    checkBeforeMerging();
+    const Plugin plugin(m_options.plugin);
+    const PluginContext context(plugin, contextDesc(plugin));
+    MergeRun run(context);
+    phase("mergeSeconds", [&] { run.add(m_options.merge, m_log); });
+    if (const std::string missing = run.missing(); !missing.empty()) {
+        std::fputs(missing.c_str(), stdout);
+        throw HostError(ExitCode::kBadInput,
+                        fmt::format("merge: buckets are missing: {}; make them with --buckets A:B "
+                                    "-o NAME.pmpart",
+                                    shownRanges(missing)));
+    }
+    takeFrame(run, m_options);
+    const ColourPipeline colour = colourOfParts(run.settingText("hostIdentity"), m_options.colour);
+    m_statistics.colourConfig = colour.configName();
+    m_statistics.renderingSpace = colour.renderingSpace();
+    if (!m_options.reference.empty()) readReference(colour);
+    std::optional<DisplayTransform> display;
+    if (wantsDisplay(m_options)) {
+        display = colour.displayTransform();
+        exposeAsParts(run.settingText("hostNote"), colour, *display);
+    }
+    m_statistics.library = run.statistics();
+    return finish(run, PMR_OK, colour, display);
+}
+
+}  // namespace pm::host

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// A Session whose render has ended: its pictures are written and compared.
+#include "host_shim/session/session.h"
+
+#include "host_shim/colour/display_picture.h"
+#include "host_shim/pictures/compare.h"
+#include "host_shim/pictures/display_compare.h"
+#include "host_shim/pictures/picture_io.h"
+#include "host_shim/process/interrupt.h"
+#include "host_shim/process/outputs.h"
+#include "host_shim/render/picture_assembly.h"
+#include "host_shim/report/report_command.h"
+
+#include <fmt/format.h>
+
+#include <cstdio>
+
+namespace pm::host {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kErrorLimitPassed = 6;
+
+}  // namespace
+
+// Of a render that ended before its time.
+void Session::throwStopped(PmrStatus status) {
+    throwIfInterrupted();
+    throw HostError(static_cast<ExitCode>(exitCodeOf(status)), "the render was cancelled");
+}
+
+int Session::finishPhotons(PmrStatus status) {
+    if (status != PMR_OK) throwStopped(status);
+    m_statistics.outputs.push_back(m_options.photonMap.string());
+    m_statistics.stopReason = m_statistics.libraryStopReason();
+    m_log.info(
+        fmt::format("wrote {}: {}", m_options.photonMap.string(), m_statistics.photonMapText()));
+    return 0;
+}
+
+int Session::finish(const PictureSource& source, PmrStatus status, const ColourPipeline& colour,
+                    const std::optional<DisplayTransform>& display) {
+    const bool complete = status == PMR_OK;
+    const auto start = m_log.elapsedSeconds();
+    const Picture picture = assemblePicture(source, m_options, colour, complete);
+    const auto report = [&] {
+        if (m_options.report.empty()) return;
+        m_report.takePicture(source, picture, m_reference ? &*m_reference : nullptr,
+                             display.value(), colour.luminanceWeights());
+    };
+    try {
+        writeOutputs(picture, complete, display);
+    } catch (...) {
+        report();
+        throw;
+    }
+    report();
+    m_statistics.phaseSeconds["writePicturesSeconds"] = m_log.elapsedSeconds() - start;
+    if (!complete) throwStopped(status);
+    noteEnd();
+    lookForLight(picture);
+    if (m_options.onlyPixel) printPixel(picture);
+    if (m_displayReference) return compareWithDisplayReference(picture, display.value());
+    return m_reference ? compareWithReference(picture) : 0;
+}
+
+// All is written.
+void Session::noteEnd() {
+    if (!m_options.part.empty()) {
+        m_statistics.outputs.push_back(m_options.part.string());
+        m_log.info("wrote " + m_options.part.string());
+    }
+    // Only now that all is written nothing is lost without it.
+    std::error_code ignored;
+    if (!m_options.checkpoint.empty() && !m_options.keepCheckpoint)
+        fs::remove(m_options.checkpoint, ignored);
+    m_statistics.stopReason = m_statistics.libraryStopReason();
+    if (m_statistics.stopReason == "error target" || m_statistics.stopReason == "time limit")
+        m_log.info("stopped by the " + m_statistics.stopReason);
+}
+
+void Session::warnOfClamped(const fs::path& file, const ExrReport& report) {
+    if (report.clampedToHalf > 0)
+        warn(Warning::kOutput, fmt::format("{}: {} values are beyond half's 65504 and clamped",
+                                           file.string(), report.clampedToHalf));
+}
+
+std::string Session::errorText() const {
+    const auto estimate = m_statistics.estimatedRelMse();
+    if (!estimate) return "";
+    return fmt::format(", estimated relMSE {:.2e} (noise and bias, from what passes differ by{})",
+                       *estimate, m_statistics.estimateDoubts());
+}
+
+void Session::writeOutputs(const Picture& picture, bool complete,
+                           const std::optional<DisplayTransform>& display) {
+    const std::string error = errorText();
+    // One that fails must not take the others with it.
+    std::optional<HostError> failure;
+    for (const fs::path& output : m_options.outputs) {
+        const fs::path file = complete ? output : partialName(output);
+        try {
+            writeOutput(file, picture, display);
+        } catch (const HostError& fault) {
+            if (failure) m_log.message(Level::kError, failure->what());
+            failure = fault;
+            continue;
+        }
+        m_statistics.outputs.push_back(file.string());
+        m_log.info(fmt::format("wrote {}{}", file.string(), error));
+    }
+    if (failure) throw *failure;
+}
+
+void Session::writeOutput(const fs::path& file, const Picture& picture,
+                          const std::optional<DisplayTransform>& display) {
+    if (!isDisplayReferred(pictureFormat(file))) {
+        warnOfClamped(file, writeLinearPicture(file, picture, {m_options.exrHalf}));
+        return;
+    }
+    const DisplayResult result = makeDisplayPicture(picture, display.value());
+    const auto bad = result.cleaning.nanCount + result.cleaning.infiniteCount;
+    if (bad > 0) {
+        warn(Warning::kOutput, fmt::format("{}: {} values were not finite", file.string(), bad));
+    }
+    DisplayWriteOptions how;
+    how.exposure = exposureText(m_exposure);
+    writeDisplayPicture(file, result.picture, how);
+    lookForDarkness(file, picture, result.picture);
+}
+
+int Session::compareWithReference(const Picture& picture) {
+    const ErrorReport report = compareRelMse(*m_reference, picture);
+    if (!report.relMse) {
+        std::fputs("relMSE nan\n", stdout);
+        warn(Warning::kOutput,
+             fmt::format("{} values of the picture and {} of the reference are not finite",
+                         report.badInPicture, report.badInReference));
+    } else {
+        std::fputs(fmt::format("relMSE {}\n", *report.relMse).c_str(), stdout);
+        m_statistics.referenceRelMse = report.relMse;
+    }
+    return judgeAgainstLimit("relMSE", report.relMse);
+}
+
+int Session::compareWithDisplayReference(const Picture& picture, const DisplayTransform& display) {
+    const DisplayResult shown = makeDisplayPicture(picture, display);
+    const DisplayDifference difference =
+        compareDisplay(asCodes(*m_displayReference), asCodes(shown.picture));
+    std::fputs(fmt::format("code difference {}\n", describe(difference)).c_str(), stdout);
+    m_statistics.referenceCodes = difference;
+    const bool isBad = shown.cleaning.nanCount + shown.cleaning.infiniteCount > 0;
+    return judgeAgainstLimit("rms code difference",
+                             isBad ? std::nullopt : std::optional(difference.rms));
+}
+
+int Session::judgeAgainstLimit(const std::string& name, std::optional<double> value) {
+    if (!m_options.errorLimit) return 0;
+    if (value && *value <= *m_options.errorLimit) return 0;
+    m_statistics.stopReason = "error limit";
+    m_statistics.error =
+        value ? fmt::format("{} {} is above the limit {}", name, *value, *m_options.errorLimit)
+              : "a value is not finite";
+    m_log.message(Level::kError, m_statistics.error);
+    return kErrorLimitPassed;
+}
+
+int Session::judgeSamples() {
+    const auto bad = m_statistics.badSamples();
+    if (!bad) return 0;
+    Arguments words = ofOnePixel(m_statistics.commandLine);
+    words.insert(words.end(), {"--only-pixel", fmt::format("{},{}", bad->x, bad->y)});
+    if (m_options.crop) {  // the pixel may be beyond the frame
+        const PixelRect& crop = *m_options.crop;
+        words.insert(words.end(),
+                     {"--crop", fmt::format("{},{},{},{}", crop.x0, crop.y0, crop.x1, crop.y1)});
+    }
+    const std::string text = fmt::format("samples that are no light count as black: {}; alone: {}",
+                                         bad->text, shellCommand(words));
+    if (!m_options.strict) {
+        warn(Warning::kBadSamples, text);
+        return 0;
+    }
+    m_statistics.stopReason = "bad samples";
+    m_statistics.error = text;
+    m_log.message(Level::kError, text);
+    return static_cast<int>(ExitCode::kBadInput);
+}
+
+void Session::printPixel(const Picture& picture) const {
+    for (const Channel& channel : picture.channels) {
+        std::fputs(fmt::format("{} {}\n", channel.name, channel.values.at(0)).c_str(), stdout);
+    }
+    std::fflush(stdout);
+}
+
+}  // namespace pm::host

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/formats/scene_data.h"
+#include "host_shim/log/log.h"
+#include "host_shim/pictures/display_compare.h"
+
+#include <nlohmann/json_fwd.hpp>
+
+#include <cstdint>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace pm::host {
+
+// Samples that were NaN, infinite or negative, and count as black.
+struct BadSampleNote {
+    std::string text;       // how many of each kind, and where the first was
+    std::int64_t x{}, y{};  // its pixel
+};
+
+// What is written as --stats: one JSON object, "schema": "pm-stats/1". Units stand in the key
+// names; keys are only ever added.
+struct Statistics {
+    std::vector<std::string> commandLine;
+    std::string scene;
+    std::vector<MaterialFile> materialFiles;
+    std::string pluginFile;
+    std::string pluginVersion;
+    std::string colourConfig;
+    std::string renderingSpace;
+    std::optional<double> exposureStops;         // of display pictures, where there are any
+    std::vector<std::string> outputs;            // that were written
+    std::map<std::string, double> phaseSeconds;  // readSceneSeconds, ...
+    // passes done, error target, time limit, finished (without a render), error limit, interrupted,
+    // terminated, failed
+    std::string stopReason{"failed"};
+    std::string error;
+    std::optional<double> referenceRelMse;
+    std::optional<DisplayDifference> referenceCodes;  // of a display picture
+    std::string library;  // the plugin's own statistics, JSON, empty when there was no render
+    int exitCode{1};
+
+    // Estimated relMSE of the picture, from the plugin's statistics.
+    std::optional<double> estimatedRelMse() const;
+    // How far that is to be trusted, for people; empty where there is nothing to say.
+    std::string estimateDoubts() const;
+    // Why the library's render ended, in its words; "finished" when it doesn't say.
+    std::string libraryStopReason() const;
+    // Of a photon map that was written, for people.
+    std::string photonMapText() const;
+    // None where there were no bad samples.
+    std::optional<BadSampleNote> badSamples() const;
+    std::string toJson(const Log& log) const;
+};
+
+}  // namespace pm::host
