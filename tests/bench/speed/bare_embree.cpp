@@ -166,8 +166,9 @@ std::uint64_t BareEmbree::countOccludedByEight(std::span<const Ray> rays) const 
 
 LoneRayTracer::LoneRayTracer(const Scene& scene) : m_tracer(scene.isa()) {
     for (const InstanceDescription& instance : scene.description().instances) {
-        if (const auto* sphere = std::get_if<SphereShape>(&instance.shape)) {
-            m_tracer.addSphere(sphere->centre - scene.centre(), sphere->radius);
+        if (std::holds_alternative<SphereShape>(instance.shape)) {
+            m_tracer.addCurved(CurvedShape(instance.shape, instance.transform, scene.centre(),
+                                           false, instance.name));
             continue;
         }
         const TriangleMesh& mesh = *std::get<std::shared_ptr<const TriangleMesh>>(instance.shape);
