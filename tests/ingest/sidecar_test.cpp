@@ -69,7 +69,7 @@ TEST(Sidecar, PlacesGroupsByInstancesAlone) {
     EXPECT_EQ(data.instances[1].hiddenFrom, kHiddenFromCamera + kHiddenFromShadow);
     EXPECT_EQ(data.instances[2].name, "second");
     // Scaled to (2,1,0), then turned about y: x goes to -z.
-    EXPECT_EQ(transformed(*data.instances[2].transform, {1, 1, 0}),
+    EXPECT_EQ(transformed(*data.instances[2].transform, std::array<double, 3>{1, 1, 0}),
               (std::array<double, 3>{0, 1, 3}));
     EXPECT_EQ(data.bounds.low, (std::array<double, 3>{0, 0, 0}));
     EXPECT_EQ(data.bounds.high, (std::array<double, 3>{11, 1, 5}));
@@ -107,7 +107,7 @@ TEST(Sidecar, DescribesLights) {
     const LightData& point = sidecar.lights[0];
     EXPECT_EQ(point.kind, LightData::Kind::kPoint);
     EXPECT_EQ(point.name, "lights[0]");
-    EXPECT_EQ(transformed(point.transform, {0, 0, 0}), (std::array<double, 3>{1, 2, 3}));
+    EXPECT_EQ(transformed(point.transform, std::array<double, 3>{0, 0, 0}), (std::array<double, 3>{1, 2, 3}));
     EXPECT_EQ(point.emission, (std::array<float, 3>{5, 5, 5}));
     const LightData& spot = sidecar.lights[1];
     EXPECT_EQ(spot.name, "lamp");

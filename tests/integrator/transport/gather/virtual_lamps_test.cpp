@@ -16,6 +16,7 @@
 
 #include "integrator/sampling/warps.h"
 #include "integrator/transport/gather/final_gather.h"
+#include "tests/support/rooms.h"
 #include "tests/support/scene_maker.h"
 #include "tests/support/statistics.h"
 
