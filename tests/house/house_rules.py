@@ -37,7 +37,8 @@ THIRD_PARTY = [
     (re.compile(r"OpenColorIO/"), ("host_shim/",)),
     (re.compile(r"tiny_obj_loader|CLI/"), ("host_shim/",)),
 ]
-# Pattern, where it is not allowed, why.
+LIGHT_PATHS = ("integrator/photons/", "integrator/transport/")
+# Pattern, where it is not allowed as beginnings of paths, why.
 FORBIDDEN = [
     (re.compile(r"\b(?:OIIO|OpenImageIO(?:_v\w+)?)::attribute\s*\("), PARTS,
      "sets OpenImageIO's state for the whole process"),
@@ -52,6 +53,12 @@ FORBIDDEN = [
      "changes the host's process"),
     (re.compile(r"\b(?:strto[df]|strtold|sto[df]|stold|atof|sscanf|setlocale)\s*\("), PARTS,
      "goes through the locale; use std::from_chars or fmt"),
+    (re.compile(r"\bMaterialKind\b"), LIGHT_PATHS,
+     "is asked for where light is followed; ask what a material can do, material_description.h"),
+    (re.compile(r"\b(?:Lambertian|Phong|Mirror|Dielectric|Pane)\b|\bmaterials/lobes/"), LIGHT_PATHS,
+     "is a lobe's model; ask the Bsdf by a lobe's role"),
+    (re.compile(r"\b(?:diffuse|reflectance)\([^()]*(?:\(\))?\)\s*\*\s*kInvPi"), LIGHT_PATHS,
+     "is a Lambertian lobe's business; ask Bsdf::reflectedOf"),
 ]  # fmt: skip
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
 COMMENT_OR_STRING = re.compile(
@@ -100,9 +107,9 @@ def check_forbidden(root):
     for name in sources(root):
         lines = code_lines((root / name).read_text(encoding="utf-8"))
         for number, line in enumerate(lines, 1):
-            for pattern, parts, why in FORBIDDEN:
+            for pattern, places, why in FORBIDDEN:
                 match = pattern.search(line)
-                if match and name.split("/")[0] in parts:
+                if match and name.startswith(places):
                     yield f"{name}:{number}: {match.group().strip('( ')} {why}"
 
 
