@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -10,6 +11,8 @@
 
 namespace pm {
 
+// Only what is in this folder and the scene asks for it; what follows light asks what a material
+// can do, below.
 enum class MaterialKind { kSurface, kMirror, kDielectric };
 
 // A material as the host gives it: numbers, each multiplied by its texture where it has one.
@@ -70,9 +73,58 @@ inline bool isSheet(const MaterialDescription& material) {
            !isBlack(material.diffuse);
 }
 
+// Whether light may go on behind the material, through glass or straight.
+inline bool mayTransmit(const MaterialDescription& material) {
+    return material.kind == MaterialKind::kDielectric || material.transparency > 0.0f ||
+           material.opacityTexture != kNoTexture;
+}
+
+// Whether the material has a diffuse lobe: photons may be kept at it.
+inline bool reflectsDiffusely(const MaterialDescription& material) {
+    return material.kind == MaterialKind::kSurface && !isBlack(material.diffuse);
+}
+
+// Whether the material may have a lobe that is glossy or broad.
+inline bool mayBeGlossy(const MaterialDescription& material) {
+    return (material.kind == MaterialKind::kSurface && !isBlack(material.glossy)) ||
+           (material.kind == MaterialKind::kMirror && material.glossyExponent > 0.0f);
+}
+
+// Whether the numbers are those of a broad lobe. So may glass have them, to no effect on what it
+// does; times that the plan expects count it.
+inline bool hasBroadNumbers(const MaterialDescription& material) {
+    return !isBlack(material.glossy) && isBroad(material) &&
+           (material.kind == MaterialKind::kSurface || material.glossyExponent > 0.0f);
+}
+
 // Whether light that meets the material goes nowhere from there, whatever its textures.
 inline bool isBlackBody(const MaterialDescription& material) {
     return isDiffuseAtMost(material) && isBlack(material.diffuse);
+}
+
+// Whether light passes as if nothing were there: clear glass of index 1. What has such a material
+// is met by no ray.
+inline bool isInvisible(const MaterialDescription& material) {
+    constexpr float kRounding = 1e-6f;
+    return material.kind == MaterialKind::kDielectric &&
+           std::abs(material.ior - 1.0f) <= kRounding && material.transmission == Rgb(1.0f) &&
+           material.transmissionTexture == kNoTexture && isBlack(material.emission);
+}
+
+// What a lobe may reflect and still count as carrying nothing: far less than one photon a pass
+// would bring.
+inline constexpr float kCarriesNothing = 1e-6f;
+
+// Whether light can leave a surface of this material other than diffusely, by a broad lobe or
+// straight on, which makes it caustic.
+inline bool castsCaustics(const MaterialDescription& material) {
+    if (isDiffuseAtMost(material) || isInvisible(material)) return false;
+    if (material.kind != MaterialKind::kDielectric && !material.fresnelMirror &&
+        material.glossyTexture == kNoTexture && !(maxChannel(material.glossy) > kCarriesNothing))
+        return false;
+    const bool isPhong = material.kind == MaterialKind::kSurface ||
+                         (material.kind == MaterialKind::kMirror && material.glossyExponent > 0.0f);
+    return !(isPhong && isBroad(material));
 }
 
 }  // namespace pm

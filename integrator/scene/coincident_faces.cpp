@@ -12,7 +12,7 @@
 #include <map>
 #include <utility>
 
-#include "integrator/materials/invisible.h"
+#include "integrator/materials/material_description.h"
 #include "integrator/sampling/warps.h"
 #include "integrator/scene/shape_record.h"
 

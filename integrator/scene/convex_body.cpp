@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "integrator/materials/invisible.h"
+#include "integrator/materials/material_description.h"
 
 namespace pm {
 

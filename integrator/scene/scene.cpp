@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "integrator/materials/invisible.h"
+#include "integrator/materials/material_description.h"
 #include "integrator/scene/coincident_faces.h"
 #include "integrator/scene/shape_record.h"
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "integrator/materials/invisible.h"
+#include "integrator/materials/material_description.h"
 #include "integrator/scene/scene.h"
 #include "integrator/shapes/curved_shape.h"
 #include "integrator/shapes/placement.h"

@@ -50,7 +50,8 @@ THIRD_PARTY = [
     (re.compile(r"dlfcn\.h"), ("host_shim/render/",)),
 ]
 LISTS = pathlib.Path(__file__).resolve().parent
-# Pattern, where it is not allowed, why.
+LIGHT_PATHS = ("integrator/photons/", "integrator/transport/")
+# Pattern, where it is not allowed as beginnings of paths, why.
 FORBIDDEN = [
     (re.compile(r"\b(?:OIIO|OpenImageIO(?:_v\w+)?)::attribute\s*\("), PARTS,
      "sets OpenImageIO's state for the whole process"),
@@ -65,6 +66,12 @@ FORBIDDEN = [
      "changes the host's process"),
     (re.compile(r"\b(?:strto[df]|strtold|sto[df]|stold|atof|sscanf|setlocale)\s*\("), PARTS,
      "goes through the locale; use std::from_chars or fmt"),
+    (re.compile(r"\bMaterialKind\b"), LIGHT_PATHS,
+     "is asked for where light is followed; ask what a material can do, material_description.h"),
+    (re.compile(r"\b(?:Lambertian|Phong|Mirror|Dielectric|Pane)\b|\bmaterials/lobes/"), LIGHT_PATHS,
+     "is a lobe's model; ask the Bsdf by a lobe's role"),
+    (re.compile(r"\b(?:diffuse|reflectance)\([^()]*(?:\(\))?\)\s*\*\s*kInvPi"), LIGHT_PATHS,
+     "is a Lambertian lobe's business; ask Bsdf::reflectedOf"),
 ]  # fmt: skip
 # Names of the C interface, and the rooms of the plugin that may use them.
 INTERFACE_NAME = re.compile(r"\b(?:Pmr[A-Z]|PMR_|pmr[A-Z])\w*")
@@ -116,9 +123,9 @@ def check_forbidden(root):
     for name in sources(root):
         lines = code_lines((root / name).read_text(encoding="utf-8"))
         for number, line in enumerate(lines, 1):
-            for pattern, parts, why in FORBIDDEN:
+            for pattern, places, why in FORBIDDEN:
                 match = pattern.search(line)
-                if match and name.split("/")[0] in parts:
+                if match and name.startswith(places):
                     yield f"{name}:{number}: {match.group().strip('( ')} {why}"
 
 

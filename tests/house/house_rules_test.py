@@ -51,6 +51,7 @@ class HouseRules(unittest.TestCase):
         self.write("plugin/api/p.cpp", '#include "scheduler/s.h"\n#include "plugin/include/pm_plugin.h"\nPmrStatus s = PMR_OK;\n')
         self.write("plugin/session/p.cpp", '// PmrStatus\nconst char* s = "PMR_OK";\n')
         self.write("scheduler/s.h", "#pragma once\n")
+        self.write("integrator/materials/m.cpp", "MaterialKind k; Phong p{3}; f(diffuse() * kInvPi);\n")
         self.write("host_shim/colour/h.cpp", '#include "plugin/include/pm_plugin.h"\n#include <OpenColorIO/x.h>\n')
         self.assertEqual(house_rules.breaches(self.root), [])
 
@@ -79,7 +80,11 @@ class HouseRules(unittest.TestCase):
         cases = [("host_shim", 'OIIO::attribute("threads", 1);'), ("plugin", "std::abort();"),
                  ("plugin", "tbb::global_control c(x, 1);"), ("integrator", "exit(1);"),
                  ("host_shim", "OCIO::SetCurrentConfig(c);"), ("integrator", "std::cerr << 1;"),
-                 ("scheduler", 'printf("x");'), ("host_shim", "double d = std::stod(s);")]  # fmt: skip
+                 ("scheduler", 'printf("x");'), ("host_shim", "double d = std::stod(s);"),
+                 ("integrator/transport/gather", "if (m.kind == MaterialKind::kMirror) return;"),
+                 ("integrator/photons/map", "MaterialKind k;"),
+                 ("integrator/photons/trace", "Phong lobe{3};"),
+                 ("integrator/transport/path", "Rgb out = bsdf.diffuse() * kInvPi * e;")]  # fmt: skip
         for folder, code in cases:
             with self.subTest(code=code):
                 self.setUp()

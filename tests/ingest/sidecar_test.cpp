@@ -107,7 +107,8 @@ TEST(Sidecar, DescribesLights) {
     const LightData& point = sidecar.lights[0];
     EXPECT_EQ(point.kind, LightData::Kind::kPoint);
     EXPECT_EQ(point.name, "lights[0]");
-    EXPECT_EQ(transformed(point.transform, std::array<double, 3>{0, 0, 0}), (std::array<double, 3>{1, 2, 3}));
+    EXPECT_EQ(transformed(point.transform, std::array<double, 3>{0, 0, 0}),
+              (std::array<double, 3>{1, 2, 3}));
     EXPECT_EQ(point.emission, (std::array<float, 3>{5, 5, 5}));
     const LightData& spot = sidecar.lights[1];
     EXPECT_EQ(spot.name, "lamp");

@@ -62,10 +62,9 @@ bool SurfaceCells::findAlong(const Vec3f& middle, const Vec3f& through, const Ve
         position = surface.position;
         normal = dot(surface.geometricNormal, direction) > 0.0f ? surface.geometricNormal
                                                                 : -surface.geometricNormal;
-        const MaterialDescription& material = m_scene.material(surface.material);
         if (dot(normal, direction) >= kDirectionCosine &&
             maxAbsComponent(position - middle) <= kCellReach * cellSize &&
-            material.kind == MaterialKind::kSurface && !isBlack(material.diffuse))
+            reflectsDiffusely(m_scene.material(surface.material)))
             return true;
         const float passed = dot(ray.origin - position, direction) + 1e-3f * cellSize;
         ray.origin -= direction * passed;

@@ -52,8 +52,7 @@ SeenArea lookFor(const Scene& scene, const PhotonGate& gate, const Vec3f& apex,
     const Vec3f ray = gate.position + inPlane - apex;
     Surface surface;
     if (!scene.intersect({apex, ray, kRayReach}, surface)) return {};
-    const MaterialDescription& material = scene.material(surface.material);
-    if (material.kind != MaterialKind::kSurface || isBlack(material.diffuse)) return {};
+    if (!reflectsDiffusely(scene.material(surface.material))) return {};
     const Vec3f facing = dot(surface.geometricNormal, ray) < 0.0f ? surface.geometricNormal
                                                                   : -surface.geometricNormal;
     const Vec3f fromPoint = surface.position - gate.position;

@@ -241,7 +241,7 @@ class PhotonWalk {
 
     static bool isDiffuseOrStraight(const Bsdf& bsdf) {
         return bsdf.isDiffuseOnly() ||
-               !(bsdf.has(bsdf.phongLobe()) || bsdf.has(Lobe::kReflection) ||
+               !(bsdf.has(bsdf.glossyLobe()) || bsdf.has(Lobe::kReflection) ||
                  bsdf.has(Lobe::kRefraction));
     }
 

@@ -41,7 +41,7 @@ void addLampsMet(const Scene& scene, const GatherEnds& ends, const GatherWay& wa
 // By a sample of lamps, whether or not the lobe will be followed: else few rays would bring much.
 void addLampsSampled(const Scene& scene, const GatherEnds& ends, const GatherWay& way,
                      const Surface& surface, const Bsdf& bsdf, Sampler& sampler, Gathered& result) {
-    if (!bsdf.has(bsdf.phongLobe()) || !GatherWay::isAsked(ends, bsdf.phongLobe())) return;
+    if (!bsdf.has(bsdf.glossyLobe()) || !GatherWay::isAsked(ends, bsdf.glossyLobe())) return;
     const DirectRadiance direct = estimateDirect(scene, *ends.lights, surface, bsdf,
                                                  LampStrategy::kNone, 1, sampler, result.rays);
     const Rgb light = way.path.throughput * direct.glossy;
@@ -56,7 +56,7 @@ void setEnd(const Scene& scene, const GatherEnds& ends, const GatherWay& way, co
     result.isWaiting = true;
     result.normal = bsdf.facingGeometricNormal();
     result.position = scene.pointUnderRay(surface.position, ray, result.normal);
-    result.reflected = way.path.throughput * bsdf.diffuse() * kInvPi;
+    result.reflected = bsdf.reflectedOf(way.path.throughput);
     result.density = 0.0f;
     result.readsCaustics = ends.caustics && (ends.findsAll || (!atOnce && way.byBroadOnly));
     if (ends.caustics && atOnce && !ends.findsAll) {

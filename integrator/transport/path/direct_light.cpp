@@ -48,7 +48,7 @@ DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, st
         return value * light.radiance * (weight / light.pdfSolidAngle);
     };
     if (asked.diffuse != LampStrategy::kNone) result.diffuse = contribution(Lobe::kDiffuse);
-    result.glossy = contribution(bsdf.phongLobe());
+    result.glossy = contribution(bsdf.glossyLobe());
     if (isBlack(result.diffuse) && isBlack(result.glossy)) return result;
     ++rays;
     const Rgb through = asked.scene.transmittance(light.shadowRay);

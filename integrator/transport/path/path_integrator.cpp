@@ -30,7 +30,7 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
                 m_scene, m_lights, surface, bsdf, LampStrategy::kBoth, 1, sampler, result.rays);
             PathState byDiffuse = state, byGlossy = state;
             byDiffuse.scatter(Lobe::kDiffuse);
-            byGlossy.scatter(bsdf.phongLobe());
+            byGlossy.scatter(bsdf.glossyLobe());
             result.of(byDiffuse.classify()) += path.throughput * direct.diffuse;
             result.of(byGlossy.classify()) += path.throughput * direct.glossy;
         }

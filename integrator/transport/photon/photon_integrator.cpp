@@ -220,7 +220,7 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(const Surface& surface,
                                                          const Branch& branch,
                                                          const Tree& tree) const {
     SampleRadiance& result = tree.result;
-    const Rgb reflected = branch.path.throughput * bsdf.diffuse() * kInvPi;
+    const Rgb reflected = bsdf.reflectedOf(branch.path.throughput);
     StillToFind still;
     GatherPoints::Estimate indirect;
     const Vec3f& normal = bsdf.facingGeometricNormal();
@@ -317,7 +317,7 @@ void PhotonIntegrator::sampleCaustics(const Surface& surface, const Bsdf& bsdf,
                                     bsdf.facingShadingNormal(), up};
     result.rays += VirtualLamps::raysBeside(rays);
     result.indirect +=
-        throughput * bsdf.diffuse() * kInvPi * m_maps.lamps->sampled(place, rays, sampler.next1D());
+        bsdf.reflectedOf(throughput) * m_maps.lamps->sampled(place, rays, sampler.next1D());
 }
 
 // Light that the ray finds at a lamp is direct, the other strategy of its next-event estimation;

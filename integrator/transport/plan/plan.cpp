@@ -64,11 +64,8 @@ SceneTraits findTraits(const Scene& scene) {
     for (const InstanceDescription& instance : scene.description().instances)
         for (const std::uint32_t index : instance.materials) {
             const MaterialDescription& m = scene.material(index);
-            const bool surface = m.kind == MaterialKind::kSurface;
-            traits.diffuse |= surface && !isBlack(m.diffuse);
-            const bool glossy = (surface && !isBlack(m.glossy)) ||
-                                (m.kind == MaterialKind::kMirror && m.glossyExponent > 0.0f);
-            traits.glossy |= glossy;
+            traits.diffuse |= reflectsDiffusely(m);
+            traits.glossy |= mayBeGlossy(m);
             traits.specular |= castsCaustics(m);
         }
     traits.lights = !scene.lights().empty();

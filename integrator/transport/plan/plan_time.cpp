@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "integrator/materials/invisible.h"
+#include "integrator/materials/material_description.h"
 #include "integrator/scene/scene.h"
 
 namespace pm {
@@ -38,10 +38,8 @@ Traits findTraits(const Scene& scene) {
         for (const std::uint32_t index : instance.materials) {
             const MaterialDescription& m = scene.material(index);
             if (isInvisible(m)) continue;
-            traits.divides |= m.kind == MaterialKind::kDielectric || m.transparency > 0.0f ||
-                              m.opacityTexture != kNoTexture;
-            traits.broad |= !isBlack(m.glossy) && isBroad(m) &&
-                            (m.kind == MaterialKind::kSurface || m.glossyExponent > 0.0f);
+            traits.divides |= mayTransmit(m);
+            traits.broad |= hasBroadNumbers(m);
         }
     return traits;
 }

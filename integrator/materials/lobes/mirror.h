@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "integrator/materials/lobes/smooth_boundary.h"
+
+namespace pm {
+
+// A smooth mirror.
+struct Mirror {
+    Rgb tint;  // reflectance at normal incidence
+    bool risesToGrazing = false;
+
+    SmoothShares shares(const LobePoint& at) const {
+        return {sendsByWays(at) ? shareOf(ways(at)) : shareSeenFrom(at, at.out), Rgb()};
+    }
+    static bool sendsByWays(const LobePoint& at) { return at.bendsPhotons(); }
+    static float etaSquared() { return 1.0f; }
+
+    bool sample(const LobePoint& at, float u, BsdfSample& sample) const {
+        if (sendsByWays(at)) return takeWay(ways(at), u, sample);
+        return reflectOn(at, sample);
+    }
+
+  private:
+    Rgb colour(float cosine) const {
+        if (!risesToGrazing) return tint;
+        // Schlick 1994: the reflectance rises to 1 at grazing angles.
+        const float m = 1.0f - cosine;
+        return tint + (Rgb(1.0f) - tint) * (m * m * m * m * m);
+    }
+    Rgb shareSeenFrom(const LobePoint& at, const Vec3f& eye) const {
+        return colour(cosineSeenFrom(at, eye, false)) * at.opacity;
+    }
+    PhotonWays ways(const LobePoint& at) const {
+        PhotonWays found = reflectedWays(at);
+        for (PhotonWay& way : found)
+            if (way.isOpen) way.share = shareSeenFrom(at, way.direction);
+        return found;
+    }
+};
+
+}  // namespace pm
