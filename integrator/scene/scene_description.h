@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "integrator/lights/light_description.h"
+#include "integrator/lights/light_kinds.h"
 #include "integrator/materials/material_description.h"
 #include "integrator/rays/ray.h"
 #include "integrator/shapes/shape.h"
@@ -36,9 +36,7 @@ struct CameraDescription {
 struct SceneDescription {
     std::vector<MaterialDescription> materials;
     std::vector<InstanceDescription> instances;
-    std::vector<PointLightDescription> pointLights;
-    std::vector<SpotLightDescription> spotLights;
-    std::vector<DirectionalLightDescription> directionalLights;
+    std::vector<LightDescription> lights;
     std::optional<EnvironmentDescription> environment;
     std::optional<CameraDescription> camera;
     std::shared_ptr<const TextureSource> textures;  // may be null when no material names one

@@ -184,7 +184,7 @@ void Scene::surfaceOnSphere(const ShapeRecord& record, const Vec3d& direction,
     surface.instanceId = record.instanceId;
 }
 
-Surface Scene::pointOnLight(const Light& light, Vec2f u) const {
+Surface Scene::pointOnLight(const SurfaceLight& light, Vec2f u) const {
     const ShapeRecord& record = m_shapes[light.shape];
     if (!record.mesh) return pointOnSphere(light.shape, Vec3d(sampleUniformSphere(u)));
     Surface surface;

@@ -37,6 +37,7 @@ class HouseRules(unittest.TestCase):
         self.write("plugin/src/p.cpp", '#include "scheduler/s.h"\n#include "plugin/include/pm_plugin.h"\n')
         self.write("scheduler/s.h", "#pragma once\n")
         self.write("host_shim/h.cpp", '#include "plugin/include/pm_plugin.h"\n#include <OpenColorIO/x.h>\n')
+        self.write("integrator/lights/l.cpp", "std::get_if<SpotLight>(&l);\n")
         self.assertEqual(house_rules.breaches(self.root), [])
 
     def test_layers(self):
@@ -64,7 +65,9 @@ class HouseRules(unittest.TestCase):
         cases = [("host_shim", 'OIIO::attribute("threads", 1);'), ("plugin", "std::abort();"),
                  ("plugin", "tbb::global_control c(x, 1);"), ("integrator", "exit(1);"),
                  ("host_shim", "OCIO::SetCurrentConfig(c);"), ("integrator", "std::cerr << 1;"),
-                 ("scheduler", 'printf("x");'), ("host_shim", "double d = std::stod(s);")]  # fmt: skip
+                 ("scheduler", 'printf("x");'), ("host_shim", "double d = std::stod(s);"),
+                 ("integrator/scene", "std::get_if<SpotLight>(&l);"),
+                 ("plugin", "if (l.kind == Light::Kind::kSpot) f();")]  # fmt: skip
         for folder, code in cases:
             with self.subTest(code=code):
                 self.setUp()
