@@ -9,58 +9,32 @@
 
 namespace pm {
 
-void LightSampler::emissionCone(const Light& light, Vec3f& axis, float& oneMinusCos) const {
-    axis = {0.0f, 0.0f, 1.0f};
-    oneMinusCos = 2.0f;
-    if (light.kind == Light::Kind::kSpot) {
-        axis = m_scene.beam(light).axis;
-        oneMinusCos = m_scene.beam(light).oneMinusCos;
-    }
+DirectionCone LightSampler::emissionCone(const Light& light) const {
+    const DirectionCone own = light.cone();
+    const Vec3d position = light.position();
     const double r2 = m_scene.radius() * m_scene.radius() * 1.0001;
-    const double d2 = lengthSquared(light.position);
-    if (!(d2 > r2)) return;
+    const double d2 = lengthSquared(position);
+    if (!(d2 > r2)) return own;
     const float ofScene = oneMinusCosOfSphere(r2, d2);
-    if (ofScene >= oneMinusCos) return;
-    oneMinusCos = ofScene;
-    axis = Vec3f(-light.position / std::sqrt(d2));
+    if (ofScene >= own.oneMinusCos) return own;
+    return {Vec3f(-position / std::sqrt(d2)), ofScene};
 }
 
 bool LightSampler::emitFromPoint(const Light& light, float probability, Vec2f u,
                                  EmittedPhoton& photon) const {
-    Vec3f axis;
-    float oneMinusCos, pdf;
-    emissionCone(light, axis, oneMinusCos);
-    photon.ray.origin = Vec3f(light.position);
-    photon.flux = light.intensity * (1.0f / probability);
-    if (light.kind == Light::Kind::kSpot) {
-        const Beam& beam = m_scene.beam(light);
-        if (oneMinusCos == beam.oneMinusCos) {
-            photon.ray.direction = beam.sampleIntensity(u, pdf);
-            photon.flux *= beam.fluxOverIntensity();
-            return true;
-        }
+    const DirectionCone cone = emissionCone(light);
+    photon.ray.origin = Vec3f(light.position());
+    photon.flux = light.intensity() * (1.0f / probability);
+    if (cone.oneMinusCos == light.cone().oneMinusCos) {
+        photon.ray.direction = light.sampleFalloff(u);
+        photon.flux *= light.falloffIntegral();
+        return !isBlack(photon.flux);
     }
-    photon.ray.direction = normalize(Frame(axis).toWorld(sampleUniformCone(u, oneMinusCos)));
-    photon.flux *= 2.0f * kPi * oneMinusCos;
-    if (light.kind == Light::Kind::kSpot)
-        photon.flux *= m_scene.beam(light).intensity(photon.ray.direction);
+    photon.ray.direction =
+        normalize(Frame(cone.axis).toWorld(sampleUniformCone(u, cone.oneMinusCos)));
+    photon.flux *= 2.0f * kPi * cone.oneMinusCos;
+    photon.flux *= light.falloff(photon.ray.direction);
     return !isBlack(photon.flux);
-}
-
-bool LightSampler::emitParallel(const Light& light, Vec2f u, ParallelLight& parallel) const {
-    if (light.kind == Light::Kind::kEnvironment) {
-        float pdf;
-        const Vec3f seen = m_scene.environment().sample(u, pdf);
-        parallel = {-seen, m_scene.environment().radiance(seen) * (1.0f / pdf)};
-        return !isBlack(parallel.irradiance);
-    }
-    const Beam& beam = m_scene.beam(light);
-    parallel = {beam.axis, light.intensity};
-    if (beam.isDelta()) return true;
-    parallel.direction =
-        normalize(Frame(beam.axis).toWorld(sampleUniformCone(u, beam.oneMinusCos)));
-    parallel.irradiance *= 2.0f * kPi * beam.oneMinusCos;
-    return true;
 }
 
 Ray LightSampler::parallelRay(const Vec3d& through, const Vec3f& direction) const {
@@ -73,7 +47,7 @@ Ray LightSampler::parallelRay(const Vec3d& through, const Vec3f& direction) cons
 bool LightSampler::emitFromAfar(const Light& light, float probability, Vec2f uPoint,
                                 Vec2f uDirection, EmittedPhoton& photon) const {
     ParallelLight parallel;
-    if (!emitParallel(light, uDirection, parallel)) return false;
+    if (!light.emitParallel(uDirection, parallel)) return false;
     const BoxShadow scene(m_scene.halfSize(), Vec3d(parallel.direction));
     const double area = scene.area();
     if (!(area > 0)) return false;
@@ -101,9 +75,9 @@ bool LightSampler::emit(float uLight, Vec2f uPoint, Vec2f uDirection, EmittedPho
     if (light.isAtPoint()) return emitFromPoint(light, probability, uDirection, photon);
     if (light.isFar()) return emitFromAfar(light, probability, uPoint, uDirection, photon);
     float density;
-    const Surface point = m_scene.pointOnLight(light, uPoint, density);
-    return emitFrom({point.position, point.offset, point.geometricNormal}, frontRadiance(point),
-                    light.area / density);
+    const SurfaceLight& shining = *light.surface();
+    const Surface point = m_scene.pointOnLight(shining, uPoint, density);
+    return emitFrom(LampPoint(point), frontRadiance(point), shining.area / density);
 }
 
 }  // namespace pm

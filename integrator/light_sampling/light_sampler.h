@@ -13,6 +13,7 @@
 #include "integrator/light_sampling/light_guide.h"
 #include "integrator/light_sampling/light_tree.h"
 #include "integrator/light_sampling/sky_guide.h"
+#include "integrator/lights/light_sample.h"
 #include "integrator/rays/ray_tracer.h"
 #include "integrator/scene/scene.h"
 #include "integrator/shapes/surface.h"
@@ -21,17 +22,6 @@
 #include "integrator/values/vec.h"
 
 namespace pm {
-
-// A direction towards a light, chosen by next-event estimation.
-struct LightSample {
-    Vec3f direction;  // unit, from the surface to the light
-    Rgb radiance;     // what arrives from there, W m^-2 sr^-1; of a point: irradiance of a surface
-                      // that faces it, W m^-2, to be divided by pdfSolidAngle all the same
-    float pdfSolidAngle = 0.0f;  // sr^-1, the choice of the light included; of a point that
-                                 // choice's probability alone
-    bool isPoint = false;        // point light, spot, parallel light: no other strategy can find it
-    Ray shadowRay;               // to be tested with Scene::occluded
-};
 
 // A light to be sampled at a surface.
 struct ChosenLight {
@@ -44,12 +34,6 @@ struct ChosenLight {
 struct EmittedPhoton {
     Ray ray;
     Rgb flux;  // W, of one photon if only one were emitted: divide by the number emitted
-};
-
-// Light that comes from infinitely far along one direction.
-struct ParallelLight {
-    Vec3f direction;  // unit, the way that it travels
-    Rgb irradiance;   // of a surface that faces it, over the density of the direction; W m^-2
 };
 
 // A place where light is asked for, and any direction on the side of the surface that is lit.
@@ -120,11 +104,10 @@ class LightSampler {
     // The cone that photons of a point light or spot fill: all directions in which it shines, or
     // from outside the scene, where that is less, the cone that holds all of the scene: the rest of
     // the light's flux would escape.
-    void emissionCone(const Light& light, Vec3f& axis, float& oneMinusCos) const;
+    DirectionCone emissionCone(const Light& light) const;
 
-    // Of a far light. False when it carries nothing.
-    bool emitParallel(const Light& light, Vec2f u, ParallelLight& parallel) const;
-    // A photon of it that goes through a point of the scene: it starts outside, or near the core.
+    // A photon of a far light that goes through a point of the scene: it starts outside, or near
+    // the core.
     Ray parallelRay(const Vec3d& through, const Vec3f& direction) const;
 
     // Radiance that leaves a point of the scene along the unit direction: emission of its front.
@@ -153,21 +136,6 @@ class LightSampler {
     std::vector<Sighting> look(std::span<const LitPlace> places, std::uint64_t key,
                                const CancelCheck& cancel) const;
     std::optional<Sighting> lookFrom(const LitPlace& place, std::uint32_t node, Vec2f u) const;
-    bool sampleTriangle(const Surface& surface, const LampPoint& point, float probability,
-                        float area, LightSample& sample) const;
-    bool sampleSphere(const Surface& surface, const Light& light, float probability, Vec2f u,
-                      LightSample& sample) const;
-    bool sampleTexturedSphere(const Surface& surface, const Light& light, float probability,
-                              Vec2f u, LightSample& sample) const;
-    // Of all of a textured sphere's strategies; without the light's probability.
-    float pdfOfTexturedSphere(const Surface& from, const Vec3f& direction,
-                              const Surface& point) const;
-    bool samplePoint(const Surface& surface, const Light& light, float probability,
-                     LightSample& sample) const;
-
-    bool sampleFar(const Surface& surface, const Light& light, float probability, Vec2f u,
-                   LightSample& sample) const;
-
     bool emitFromPoint(const Light& light, float probability, Vec2f u, EmittedPhoton& photon) const;
     bool emitFromAfar(const Light& light, float probability, Vec2f uPoint, Vec2f uDirection,
                       EmittedPhoton& photon) const;

@@ -33,44 +33,6 @@ constexpr double kEvenShare = 1e-4;
 constexpr float kPriorSightings = 2.0f;
 constexpr float kLeastVisible = 0.01f;
 
-// What one light contributes to the bounds of its nodes.
-struct Bounds {
-    Vec3d lo, hi;
-    Vec3f axis;
-    bool anyDirection = false;
-};
-
-Bounds boundsOf(const Scene& scene, const Light& light) {
-    Bounds b;
-    if (light.kind == Light::Kind::kTriangle) {
-        b.lo = Vec3d(std::numeric_limits<double>::max());
-        b.hi = -b.lo;
-        for (const Vec2f corner : {Vec2f{0, 0}, Vec2f{1, 0}, Vec2f{1, 1}}) {
-            const Surface surface = scene.pointOnLight(light, corner);
-            const Vec3d p(surface.position);
-            for (int axis = 0; axis < 3; ++axis) {
-                b.lo[axis] = std::min(b.lo[axis], p[axis]);
-                b.hi[axis] = std::max(b.hi[axis], p[axis]);
-            }
-            b.axis = surface.geometricNormal;
-        }
-        return b;
-    }
-    b.anyDirection = true;
-    b.lo = b.hi = light.position;
-    // A spot as a lamp that faces along its axis, where its cone is no wider than such a lamp's.
-    if (light.kind == Light::Kind::kSpot && scene.beam(light).oneMinusCos <= 1.0f) {
-        b.anyDirection = false;
-        b.axis = scene.beam(light).axis;
-    }
-    if (light.kind == Light::Kind::kSphere) {
-        const SphereShape sphere = scene.sphere(light.shape);
-        b.lo = sphere.centre - Vec3d(sphere.radius);
-        b.hi = sphere.centre + Vec3d(sphere.radius);
-    }
-    return b;
-}
-
 float sineOf(float cosine) {
     return std::sqrt(std::max(0.0f, 1.0f - cosine * cosine));
 }
@@ -84,7 +46,7 @@ class LightTree::Builder {
         m_bounds.resize(lights.size());
         tbb::parallel_for(std::size_t{0}, lights.size(), [&](std::size_t i) {
             goOn();
-            m_bounds[i] = boundsOf(*tree.m_scene, lights[i]);
+            m_bounds[i] = lights[i].extent(*tree.m_scene);
         });
         if (lights.size() > kMostSingle)
             m_run = std::max(kRun, (lights.size() + kMostLeaves - 1) / kMostLeaves);
@@ -138,7 +100,7 @@ class LightTree::Builder {
         double power = 0;
         for (const std::uint32_t light : lights) {
             goOn();
-            const Bounds& b = m_bounds[light];
+            const LightExtent& b = m_bounds[light];
             for (int axis = 0; axis < 3; ++axis) {
                 lo[axis] = std::min(lo[axis], b.lo[axis]);
                 hi[axis] = std::max(hi[axis], b.hi[axis]);
@@ -214,7 +176,7 @@ class LightTree::Builder {
 
     LightTree& m_tree;
     const CancelCheck& m_cancel;
-    std::vector<Bounds> m_bounds;
+    std::vector<LightExtent> m_bounds;
     std::size_t m_run = 1;
 };
 

@@ -44,6 +44,16 @@ float Beam::intensityAt(float oneMinusCosOfAngle) const {
     return t * t * (3.0f - 2.0f * t);
 }
 
+float Beam::largestIntensity(const Vec3d& coneAxis, double sine) const {
+    const double cosine = std::sqrt(1 - sine * sine);
+    const double between = dot(coneAxis, Vec3d(axis));
+    if (between >= cosine) return 1.0f;
+    const double sineBetween = std::sqrt(std::max(0.0, 1 - between * between));
+    // Of the difference of the two angles.
+    return intensityAt(
+        static_cast<float>(std::max(0.0, 1 - between * cosine - sineBetween * sine)));
+}
+
 float Beam::fluxOverIntensity() const {
     return kPi * (innerOneMinusCos + oneMinusCos);
 }

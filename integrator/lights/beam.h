@@ -29,6 +29,8 @@ struct Beam {
     }
     // The same at an angle to the axis.
     float intensityAt(float oneMinusCosOfAngle) const;
+    // At most, in a cone around a unit axis with this sine of its half angle.
+    float largestIntensity(const Vec3d& coneAxis, double sine) const;
     // The intensity's integral over all directions, sr.
     float fluxOverIntensity() const;
     // A unit direction with a density in proportion to the intensity; pdf: that density, sr^-1.

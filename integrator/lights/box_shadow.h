@@ -60,4 +60,10 @@ class BoxShadow {
     Vec3d m_halfSize, m_direction, m_sides;
 };
 
+// Area of the scene's box as parallel light sees it; at least something, so that the light of a
+// flat scene seen from its edge still has some power.
+inline double crossSection(const Vec3d& halfSize, const Vec3d& direction) {
+    return std::max(BoxShadow(halfSize, direction).area(), 1e-3 * lengthSquared(halfSize));
+}
+
 }  // namespace pm

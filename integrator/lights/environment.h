@@ -7,12 +7,20 @@
 #include <span>
 #include <vector>
 
-#include "integrator/lights/light_description.h"
+#include "integrator/materials/texture_source.h"
 #include "integrator/values/cancel_check.h"
 #include "integrator/values/rgb.h"
+#include "integrator/values/transform.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
+
+// Light from infinitely far all around. See Environment for the picture's directions.
+struct EnvironmentDescription {
+    Rgb radiance;  // W m^-2 sr^-1; times the texture where there is one
+    std::int32_t texture = kNoTexture;
+    Transform toWorld = kIdentityTransform;  // a rotation; its translation means nothing
+};
 
 // Of directions that an environment chose, towards which places could receive its light, in how
 // many they do.

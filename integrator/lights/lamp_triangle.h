@@ -4,18 +4,12 @@
 
 #include <cstdint>
 
+#include "integrator/lights/surface_light.h"
 #include "integrator/sampling/warps.h"
 #include "integrator/shapes/surface.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
-
-// What a Surface tells of it.
-struct LampPoint {
-    Vec3f position;
-    float offset;
-    Vec3f normal;  // geometric
-};
 
 // All that a point on a triangle that shines evenly is found by, in one cache line: mesh, facet and
 // light would be five or six, of ten thousand lamps none of them at hand. The scene's own

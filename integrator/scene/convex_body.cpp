@@ -175,17 +175,11 @@ class Body {
     }
 
     bool lightsAreOutside() const {
-        const SceneDescription& description = m_scene.description();
-        const auto isPointOutside = [&](const Vec3d& world) {
-            const std::array<Vec3d, 1> point{world - m_scene.centre()};
-            return isOutside(point, 0);
+        const auto isPointOutside = [&](const Light& light) {
+            const std::array<Vec3d, 1> point{light.position()};
+            return !light.isAtPoint() || isOutside(point, 0);
         };
-        return std::ranges::all_of(
-                   description.pointLights,
-                   [&](const auto& light) { return isPointOutside(light.position); }) &&
-               std::ranges::all_of(
-                   description.spotLights,
-                   [&](const auto& light) { return isPointOutside(light.position); }) &&
+        return std::ranges::all_of(m_scene.nearLights(), isPointOutside) &&
                std::ranges::all_of(
                    m_lamps, [&](const Triangle& lamp) { return isOutside(lamp.corners, 0); }) &&
                std::ranges::all_of(m_lampBalls, [&](const Ball& lamp) {

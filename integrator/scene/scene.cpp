@@ -64,12 +64,6 @@ Ray Scene::rayFromAfar(const Vec3d& origin, const Vec3d& direction) const {
     return occluded({near.origin, -near.direction, way}) ? ray : near;
 }
 
-Rgb Scene::farRadiance(const Light& light, const Vec3f& direction) const {
-    if (light.kind == Light::Kind::kEnvironment) return m_environment->radiance(direction);
-    const Beam& beam = this->beam(light);
-    return !beam.isDelta() && beam.holds(-direction) ? light.intensity : Rgb{};
-}
-
 Rgb Scene::skyRadiance(const Surface& from, const Vec3f& normal, const Vec3f& direction) const {
     if (!(dot(direction, normal) > 0.0f)) return {};
     const Rgb radiance = m_environment->radiance(direction);
@@ -78,7 +72,7 @@ Rgb Scene::skyRadiance(const Surface& from, const Vec3f& normal, const Vec3f& di
 
 bool Scene::seesFarLight(const Vec3f& direction) const {
     return std::ranges::any_of(
-        farLights(), [&](const Light& light) { return !isBlack(farRadiance(light, direction)); });
+        farLights(), [&](const Light& light) { return !isBlack(light.farRadiance(direction)); });
 }
 
 bool Scene::findFlat(const CancelCheck& cancel) const {

@@ -94,19 +94,10 @@ class Scene {
     std::span<const Light> farLights() const {
         return std::span(m_lights).subspan(m_nearLightCount);
     }
-    const Beam& beam(const Light& light) const { return m_beams[light.beam]; }
     // Whether a light is an environment; and the one that there is then.
     bool hasEnvironment() const { return m_environment != nullptr; }
     const Environment& environment() const { return *m_environment; }
 
-    // Whether rays can meet a light: it has an area, a disc in the sky, or is all of the sky.
-    bool isMet(const Light& light) const {
-        return !light.isAtPoint() &&
-               !(light.kind == Light::Kind::kDirectional && beam(light).isDelta());
-    }
-    // Radiance of a far light that is seen along a unit direction where nothing is in the way;
-    // black of parallel light. W m^-2 sr^-1.
-    Rgb farRadiance(const Light& light, const Vec3f& direction) const;
     // Radiance of the environment that there is, W m^-2 sr^-1, along a unit direction from that
     // side of a surface to which `normal` points; black where something is in the way.
     Rgb skyRadiance(const Surface& from, const Vec3f& normal, const Vec3f& direction) const;
@@ -148,15 +139,18 @@ class Scene {
     bool hasSheets() const { return m_hasSheets; }
 
     // A point on an area light's primitive, uniform over its area, as a Surface.
-    Surface pointOnLight(const Light& light, Vec2f u) const;
+    Surface pointOnLight(const SurfaceLight& light, Vec2f u) const;
+    Surface pointOnLight(const Light& light, Vec2f u) const {
+        return pointOnLight(*light.surface(), u);
+    }
     // The same, chosen by what the light's texture shows; density: times the light's area.
-    Surface pointOnLight(const Light& light, Vec2f u, float& density) const;
+    Surface pointOnLight(const SurfaceLight& light, Vec2f u, float& density) const;
     // That density at any point of the light; 1 of a light that shines evenly.
-    float lampDensity(const Light& light, const Surface& point) const;
+    float lampDensity(const SurfaceLight& light, const Surface& point) const;
     // Null of a light that shines evenly.
-    const LampTexture* lampTexture(const Light& light) const {
-        return light.texture < 0 ? nullptr
-                                 : &m_lampTextures[static_cast<std::size_t>(light.texture)];
+    const LampTexture* lampTexture(const SurfaceLight& light) const {
+        return light.shinesEvenly() ? nullptr
+                                    : &m_lampTextures[static_cast<std::size_t>(light.texture)];
     }
     // Radiance of a material's front, W m^-2 sr^-1, >= 0.
     Rgb emission(std::uint32_t material, Vec2f uv) const;
@@ -199,7 +193,7 @@ class Scene {
                            double b1, double b2, Surface& surface) const;
     // Of a texture of lights; gives notice the first time.
     bool findBadTexels(std::int32_t texture, const CancelCheck& cancel);
-    LampTexture lookAtLamp(const Light& light, std::size_t mostLooks,
+    LampTexture lookAtLamp(const SurfaceLight& light, std::size_t mostLooks,
                            const CancelCheck& cancel) const;
     // For the powers of textured lamps, and where on them light is.
     void lookAtTextures(const CancelCheck& cancel);
@@ -214,7 +208,6 @@ class Scene {
     std::vector<LampTexture> m_lampTextures;
     std::vector<bool> m_hasBadTexels;  // of the textures of lights, by their numbers
     std::size_t m_nearLightCount = 0;
-    std::vector<Beam> m_beams;
     std::unique_ptr<const Environment> m_environment;
     std::vector<Notice> m_notices;
     Vec3d m_centre;

@@ -53,12 +53,11 @@ class Scene::Builder {
         m_scene.m_coincident = CoincidentFaces::find(m_scene, m_scene.m_notices, m_cancel);
         lookForCloseSpheres();
         const SceneDescription& d = m_scene.m_description;
-        addPointLights(d.pointLights, d.spotLights, m_scene.m_centre, m_scene.m_lights,
-                       m_scene.m_beams);
+        const SceneBox box{m_scene.m_centre, m_scene.m_halfSize};
+        addLights(d.lights, false, box, m_scene.m_lights);
         m_scene.m_nearLightCount = m_scene.m_lights.size();
-        addDirectionalLights(d.directionalLights, m_scene.m_halfSize, m_scene.m_lights,
-                             m_scene.m_beams);
-        addEnvironment();
+        addLights(d.lights, true, box, m_scene.m_lights);
+        addEnvironment(box);
         addLampTriangles();
         if (m_scene.m_lights.empty())
             m_scene.m_notices.push_back(
@@ -458,19 +457,17 @@ class Scene::Builder {
             if (record.lightOfPrimitive.empty())
                 record.lightOfPrimitive.assign(primitives, kNoLight);
             record.lightOfPrimitive[i] = static_cast<std::int32_t>(m_scene.m_lights.size());
-            Light light;
-            light.kind = record.mesh ? Light::Kind::kTriangle : Light::Kind::kSphere;
-            light.shape = shape;
-            light.primitive = i;
-            light.material = material;
-            light.area = static_cast<float>(area);
+            const SurfaceLight light{shape, i, material, -1, static_cast<float>(area)};
             const Rgb& e = m_scene.material(material).emission;
-            light.powerMean = kPiDouble * area * channelSum(e) / 3;
-            m_scene.m_lights.push_back(light);
+            const double power = kPiDouble * area * channelSum(e) / 3;
+            if (record.mesh)
+                m_scene.m_lights.emplace_back(TriangleLight{light}, power);
+            else
+                m_scene.m_lights.emplace_back(SphereLight{light}, power);
         }
     }
 
-    void addEnvironment() {
+    void addEnvironment(const SceneBox& box) {
         const auto& description = m_scene.m_description.environment;
         if (!description || isBlack(description->radiance)) return;
         const bool hasBadTexels = description->texture != kNoTexture &&
@@ -478,27 +475,21 @@ class Scene::Builder {
         auto environment = std::make_unique<const Environment>(
             *description, m_scene.m_description.textures.get(), m_cancel, hasBadTexels);
         if (!(environment->integral() > 0)) return;
-        Light light;
-        light.kind = Light::Kind::kEnvironment;
-        // A convex body's shadow is a quarter of its surface on the average (Cauchy).
-        double area = 0;
-        for (const Vec3d& axis : {Vec3d{1, 0, 0}, Vec3d{0, 1, 0}, Vec3d{0, 0, 1}})
-            area += 0.5 * crossSection(m_scene.m_halfSize, axis);
-        light.powerMean = environment->integral() * area;
         m_scene.m_environment = std::move(environment);
-        m_scene.m_lights.push_back(light);
+        const EnvironmentLight light{m_scene.m_environment.get()};
+        m_scene.m_lights.emplace_back(light, light.powerMean(box));
     }
 
     void addLampTriangles() {
         m_scene.m_lampTriangles.resize(m_scene.m_lights.size());
         for (std::size_t i = 0; i < m_scene.m_lights.size(); ++i) {
             goOn();
-            const Light& light = m_scene.m_lights[i];
-            if (light.kind != Light::Kind::kTriangle ||
-                m_scene.material(light.material).emissionTexture != kNoTexture)
+            const SurfaceLight* const shining = m_scene.m_lights[i].surface();
+            if (!shining || m_scene.material(shining->material).emissionTexture != kNoTexture)
                 continue;
+            const SurfaceLight& light = *shining;
             const ShapeRecord& record = m_scene.m_shapes[light.shape];
-            if (record.exactOf(light.primitive)) continue;
+            if (!record.mesh || record.exactOf(light.primitive)) continue;
             LampTriangle& lamp = m_scene.m_lampTriangles[i];
             for (std::size_t k = 0; k < 3; ++k)
                 lamp.vertices[k] = Vec3f(record.vertex(record.mesh->triangles[light.primitive][k]));

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "integrator/cameras/camera_description.h"
-#include "integrator/lights/light_description.h"
+#include "integrator/lights/light_kinds.h"
 #include "integrator/materials/material_description.h"
 #include "integrator/shapes/shape.h"
 #include "integrator/values/ray.h"
@@ -30,9 +30,7 @@ struct InstanceDescription {
 struct SceneDescription {
     std::vector<MaterialDescription> materials;
     std::vector<InstanceDescription> instances;
-    std::vector<PointLightDescription> pointLights;
-    std::vector<SpotLightDescription> spotLights;
-    std::vector<DirectionalLightDescription> directionalLights;
+    std::vector<LightDescription> lights;
     std::optional<EnvironmentDescription> environment;
     std::optional<CameraDescription> camera;
     std::shared_ptr<const TextureSource> textures;  // may be null when no material names one

@@ -172,7 +172,7 @@ void Scene::nameSurface(const ShapeRecord& record, std::uint32_t primitive, Surf
     surface.instanceId = record.instanceId;
 }
 
-Surface Scene::pointOnLight(const Light& light, Vec2f u) const {
+Surface Scene::pointOnLight(const SurfaceLight& light, Vec2f u) const {
     const ShapeRecord& record = m_shapes[light.shape];
     if (!record.mesh) return pointOnSphere(light.shape, Vec3d(sampleUniformSphere(u)));
     Surface surface;

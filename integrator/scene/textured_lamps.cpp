@@ -27,9 +27,9 @@ constexpr double kLeastPower = 1e-6;
 // Sines of a sphere's latitude-longitude picture at its poles.
 constexpr float kLeastSine = 1e-4f;
 
-bool isTextured(const Scene& scene, const Light& light) {
-    return (light.kind == Light::Kind::kTriangle || light.kind == Light::Kind::kSphere) &&
-           scene.material(light.material).emissionTexture != kNoTexture;
+// Its texture's number, or kNoTexture.
+std::int32_t textureOf(const Scene& scene, const Light& light) {
+    return light.surface() ? scene.material(light.surface()->material).emissionTexture : kNoTexture;
 }
 
 // Of the circle on which a picture's row lies, the sphere's radius being 1.
@@ -67,7 +67,7 @@ bool Scene::findBadTexels(std::int32_t texture, const CancelCheck& cancel) {
     return true;
 }
 
-LampTexture Scene::lookAtLamp(const Light& light, std::size_t mostLooks,
+LampTexture Scene::lookAtLamp(const SurfaceLight& light, std::size_t mostLooks,
                               const CancelCheck& cancel) const {
     const ShapeRecord& record = m_shapes[light.shape];
     const auto [across, down] = textures()->texels(material(light.material).emissionTexture);
@@ -104,26 +104,27 @@ LampTexture Scene::lookAtLamp(const Light& light, std::size_t mostLooks,
 
 void Scene::lookAtTextures(const CancelCheck& cancel) {
     const auto count = static_cast<std::size_t>(std::ranges::count_if(
-        m_lights, [&](const Light& light) { return isTextured(*this, light); }));
+        m_lights, [&](const Light& light) { return textureOf(*this, light) != kNoTexture; }));
     if (count == 0) return;
     std::set<std::int32_t> textures;
-    for (const Light& light : m_lights)
-        if (isTextured(*this, light)) textures.insert(material(light.material).emissionTexture);
+    for (const Light& light : m_lights) textures.insert(textureOf(*this, light));
+    textures.erase(kNoTexture);
     for (const std::int32_t texture : textures) findBadTexels(texture, cancel);
     for (Light& light : m_lights) {
-        if (!isTextured(*this, light)) continue;
+        if (textureOf(*this, light) == kNoTexture) continue;
+        SurfaceLight& shining = *light.surface();
         LampTexture texture =
-            lookAtLamp(light, std::max<std::size_t>(1, kMostLooks / count), cancel);
-        const double whole = channelMean(material(light.material).emission);
-        light.powerMean = std::numbers::pi * static_cast<double>(light.area) *
+            lookAtLamp(shining, std::max<std::size_t>(1, kMostLooks / count), cancel);
+        const double whole = channelMean(material(shining.material).emission);
+        light.powerMean = std::numbers::pi * static_cast<double>(shining.area) *
                           std::max(texture.mean(), kLeastPower * whole);
         if (texture.isEven()) continue;
-        light.texture = static_cast<std::int32_t>(m_lampTextures.size());
+        shining.texture = static_cast<std::int32_t>(m_lampTextures.size());
         m_lampTextures.push_back(std::move(texture));
     }
 }
 
-Surface Scene::pointOnLight(const Light& light, Vec2f u, float& density) const {
+Surface Scene::pointOnLight(const SurfaceLight& light, Vec2f u, float& density) const {
     density = 1.0f;
     const LampTexture* const texture = lampTexture(light);
     if (!texture) return pointOnLight(light, u);
@@ -143,7 +144,7 @@ Surface Scene::pointOnLight(const Light& light, Vec2f u, float& density) const {
     return surface;
 }
 
-float Scene::lampDensity(const Light& light, const Surface& point) const {
+float Scene::lampDensity(const SurfaceLight& light, const Surface& point) const {
     const LampTexture* const texture = lampTexture(light);
     if (!texture) return 1.0f;
     const ShapeRecord& record = m_shapes[light.shape];

@@ -94,13 +94,13 @@ PointLightDescription readPoint(const PmrLightDesc& desc) {
 void readLight(const PmrLightDesc& desc, SceneDescription& description) {
     switch (desc.kind) {
         case PMR_LIGHT_POINT:
-            description.pointLights.push_back(readPoint(desc));
+            description.lights.push_back(readPoint(desc));
             return;
         case PMR_LIGHT_SPOT:
-            description.spotLights.push_back(readSpot(desc));
+            description.lights.push_back(readSpot(desc));
             return;
         case PMR_LIGHT_DIRECTIONAL:
-            description.directionalLights.push_back(readDirectional(desc));
+            description.lights.push_back(readDirectional(desc));
             return;
         default:
             throw argumentError(fmt::format(

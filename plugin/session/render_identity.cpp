@@ -9,6 +9,8 @@
 #include <memory>
 #include <span>
 #include <string_view>
+#include <tuple>
+#include <type_traits>
 #include <variant>
 
 #include "plugin/session/setting_table.h"
@@ -63,22 +65,16 @@ void addInstance(Hasher& hasher, const InstanceDescription& instance) {
     if (instance.hiddenFrom != 0) hasher.add(instance.hiddenFrom);
 }
 
-// Only what is there: scenes without keep the checksums that they have had.
-void addLightsOfDirection(Hasher& hasher, const SceneDescription& d) {
-    for (const SpotLightDescription& spot : d.spotLights) {
-        hasher.add("spot");
-        hasher.add(spot.position);
-        hasher.add(spot.direction);
-        hasher.add(spot.intensity);
-        hasher.add(spot.coneAngle);
-        hasher.add(spot.coneFalloff);
-    }
-    for (const DirectionalLightDescription& light : d.directionalLights) {
-        hasher.add("directional");
-        hasher.add(light.direction);
-        hasher.add(light.irradiance);
-        hasher.add(light.angularRadius);
-    }
+// The number of point lights and theirs, then only what is there: scenes without keep the checksums
+// that they have had.
+void addLights(Hasher& hasher, const SceneDescription& d) {
+    using Point = PointLightDescription;
+    hasher.add(static_cast<std::size_t>(std::ranges::count_if(
+        d.lights, [](const auto& light) { return std::holds_alternative<Point>(light); })));
+    forEachByKind(d.lights, [&](const auto& light) {
+        if (!std::is_same_v<std::decay_t<decltype(light)>, Point>) hasher.add(light.kName);
+        std::apply([&](const auto&... value) { (hasher.add(value), ...); }, light.parameters());
+    });
     if (!d.environment) return;
     hasher.add("environment");
     hasher.add(d.environment->radiance);
@@ -118,14 +114,7 @@ Identity sceneIdentity(const Scene& scene, const SceneTextures& textures,
         hasher.add(d.materials.size());
         for (const MaterialDescription& material : d.materials) addMaterial(hasher, material);
     });
-    part("lights", [&](Hasher& hasher) {
-        hasher.add(d.pointLights.size());
-        for (const PointLightDescription& light : d.pointLights) {
-            hasher.add(light.position);
-            hasher.add(light.intensity);
-        }
-        addLightsOfDirection(hasher, d);
-    });
+    part("lights", [&](Hasher& hasher) { addLights(hasher, d); });
     part(kCameraPart, [&](Hasher& hasher) {
         hasher.add(d.camera.has_value());
         if (!d.camera) return;

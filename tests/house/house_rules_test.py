@@ -53,6 +53,7 @@ class HouseRules(unittest.TestCase):
         self.write("scheduler/s.h", "#pragma once\n")
         self.write("integrator/materials/m.cpp", "MaterialKind k; Phong p{3}; f(diffuse() * kInvPi);\n")
         self.write("host_shim/colour/h.cpp", '#include "plugin/include/pm_plugin.h"\n#include <OpenColorIO/x.h>\n')
+        self.write("integrator/lights/l.cpp", "std::get_if<SpotLight>(&l);\n")
         self.assertEqual(house_rules.breaches(self.root), [])
 
     def test_layers(self):
@@ -84,7 +85,9 @@ class HouseRules(unittest.TestCase):
                  ("integrator/transport/gather", "if (m.kind == MaterialKind::kMirror) return;"),
                  ("integrator/photons/map", "MaterialKind k;"),
                  ("integrator/photons/trace", "Phong lobe{3};"),
-                 ("integrator/transport/path", "Rgb out = bsdf.diffuse() * kInvPi * e;")]  # fmt: skip
+                 ("integrator/transport/path", "Rgb out = bsdf.diffuse() * kInvPi * e;"),
+                 ("integrator/scene", "std::get_if<SpotLight>(&l);"),
+                 ("plugin", "if (l.kind == Light::Kind::kSpot) f();")]  # fmt: skip
         for folder, code in cases:
             with self.subTest(code=code):
                 self.setUp()

@@ -118,16 +118,18 @@ void SceneMaker::bendNormals(Vec3d normal) {
 }
 
 void SceneMaker::pointLight(Vec3d position, Rgb intensity) {
-    description.pointLights.push_back({position, intensity, ""});
+    description.lights.push_back(PointLightDescription{position, intensity, ""});
 }
 
 void SceneMaker::spot(Vec3d position, Vec3d direction, Rgb intensity, double angle,
                       double falloff) {
-    description.spotLights.push_back({position, direction, intensity, angle, falloff, ""});
+    description.lights.push_back(
+        SpotLightDescription{position, direction, intensity, angle, falloff, ""});
 }
 
 void SceneMaker::sun(Vec3d direction, Rgb irradiance, double angularRadius) {
-    description.directionalLights.push_back({direction, irradiance, angularRadius, ""});
+    description.lights.push_back(
+        DirectionalLightDescription{direction, irradiance, angularRadius, ""});
 }
 
 void SceneMaker::sky(Rgb radiance, std::shared_ptr<const TextureSource> picture,

@@ -39,25 +39,13 @@ double boxSineSquared(const Vec3d& axis, double distance, const Vec3d& halfSize)
     return largest;
 }
 
-// The largest intensity of a spot, over its whole one, in a cone around the unit `axis` with this
-// sine of its half angle.
-float largestIntensity(const Beam& beam, const Vec3d& axis, double sine) {
-    const double cosine = std::sqrt(1 - sine * sine);
-    const double between = dot(axis, Vec3d(beam.axis));
-    if (between >= cosine) return 1.0f;
-    const double sineBetween = std::sqrt(std::max(0.0, 1 - between * between));
-    // Of the difference of the two angles.
-    return beam.intensityAt(
-        static_cast<float>(std::max(0.0, 1 - between * cosine - sineBetween * sine)));
-}
-
-// False when nothing of the beam goes into the cone around the unit `axis`.
-bool weighByBeam(const EmissionPoint& from, const Vec3d& axis, double sine, AimCone& cone) {
-    const float intensity = largestIntensity(*from.beam, axis, sine);
-    if (!(intensity > 0.0f)) return false;
-    // What holds most of the beam's cone is served by all of that.
+// False when nothing of an uneven light goes into the cone around the unit `axis`.
+bool weighByFalloff(const EmissionPoint& from, const Vec3d& axis, double sine, AimCone& cone) {
+    const float falloff = from.uneven->largestFalloff(axis, sine);
+    if (!(falloff > 0.0f)) return false;
+    // What holds most of the light's cone is served by all of that.
     cone.all = cone.oneMinusCos >= from.oneMinusCos;
-    cone.solidAngle = intensity * std::min(cone.solidAngle, from.wholeSolidAngle());
+    cone.solidAngle = falloff * std::min(cone.solidAngle, from.wholeSolidAngle());
     return true;
 }
 
@@ -112,7 +100,7 @@ bool AimCone::aim(const Caster& caster, const EmissionPoint& from) {
     axis = Vec3f(to / std::sqrt(d2));
     oneMinusCos = static_cast<float>(sine * sine / (1 + std::sqrt(1 - sine * sine)));
     solidAngle = 2.0f * kPi * oneMinusCos;
-    if (from.beam && !weighByBeam(from, to / std::sqrt(d2), sine, *this)) return false;
+    if (from.uneven && !weighByFalloff(from, to / std::sqrt(d2), sine, *this)) return false;
     if (from.onSurface) {
         const auto s = static_cast<float>(sine);
         const float cosine = dot(axis, from.axis);

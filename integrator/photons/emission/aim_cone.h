@@ -4,7 +4,7 @@
 
 #include <span>
 
-#include "integrator/lights/beam.h"
+#include "integrator/lights/light.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
@@ -22,13 +22,13 @@ struct Caster {
 struct EmissionPoint {
     Vec3d position;  // scene's own coordinates
     // Of a point on a surface: its normal; light leaves by the cosine, to that side only. Of a
-    // point light or spot: the axis of the cone that it fills, evenly or as the beam says.
+    // light without area: the axis of the cone that it fills, evenly or as its falloff says.
     Vec3f axis;
     bool onSurface = false;
-    float oneMinusCos = 2.0f;    // of that cone
-    const Beam* beam = nullptr;  // of a spot
+    float oneMinusCos = 2.0f;       // of that cone
+    const Light* uneven = nullptr;  // the light, where its falloff isn't 1 everywhere
 
-    // Direction of unaimed emission, unit, and its density; of a spot even over its cone.
+    // Direction of unaimed emission, unit, and its density; of such a light even over its cone.
     Vec3f sample(Vec2f u, float& pdfSolidAngle) const;
     float pdfSolidAngle(const Vec3f& direction) const;
     // Solid angle of all directions, on a surface weighted by the cosine; sr.
@@ -45,11 +45,11 @@ struct AimCone {
     float oneMinusCos = 0.0f;  // of its half angle
     bool folded = false;
     bool all = false;  // the point lies inside or next to the caster: unaimed emission serves it
-    // Solid angle, on a surface about that weighted by the cosine, of a spot by the largest
-    // intensity in the cone; > 0, sr.
+    // Solid angle, on a surface about that weighted by the cosine, of an uneven light by the
+    // largest intensity in the cone; > 0, sr.
     float solidAngle = 0.0f;
 
-    // False when the whole caster lies behind the point's surface or beside its beam. The cone is a
+    // False when the whole caster lies behind the point's surface or beside its cone. The cone is a
     // little wider than the caster, beyond what rounding may do to a direction.
     bool aim(const Caster& caster, const EmissionPoint& from);
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "integrator/photons/emission/aim_caps.h"
 #include "integrator/photons/emission/aim_shadows.h"
@@ -166,16 +167,18 @@ void AimedEmission::addBalls(const Focus& seen, std::span<const EmissionPoint> v
 
 EmissionPoint AimedEmission::pointLightView(const Light& light) const {
     EmissionPoint point;
-    point.position = light.position;
-    m_lights.emissionCone(light, point.axis, point.oneMinusCos);
-    if (light.kind == Light::Kind::kSpot) point.beam = &m_scene.beam(light);
+    point.position = light.position();
+    const DirectionCone cone = m_lights.emissionCone(light);
+    point.axis = cone.axis;
+    point.oneMinusCos = cone.oneMinusCos;
+    if (!light.isEven()) point.uneven = &light;
     return point;
 }
 
 EmissionPoint AimedEmission::farView(const Light& light, Vec2f uDirection) const {
     EmissionPoint point;
     ParallelLight parallel;
-    if (m_lights.emitParallel(light, uDirection, parallel))
+    if (light.emitParallel(uDirection, parallel))
         point.position = Vec3d(parallel.direction) * (-kFarView * m_scene.radius());
     return point;
 }
@@ -185,7 +188,7 @@ EmissionPoint AimedEmission::viewpoint(std::uint32_t index, Vec2f uPoint) const 
     if (light.isAtPoint()) return pointLightView(light);
     if (light.isFar()) return farView(light, uPoint);
     float density;
-    const Surface surface = m_scene.pointOnLight(light, uPoint, density);
+    const Surface surface = m_scene.pointOnLight(*light.surface(), uPoint, density);
     EmissionPoint point;
     point.position = Vec3d(surface.position);
     point.axis = surface.geometricNormal;
@@ -200,7 +203,7 @@ double AimedEmission::shareTowards(std::span<const Caster> casters,
     for (const Caster& caster : casters)
         if (cone.aim(caster, point)) sum += static_cast<double>(cone.solidAngle);
     const double whole = point.onSurface ? static_cast<double>(kPi)
-                         : point.beam    ? static_cast<double>(point.beam->fluxOverIntensity())
+                         : point.uneven  ? static_cast<double>(point.uneven->falloffIntegral())
                                          : 4.0 * kPi;
     return std::min(1.0, sum / whole);
 }
@@ -208,7 +211,7 @@ double AimedEmission::shareTowards(std::span<const Caster> casters,
 double AimedEmission::shareInShadows(std::span<const Caster> casters, const Light& light,
                                      Vec2f uDirection) const {
     ParallelLight parallel;
-    if (!m_lights.emitParallel(light, uDirection, parallel)) return 0;
+    if (!light.emitParallel(uDirection, parallel)) return 0;
     const Vec3d direction = normalize(Vec3d(parallel.direction));
     double sum = 0;
     for (const Caster& caster : casters) sum += AimShadows::areaOf(caster, direction);
@@ -264,9 +267,7 @@ void AimedEmission::refineSky(std::span<const EmissionRecord> pilot) {
     std::vector<Landing> parts(SkyParts::kCount);
     Landing sky;
     for (const EmissionRecord& record : pilot) {
-        if (record.caster == kNoCaster ||
-            m_scene.lights()[record.light].kind != Light::Kind::kEnvironment)
-            continue;
+        if (record.caster == kNoCaster || !m_scene.lights()[record.light].environment()) continue;
         parts[record.part].add(record);
         sky.add(record);
     }
@@ -279,10 +280,9 @@ void AimedEmission::refineSky(std::span<const EmissionRecord> pilot) {
 }
 
 // Half of the points by where its texture shines, half by where the casters are.
-Surface AimedEmission::placeOnTexturedSphere(std::uint32_t index, float& uCaster, Vec2f uPoint,
-                                             float& pdfArea) const {
-    const Light& light = m_scene.lights()[index];
-    const SphereShape sphere = m_scene.sphere(light.shape);
+Surface AimedEmission::placeOnTexturedSphere(std::uint32_t index, const SphereShape& sphere,
+                                             float& uCaster, Vec2f uPoint, float& pdfArea) const {
+    const SurfaceLight& light = *m_scene.lights()[index].surface();
     const AimCaps caps(sphere, m_casters, worthOf(index));
     const bool byTexture = uCaster < 0.5f;
     uCaster = byTexture ? 2.0f * uCaster : 2.0f * uCaster - 1.0f;
@@ -305,22 +305,23 @@ void AimedEmission::place(std::uint32_t index, float& uCaster, Vec2f uPoint, Ori
     const Light& light = m_scene.lights()[index];
     if (light.isAtPoint()) {
         origin.point = pointLightView(light);
-        origin.strength = light.intensity;
-        origin.rayStart = Vec3f(light.position);
+        origin.strength = light.intensity();
+        origin.rayStart = Vec3f(light.position());
         return;
     }
     Surface surface;
-    float density, pdfArea = 1.0f / light.area;
-    if (light.kind == Light::Kind::kSphere && m_scene.lampTexture(light)) {
-        surface = placeOnTexturedSphere(index, uCaster, uPoint, pdfArea);
-    } else if (light.kind == Light::Kind::kSphere) {
-        const SphereShape sphere = m_scene.sphere(light.shape);
-        const AimCaps caps(sphere, m_casters, worthOf(index));
+    const SurfaceLight& shining = *light.surface();
+    const std::optional<SphereShape> sphere = light.wholeSphere(m_scene);
+    float density, pdfArea = 1.0f / shining.area;
+    if (sphere && !shining.shinesEvenly()) {
+        surface = placeOnTexturedSphere(index, *sphere, uCaster, uPoint, pdfArea);
+    } else if (sphere) {
+        const AimCaps caps(*sphere, m_casters, worthOf(index));
         const Vec3f normal = caps.sample(uCaster, uPoint, pdfArea);
-        pdfArea /= static_cast<float>(sphere.radius * sphere.radius);
-        surface = m_scene.pointOnSphere(light.shape, Vec3d(normal));
+        pdfArea /= static_cast<float>(sphere->radius * sphere->radius);
+        surface = m_scene.pointOnSphere(shining.shape, Vec3d(normal));
     } else {
-        surface = m_scene.pointOnLight(light, uPoint, density);
+        surface = m_scene.pointOnLight(shining, uPoint, density);
         pdfArea *= density;
     }
     origin.point.position = Vec3d(surface.position);
@@ -347,7 +348,7 @@ bool AimedEmission::emit(Vec2f uChoice, Vec2f uPoint, Vec2f uDirection, AimedPho
     photon.caster = sample.caster;
     photon.ray = {origin.rayStart, sample.direction};
     photon.flux = origin.strength * (cosine / (probability * sample.pdfSolidAngle));
-    if (origin.point.beam) photon.flux *= origin.point.beam->intensity(sample.direction);
+    if (origin.point.uneven) photon.flux *= origin.point.uneven->falloff(sample.direction);
     return !isBlack(photon.flux);
 }
 
@@ -369,9 +370,9 @@ bool AimedEmission::emitParallel(const Light& light, float probability, float uC
                                  Vec2f uDirection, AimedPhoton& photon) const {
     ParallelLight parallel;
     float factor = 1.0f;
-    const bool isSky = light.kind == Light::Kind::kEnvironment;
+    const bool isSky = light.environment() != nullptr;
     if (isSky && !m_sky.empty()) factor = m_sky.choose(m_scene.environment(), uCaster, uDirection);
-    if (!m_lights.emitParallel(light, uDirection, parallel)) return false;
+    if (!light.emitParallel(uDirection, parallel)) return false;
     if (isSky) photon.part = SkyParts::partOf(-parallel.direction);
     const AimShadows shadows(m_casters, worthOf(photon.light), parallel.direction,
                              m_scene.halfSize(), m_unaimedShare);

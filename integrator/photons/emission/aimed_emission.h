@@ -119,8 +119,8 @@ class AimedEmission {
     void refineSky(std::span<const EmissionRecord> pilot);
     bool emitParallel(const Light& light, float probability, float uCaster, Vec2f uPoint,
                       Vec2f uDirection, AimedPhoton& photon) const;
-    Surface placeOnTexturedSphere(std::uint32_t light, float& uCaster, Vec2f uPoint,
-                                  float& pdfArea) const;
+    Surface placeOnTexturedSphere(std::uint32_t light, const SphereShape& sphere, float& uCaster,
+                                  Vec2f uPoint, float& pdfArea) const;
     void place(std::uint32_t light, float& uCaster, Vec2f uPoint, Origin& origin) const;
     double fluxTowards(std::span<const Caster> casters, std::uint32_t light) const;
     void groupLights(const CancelCheck& cancel);

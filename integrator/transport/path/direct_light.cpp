@@ -102,7 +102,7 @@ Rgb weightedFarLight(const Scene& scene, const LightSampler& lights, const LastS
     if (last.hasLamps) return sum;
     const std::span<const Light> far = scene.farLights();
     for (std::size_t i = 0; i < far.size(); ++i) {
-        const Rgb radiance = scene.farRadiance(far[i], last.direction);
+        const Rgb radiance = far[i].farRadiance(last.direction);
         if (isBlack(radiance)) continue;
         sum += isDelta(last.lobe)
                    ? radiance

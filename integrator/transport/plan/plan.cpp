@@ -70,7 +70,7 @@ SceneTraits findTraits(const Scene& scene) {
         }
     traits.lights = !scene.lights().empty();
     for (const Light& light : scene.lights())
-        (scene.isMet(light) ? traits.farLights : traits.pointLights) |=
+        (light.isMet() ? traits.farLights : traits.pointLights) |=
             light.isAtPoint() || light.isFar();
     return traits;
 }

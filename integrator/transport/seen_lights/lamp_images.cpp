@@ -44,7 +44,7 @@ double lengthOf(const std::array<double, 2>& v) {
 }
 
 // From a line to the centre of a lamp; the line's direction is from the eye on.
-std::optional<Vec3d> offsetFrom(const Ray& ray, const LampBall& lamp) {
+std::optional<Vec3d> offsetFrom(const Ray& ray, const LightBall& lamp) {
     const Vec3d d(ray.direction), to = Vec3d(lamp.centre) - Vec3d(ray.origin);
     const double along = dot(to, d);
     if (along <= 0) return std::nullopt;
@@ -82,7 +82,7 @@ struct Linear {
 };
 
 // Of the paths by way of the same lobes, about their mean place.
-std::optional<Linear> fit(std::span<const LampRay> rays, const LampBall& lamp, double& x,
+std::optional<Linear> fit(std::span<const LampRay> rays, const LightBall& lamp, double& x,
                           double& y) {
     double n = 0, sx = 0, sy = 0, sxx = 0, sxy = 0, syy = 0;
     Vec3d sq(0), sqx(0), sqy(0);
@@ -144,7 +144,7 @@ std::optional<Ray> rayBy(const Scene& scene, const Camera& camera, std::uint64_t
 
 // Newton's method from (x, y) on, with shorter steps where one leads no nearer; the image's
 // rectangle where it converges.
-std::optional<LampImage> converge(const Scene& scene, const Camera& camera, const LampBall& lamp,
+std::optional<LampImage> converge(const Scene& scene, const Camera& camera, const LightBall& lamp,
                                   std::uint64_t lobes, double x, double y) {
     const auto offsetAt = [&](double atX, double atY) -> std::optional<Vec3d> {
         const auto ray = rayBy(scene, camera, lobes, atX, atY);
@@ -184,7 +184,7 @@ double apart(const std::array<double, 2>& a, double x, double y) {
 // surface that is bent. nullptr: none is left.
 class Starts {
   public:
-    Starts(const LampBall& lamp, std::span<const LampRay> same) : m_lamp(lamp), m_same(same) {
+    Starts(const LightBall& lamp, std::span<const LampRay> same) : m_lamp(lamp), m_same(same) {
         for (const LampRay& ray : same) {
             const auto q = offsetFrom(ray.ray, lamp);
             m_distances.push_back(q ? length(*q) : std::numeric_limits<double>::max());
@@ -217,28 +217,13 @@ class Starts {
     }
 
   private:
-    const LampBall& m_lamp;
+    const LightBall& m_lamp;
     const std::span<const LampRay> m_same;
     std::vector<double> m_distances;  // of a line to the lamp's centre; largest: left out
 };
 
-LampBall ballAround(const Scene& scene, const Light& light) {
-    if (light.kind == Light::Kind::kSphere) {
-        const SphereShape sphere = scene.sphere(light.shape);
-        return {Vec3f(sphere.centre), static_cast<float>(sphere.radius)};
-    }
-    std::array<Vec3f, 3> corners;
-    std::size_t i = 0;
-    for (const Vec2f corner : {Vec2f{0, 0}, Vec2f{1, 0}, Vec2f{1, 1}})
-        corners[i++] = scene.pointOnLight(light, corner).position;
-    LampBall ball{(corners[0] + corners[1] + corners[2]) * (1.0f / 3.0f), 0.0f};
-    for (const Vec3f& corner : corners)
-        ball.radius = std::max(ball.radius, length(corner - ball.centre));
-    return ball;
-}
-
 // The smallest ball around both.
-LampBall joined(const LampBall& a, const LampBall& b) {
+LightBall joined(const LightBall& a, const LightBall& b) {
     const Vec3f apart = b.centre - a.centre;
     const float distance = length(apart);
     if (distance + b.radius <= a.radius) return a;
@@ -273,12 +258,12 @@ std::array<double, 2> LampImage::halfSize() const {
     return {std::abs(along[0]) + std::abs(across[0]), std::abs(along[1]) + std::abs(across[1])};
 }
 
-std::vector<LampBall> lampBalls(const Scene& scene) {
-    std::vector<LampBall> balls;
+std::vector<LightBall> lampBalls(const Scene& scene) {
+    std::vector<LightBall> balls;
     for (const Light& light : scene.lights()) {
-        if (light.kind != Light::Kind::kTriangle && light.kind != Light::Kind::kSphere) continue;
-        const LampBall ball = ballAround(scene, light);
-        const auto touching = std::ranges::find_if(balls, [&](const LampBall& other) {
+        if (!light.isOnSurface()) continue;
+        const LightBall ball = light.ball(scene);
+        const auto touching = std::ranges::find_if(balls, [&](const LightBall& other) {
             return length(ball.centre - other.centre) < ball.radius + other.radius;
         });
         if (touching != balls.end()) {
@@ -327,14 +312,14 @@ Rgb followLobes(const Scene& scene, const LightSampler& lights, const Camera& ca
 }
 
 std::vector<LampImage> findLampImages(const Scene& scene, const Camera& camera,
-                                      const std::vector<LampBall>& lamps, const FrameArea& area,
+                                      const std::vector<LightBall>& lamps, const FrameArea& area,
                                       std::vector<LampRay> rays) {
     std::vector<LampImage> images;
     std::ranges::stable_sort(rays, {}, &LampRay::lobes);
     for (std::size_t first = 0, last = 0; first < rays.size(); first = last) {
         while (last < rays.size() && rays[last].lobes == rays[first].lobes) ++last;
         const auto same = std::span(rays).subspan(first, last - first);
-        for (const LampBall& lamp : lamps) {
+        for (const LightBall& lamp : lamps) {
             const auto before = images.size();
             Starts starts(lamp, same);
             for (int i = 0; i < kStarts; ++i) {

@@ -44,15 +44,9 @@ struct LampImage {
     bool isAround(const FrameArea& frame) const;
 };
 
-// A ball around an area light, or around triangles side by side that shine.
-struct LampBall {
-    Vec3f centre;  // scene's own coordinates
-    float radius;
-};
-
 // Of the area lights of a scene; none where there are more than 32, as looking for the images
 // takes time with each.
-std::vector<LampBall> lampBalls(const Scene& scene);
+std::vector<LightBall> lampBalls(const Scene& scene);
 
 // One of the rays of a camera path that follows every delta lobe.
 struct LampRay {
@@ -71,7 +65,7 @@ Rgb followLobes(const Scene& scene, const LightSampler& lights, const Camera& ca
 // passes the ball most closely. It may miss images.
 // Threads: from any.
 std::vector<LampImage> findLampImages(const Scene& scene, const Camera& camera,
-                                      const std::vector<LampBall>& lamps, const FrameArea& area,
+                                      const std::vector<LightBall>& lamps, const FrameArea& area,
                                       std::vector<LampRay> rays);
 
 }  // namespace pm

@@ -28,10 +28,6 @@ constexpr double kFilterReach = 1.0;
 constexpr std::uint32_t kPathsOfImage = 16;
 constexpr std::uint64_t kPilotSeed = 0x7365656e6c616d70ull;
 
-bool isAreaLight(const Light& light) {
-    return light.kind == Light::Kind::kTriangle || light.kind == Light::Kind::kSphere;
-}
-
 std::int32_t squaresAlong(std::int32_t pixels) {
     return (pixels + SeenLamps::kSquare - 1) / SeenLamps::kSquare;
 }
@@ -52,7 +48,7 @@ SeenLamps::SeenLamps(const Scene& scene, const LightSampler& lights, const Camer
       m_camera(camera),
       m_settings(settings),
       m_columns(squaresAlong(settings.width)),
-      m_hasLamps(std::ranges::any_of(scene.lights(), isAreaLight)),
+      m_hasLamps(std::ranges::any_of(scene.lights(), &Light::isOnSurface)),
       m_balls(lampBalls(scene)) {
     if (m_hasLamps)
         m_shown = std::make_unique<std::atomic<std::uint8_t>[]>(

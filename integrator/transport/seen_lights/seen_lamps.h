@@ -112,7 +112,7 @@ class SeenLamps {
     const RenderSettings m_settings;
     const std::int32_t m_columns;
     const bool m_hasLamps;
-    const std::vector<LampBall> m_balls;
+    const std::vector<LightBall> m_balls;
     // Of each square kKnown and its number of paths once it was looked at, kHasImages as well.
     static constexpr std::uint8_t kKnown = 0x40, kHasImages = 0x80, kPaths = 0x3f;
     std::unique_ptr<std::atomic<std::uint8_t>[]> m_shown;

@@ -74,9 +74,11 @@ test::SceneMaker placed(test::SceneMaker maker, double scale, const Vec3d& offse
         t[7] += offset.y;
         t[11] += offset.z;
     }
-    for (PointLightDescription& light : scene.pointLights) {
-        light.position = place(light.position);
-        light.intensity = light.intensity * static_cast<float>(scale * scale);
+    for (LightDescription& any : scene.lights) {
+        auto* const light = std::get_if<PointLightDescription>(&any);
+        if (!light) continue;
+        light->position = place(light->position);
+        light->intensity = light->intensity * static_cast<float>(scale * scale);
     }
     if (!scene.camera) return maker;
     Transform& camera = scene.camera->cameraToWorld;

@@ -305,7 +305,7 @@ TEST(LightKinds, ChosenByTheProbabilitiesTheyState) {
             if (!lights.sample(surface, random.next2D(), s)) continue;
             sums[s.radiance.r] += 1.0 / static_cast<double>(s.pdfSolidAngle) / kSamples;
             const Light& sky = scene->farLights()[2];
-            if (s.radiance.r == scene->farRadiance(sky, s.direction).r) {
+            if (s.radiance.r == sky.farRadiance(s.direction).r) {
                 EXPECT_EQ(lights.farPdfSolidAngle(surface, s.direction, 2), s.pdfSolidAngle);
             } else if (s.isPoint) {
                 EXPECT_EQ(lights.farPdfSolidAngle(surface, s.direction, 1), 0.0f);
@@ -319,8 +319,8 @@ TEST(LightKinds, ChosenByTheProbabilitiesTheyState) {
         EXPECT_NEAR(sumAt(0.25f) / (4 * kPiD), 1, 0.02);
         EXPECT_NEAR(sumAt(disc) / (2 * kPiD * (1 - std::cos(0.3))), 1, 0.02);
         EXPECT_NEAR(sumAt(3.0f), 1, 0.02);
-        EXPECT_NEAR(scene->farRadiance(scene->farLights()[0], normalize(Vec3f{-0.2f, 1, -0.1f})).r,
-                    disc, 1e-4f * disc);
+        EXPECT_NEAR(scene->farLights()[0].farRadiance(normalize(Vec3f{-0.2f, 1, -0.1f})).r, disc,
+                    1e-4f * disc);
     }
 }
 

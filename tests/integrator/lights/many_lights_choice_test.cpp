@@ -149,7 +149,7 @@ TEST(ManyLights, ChoicesFollowTheirProbabilities) {
 TEST(ManyLights, ChosenTogetherAsAlone) {
     for (const std::uint32_t side : {2u, 30u}) {
         SceneMaker maker = makeRoom(side, side);
-        maker.description.directionalLights.push_back({{0.2, -1, 0.1}, Rgb(3.0f), 0.1, "sun"});
+        maker.sun({0.2, -1, 0.1}, Rgb(3.0f), 0.1);
         Room room(side, side);
         room.scene = maker.build();
         room.lights = std::make_unique<LightSampler>(*room.scene);

@@ -32,8 +32,8 @@ double irradiance(const Scene& scene, const Surface& at) {
         const Vec3f origin = rayOrigin(at, to);
         const Vec3f end = on.position + on.geometricNormal * (2.0f * on.offset + 1e-5f);
         if (scene.occluded({origin, end - origin, 1.0f})) continue;
-        const float radiance = scene.material(light.material).emission.g;
-        sum += static_cast<double>(radiance * light.area * in * out / d2);
+        const float radiance = scene.material(light.surface()->material).emission.g;
+        sum += static_cast<double>(radiance * light.surface()->area * in * out / d2);
     }
     return sum;
 }
@@ -153,7 +153,7 @@ TEST(ManyLights, WeakLampsAreNotForgotten) {
     });
     double sum = 0;
     for (std::uint32_t light = 0; light < scene->lights().size(); ++light)
-        if (scene->material(scene->lights()[light].material).emission.r < 1.0f)
+        if (scene->material(scene->lights()[light].surface()->material).emission.r < 1.0f)
             sum += static_cast<double>(guide.probability(receivers[0], light));
     EXPECT_GT(sum, 1e-4);
     EXPECT_LT(sum, 1e-2);

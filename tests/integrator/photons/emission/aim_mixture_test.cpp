@@ -180,7 +180,7 @@ std::vector<Caster> castersOf(const SceneMaker& maker) {
     const auto scene = maker.build();
     const LightSampler lights(*scene);
     std::vector<EmissionPoint> views;
-    for (const Light& light : scene->lights()) views.push_back(inSpace(light.position));
+    for (const Light& light : scene->lights()) views.push_back(inSpace(light.position()));
     return findCasters(*scene, views);
 }
 
