@@ -164,9 +164,11 @@ void PluginScene::addInstances(const Request& request, const Materials& material
     Shapes shapes(m_context.api());
     for (const InstanceData& instance : request.data.instances) {
         throwIfInterrupted();
-        const std::string where =
-            instance.name.empty() ? request.sceneName
-                                  : fmt::format("{}: group {}", request.sceneName, instance.name);
+        const bool isMesh = instance.shape == InstanceData::Shape::kMesh;
+        const std::string where = instance.name.empty()
+                                      ? request.sceneName
+                                      : fmt::format("{}: {} {}", request.sceneName,
+                                                    isMesh ? "group" : "sphere", instance.name);
         const PmrMesh shape =
             shapes.of(instance, [&] { return createShape(instance, request, where); });
         addInstance(instance, request.data, shape, materials, where);

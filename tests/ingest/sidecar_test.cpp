@@ -15,6 +15,8 @@
 namespace pm::host::test {
 namespace {
 
+using Place = std::array<double, 3>;
+
 constexpr const char* kSchema = R"({"schema": "pm-sidecar/1", )";
 
 Sidecar readAll(const std::string& text) {
@@ -69,10 +71,9 @@ TEST(Sidecar, PlacesGroupsByInstancesAlone) {
     EXPECT_EQ(data.instances[1].hiddenFrom, kHiddenFromCamera + kHiddenFromShadow);
     EXPECT_EQ(data.instances[2].name, "second");
     // Scaled to (2,1,0), then turned about y: x goes to -z.
-    EXPECT_EQ(transformed(*data.instances[2].transform, std::array<double, 3>{1, 1, 0}),
-              (std::array<double, 3>{0, 1, 3}));
-    EXPECT_EQ(data.bounds.low, (std::array<double, 3>{0, 0, 0}));
-    EXPECT_EQ(data.bounds.high, (std::array<double, 3>{11, 1, 5}));
+    EXPECT_EQ(transformed(*data.instances[2].transform, Place{1, 1, 0}), (Place{0, 1, 3}));
+    EXPECT_EQ(data.bounds.low, (Place{0, 0, 0}));
+    EXPECT_EQ(data.bounds.high, (Place{11, 1, 5}));
 }
 
 TEST(Sidecar, WithoutOfPlacesTheWholeFile) {
@@ -107,8 +108,7 @@ TEST(Sidecar, DescribesLights) {
     const LightData& point = sidecar.lights[0];
     EXPECT_EQ(point.kind, LightData::Kind::kPoint);
     EXPECT_EQ(point.name, "lights[0]");
-    EXPECT_EQ(transformed(point.transform, std::array<double, 3>{0, 0, 0}),
-              (std::array<double, 3>{1, 2, 3}));
+    EXPECT_EQ(transformed(point.transform, Place{0, 0, 0}), (Place{1, 2, 3}));
     EXPECT_EQ(point.emission, (std::array<float, 3>{5, 5, 5}));
     const LightData& spot = sidecar.lights[1];
     EXPECT_EQ(spot.name, "lamp");
@@ -132,7 +132,7 @@ TEST(Sidecar, CamerasAreWhatTheOptionsLeave) {
                        {"name": "m", "matrix": [0, 0, 1, 7, 0, 1, 0, 1, -1, 0, 0, 0]}])");
     const Bounds bounds{{0, 0, 0}, {1, 1, 1}};
     const CameraPose a = poseOf(sidecar.cameras.at(0), {}, bounds, 1);
-    EXPECT_EQ(a.eye, (std::array<double, 3>{0, 0, 9}));
+    EXPECT_EQ(a.eye, (Place{0, 0, 9}));
     EXPECT_EQ(a.lookAt, bounds.centre());
     EXPECT_EQ(a.verticalFovDegrees, 50);
     EXPECT_EQ(a.lens.pixelAspect, 2);
@@ -144,7 +144,7 @@ TEST(Sidecar, CamerasAreWhatTheOptionsLeave) {
     EXPECT_EQ(moved.verticalFovDegrees, 20);
     const CameraPose m = poseOf(sidecar.cameras.at(1), {}, bounds, 1);
     EXPECT_EQ(m.transform, *sidecar.cameras[1].transform);
-    EXPECT_EQ(m.lookAt, (std::array<double, 3>{6, 1, 0}));
+    EXPECT_EQ(m.lookAt, (Place{6, 1, 0}));
     EXPECT_EQ(m.verticalFovDegrees, 40);
 }
 
@@ -277,7 +277,7 @@ TEST(Sidecar, WrittenGuessesAreReadAgain) {
         R"({"schema": "pm-sidecar/1", "cameras": [{"position": [1, 2, 3]}], "spheres": []})",
         guess);
     EXPECT_EQ(readAll(more).cameras.size(), 1u);
-    EXPECT_EQ(readAll(more).cameras[0].eye, (std::array<double, 3>{1, 2, 3}));
+    EXPECT_EQ(readAll(more).cameras[0].eye, (Place{1, 2, 3}));
     EXPECT_EQ(readAll(more).lights.size(), 1u);
 }
 

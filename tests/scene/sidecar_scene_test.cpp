@@ -29,7 +29,7 @@ class SidecarScene : public HostTest {
         write("s.obj", obj);
         if (!sidecar.empty()) write("s.pm.json", "{\"schema\": \"pm-sidecar/1\", " + sidecar + "}");
     }
-    Picture picture(const Arguments& arguments) { return renderExr("s", {"s.obj"} + arguments); }
+    Picture picture(const Arguments& arguments) { return renderExr("s", Arguments{"s.obj"} + arguments); }
     // Of R, of what the camera sees at the origin of the ground.
     double atOrigin(const std::string& sidecar) {
         scene(kGround, sidecar);
@@ -162,6 +162,26 @@ TEST_F(SidecarScene, IsNamedAndCanBeLeftOut) {
     expectRefusal(onto, 2, {"s.pm.json", "also an input"});
     write("s.pm.json", "{\"schema\": \"pm-sidecar/1\", \"lights\": [{\"type\": 1}]}");
     expectRefusal(run({"s.obj"}), 3, {"s.pm.json: lights[0].type is 1; it must be one of point"});
+}
+
+// A part of a scene with another sidecar is of another picture.
+TEST_F(SidecarScene, IsInTheIdentityOfThePicture) {
+    const Arguments view{"--size", "16x16", "--bucket-size", "8"};
+    const auto part = [&](const char* rest, const char* buckets, const char* name) {
+        scene(kGround, fmt::format(R"("environment": {{"radiance": 1}},
+                                       "instances": [{{"of": "ground"{}}}])",
+                                   rest));
+        const Outcome done =
+            run(Arguments{"s.obj", "-q", "--buckets", buckets, "-o", name} + view + kQuick);
+        EXPECT_EQ(done.exitCode, 0) << done.err;
+    };
+    part("", "1/2", "a.pmpart");
+    part(R"(, "hiddenFrom": ["shadow"])", "2/2", "b.pmpart");
+    const Outcome merged = run({"merge", "a.pmpart", "b.pmpart", "-o", "m.exr"});
+    EXPECT_EQ(merged.exitCode, 3) << merged.err;
+    EXPECT_NE(merged.err.find("scene"), std::string::npos) << merged.err;
+    part("", "2/2", "b.pmpart");
+    EXPECT_EQ(run({"merge", "a.pmpart", "b.pmpart", "-o", "m.exr"}).exitCode, 0);
 }
 
 // The scene has no light: one is found, and a camera.
