@@ -94,9 +94,10 @@ int printList(const Options& options) {
         print(listSpaces(ColourPipeline(listedColour(options))));
     } else {
         const Plugin plugin(options.plugin);
-        print(options.list == "aovs"     ? listLayers(plugin.api())
-              : options.list == "orders" ? listOrders(plugin.api())
-                                         : listSettings(plugin.api()));
+        print(options.list == "aovs"         ? listLayers(plugin.api())
+              : options.list == "orders"     ? listOrders(plugin.api())
+              : options.list == "parameters" ? listParameters(plugin.api())
+                                             : listSettings(plugin.api()));
     }
     return 0;
 }

@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <optional>
 
 namespace pm::host {
@@ -24,6 +26,24 @@ std::string rangeText(const PmrSettingInfo& info) {
     constexpr double kNoEnd = 9e18;  // of 64-bit numbers
     if (info.maximum > kNoEnd) return fmt::format("{} or more", info.minimum);
     return fmt::format("{} to {}", info.minimum, info.maximum);
+}
+
+std::string parameterRange(const PmrParameterInfo& info) {
+    if (info.type == PMR_PARAMETER_TEXT) return "text";
+    if (info.type == PMR_PARAMETER_TEXTURE) return "texture; default none";
+    if (info.type == PMR_PARAMETER_OBJECTS) return "handles";
+    std::string range =
+        fmt::format("{}{:g} to {}{:g}", info.excludesMinimum != 0 ? "above " : "", info.minimum,
+                    info.excludesMaximum != 0 ? "below " : "", info.maximum);
+    if (std::isinf(info.maximum))
+        range = fmt::format("{}{:g}{}", info.excludesMinimum != 0 ? "above " : "", info.minimum,
+                            info.excludesMinimum != 0 ? "" : " or more");
+    if (std::isinf(info.minimum)) range = "finite";
+    if (info.type == PMR_PARAMETER_CHOICE) range = info.choices;
+    if (info.type == PMR_PARAMETER_INTEGER) range = "integer, " + range;
+    if (info.count > 1) range = fmt::format("{} numbers, {}", info.count, range);
+    if (*info.unit != '\0') range += fmt::format(" {}", info.unit);
+    return fmt::format("{}; default {}", range, info.defaultText);
 }
 
 }  // namespace
@@ -90,6 +110,23 @@ std::string listOrders(const PmrApi& api) {
     std::string text = info ? info->choices : "";
     std::ranges::replace(text, ',', '\n');
     return text + "\n";
+}
+
+std::string listParameters(const PmrApi& api) {
+    // In the order of PMR_OBJECT_*.
+    constexpr std::array kObjects = {"material", "light",    "environment",
+                                     "camera",   "instance", "sphere"};
+    std::string text;
+    for (std::size_t object = 0; object < kObjects.size(); ++object) {
+        const auto number = static_cast<int32_t>(object);
+        for (uint32_t i = 0; i < api.parameterCount(number); ++i) {
+            auto info = PMR_INIT(PmrParameterInfo);
+            if (api.parameterInfo(number, i, &info) != PMR_OK) continue;
+            text += fmt::format("{}.{}: {} [{}]\n", kObjects[object], info.name, info.help,
+                                parameterRange(info));
+        }
+    }
+    return text;
 }
 
 std::string settingHelp(const PmrApi& api, const std::string& name) {

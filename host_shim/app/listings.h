@@ -16,6 +16,8 @@ std::string listLooks(const ColourPipeline& colour);
 std::string listLayers(const PmrApi& api);
 std::string listSettings(const PmrApi& api);
 std::string listOrders(const PmrApi& api);
+// As "light.coneAngle: help [range; default]".
+std::string listParameters(const PmrApi& api);
 
 // One line of help for a setting: meaning, unit, choices, default and cost; empty when unknown.
 std::string settingHelp(const PmrApi& api, const std::string& name);

@@ -175,9 +175,14 @@ void readChoices(const Typed& typed, Options& options) {
                                               {"json", ProgressStyle::kJson},
                                               {"alf", ProgressStyle::kAlf},
                                               {"none", ProgressStyle::kNone}});
-    chosen<int>(
-        "--list", options.list, 0,
-        {{"views", 0}, {"looks", 0}, {"spaces", 0}, {"aovs", 0}, {"orders", 0}, {"settings", 0}});
+    chosen<int>("--list", options.list, 0,
+                {{"views", 0},
+                 {"looks", 0},
+                 {"spaces", 0},
+                 {"aovs", 0},
+                 {"orders", 0},
+                 {"settings", 0},
+                 {"parameters", 0}});
     options.cameraLight = chosen<CameraLight>(
         "--camera-light", typed.cameraLight, CameraLight::kAuto,
         {{"auto", CameraLight::kAuto}, {"on", CameraLight::kOn}, {"off", CameraLight::kOff}});

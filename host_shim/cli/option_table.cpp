@@ -208,7 +208,7 @@ void addReportOptions(CLI::App& app, Typed& typed, Options& options) {
 
 void addPrintingOptions(CLI::App& app, Typed& typed, Options& options) {
     app.add_flag("--explain", options.explain, "print what the scene needs, and stop");
-    addText(app, "--list", options.list, "views|looks|spaces|aovs|orders|settings",
+    addText(app, "--list", options.list, "views|looks|spaces|aovs|orders|settings|parameters",
             "print and stop");
     app.add_flag("--version", options.version, "print and stop");
     addText(app, "--progress", typed.progress, "auto|bar|plain|json|alf|none",

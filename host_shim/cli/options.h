@@ -76,7 +76,7 @@ struct Options {
     std::filesystem::path report;  // a page, empty = none
     bool strict{};                 // bad samples are an error
     bool explain{};
-    std::string list;  // empty, views, looks, spaces, aovs, orders or settings
+    std::string list;  // empty, views, looks, spaces, aovs, orders, settings or parameters
     bool version{};
     bool help{};
     bool helpOfMerge{};

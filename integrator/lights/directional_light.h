@@ -4,7 +4,6 @@
 
 #include <numbers>
 #include <string>
-#include <tuple>
 
 #include "integrator/lights/beam.h"
 #include "integrator/lights/box_shadow.h"
@@ -29,8 +28,6 @@ struct DirectionalLightDescription {
     std::string name;
 
     bool isDark() const { return isBlack(irradiance); }
-    // All that pictures depend on.
-    auto parameters() const { return std::tie(direction, irradiance, angularRadius); }
 };
 
 struct DirectionalLight {

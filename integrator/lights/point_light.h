@@ -4,7 +4,6 @@
 
 #include <numbers>
 #include <string>
-#include <tuple>
 
 #include "integrator/lights/light_place.h"
 #include "integrator/sampling/warps.h"
@@ -25,8 +24,6 @@ struct PointLightDescription {
     std::string name;
 
     bool isDark() const { return isBlack(intensity); }
-    // All that pictures depend on.
-    auto parameters() const { return std::tie(position, intensity); }
 };
 
 struct PointLight {

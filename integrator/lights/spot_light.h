@@ -3,7 +3,6 @@
 #pragma once
 
 #include <string>
-#include <tuple>
 
 #include "integrator/lights/beam.h"
 #include "integrator/lights/light_place.h"
@@ -27,10 +26,6 @@ struct SpotLightDescription {
     std::string name;
 
     bool isDark() const { return isBlack(intensity); }
-    // All that pictures depend on.
-    auto parameters() const {
-        return std::tie(position, direction, intensity, coneAngle, coneFalloff);
-    }
 };
 
 struct SpotLight {

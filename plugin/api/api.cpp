@@ -70,6 +70,9 @@ constexpr PmrApi kApi = {
     .releaseMerge = api::releaseMerge,
     .renderDelivery = api::renderDelivery,
     .cancelBuilds = api::cancelBuilds,
+    .parameterCount = api::parameterCount,
+    .parameterInfo = api::parameterInfo,
+    .setParameter = api::setParameter,
 };
 
 }  // namespace

@@ -82,5 +82,8 @@ PmrStatus PMR_CALL mergeStatistics(PmrMerge merge, char* buffer, uint64_t capaci
                                    uint64_t* needed) noexcept;
 PmrStatus PMR_CALL releaseMerge(PmrMerge merge) noexcept;
 PmrStatus PMR_CALL cancelBuilds(PmrContext context, int32_t on) noexcept;
+uint32_t PMR_CALL parameterCount(int32_t object) noexcept;
+PmrStatus PMR_CALL parameterInfo(int32_t object, uint32_t index, PmrParameterInfo* info) noexcept;
+PmrStatus PMR_CALL setParameter(const PmrParameterDesc* desc) noexcept;
 
 }  // namespace pm::plugin::api

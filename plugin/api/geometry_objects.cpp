@@ -12,6 +12,7 @@
 #include "integrator/geometry/triangulate.h"
 #include "integrator/values/error.h"
 #include "plugin/api/objects.h"
+#include "plugin/api/parameter_tables.h"
 #include "plugin/api/struct_reader.h"
 #include "plugin/session/leave_behind.h"
 #include "plugin/session/memory_limit.h"
@@ -284,18 +285,12 @@ std::shared_ptr<MeshObject> makeCage(std::shared_ptr<Context> context, const Pmr
 
 std::shared_ptr<MeshObject> makeSphere(std::shared_ptr<Context> context,
                                        const PmrSphereDesc& desc) {
-    const Vec3d centre{desc.centre[0], desc.centre[1], desc.centre[2]};
-    if (!isFinite(centre) || maxAbsComponent(centre) > kMaxCoordinate)
-        throw argumentError(
-            fmt::format("PmrSphereDesc: centre is {}, {}, {}; it must be finite and "
-                        "within {:g}",
-                        centre.x, centre.y, centre.z, kMaxCoordinate));
-    if (!(desc.radius > 0.0 && desc.radius <= kMaxCoordinate))
-        throw argumentError(
-            fmt::format("PmrSphereDesc: radius is {}; it must be above 0 and at most "
-                        "{:g} (scene units)",
-                        desc.radius, kMaxCoordinate));
-    return std::make_shared<MeshObject>(std::move(context), SphereShape{centre, desc.radius}, 1);
+    SphereSet values(sphereParameters());
+    readStructInto(values, &desc, *context, "PmrSphereDesc");
+    values.check(0, "PmrSphereDesc");
+    SphereShape sphere;
+    values.putInto(sphere);
+    return std::make_shared<MeshObject>(std::move(context), sphere, 1);
 }
 
 }  // namespace pm::plugin

@@ -5,8 +5,10 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <numbers>
+#include <cstddef>
+#include <variant>
 
+#include "integrator/cameras/camera_model.h"
 #include "plugin/api/transform_reader.h"
 #include "plugin/values/call_error.h"
 
@@ -14,21 +16,13 @@ namespace pm::plugin {
 
 namespace {
 
-Rgb checkedColour(const float (&values)[3], const char* member, const char* unit) {
-    for (const float value : values)
-        if (!(value >= 0.0f) || !std::isfinite(value))
-            throw argumentError(
-                fmt::format("{} is {}; it must be 0 or more and finite ({})", member, value, unit));
-    return {values[0], values[1], values[2]};
-}
-
 Vec3d column(const Transform& m, std::size_t i) {
     return {m[i], m[4 + i], m[8 + i]};
 }
 
 // Angles and directions mean nothing under a transform that stretches or shears.
-Transform readRotation(const double* transforms, std::uint64_t count, const char* what) {
-    const Transform m = readTransform(transforms, count, what);
+void checkRotation(const ParameterValue& transform, const std::string& owner) {
+    const Transform m = readTransform(transform.numbers.data(), 1, owner.c_str());
     constexpr double kTolerance = 1e-4;
     for (std::size_t i = 0; i < 3; ++i)
         for (std::size_t j = i; j < 3; ++j) {
@@ -37,84 +31,77 @@ Transform readRotation(const double* transforms, std::uint64_t count, const char
                 throw argumentError(fmt::format(
                     "{}: its transform must be a rotation and a translation; of columns {} and {} "
                     "the product is {}, not {}",
-                    what, i, j, product, i == j ? 1 : 0));
+                    owner, i, j, product, i == j ? 1 : 0));
         }
-    return m;
 }
 
-Vec3d position(const Transform& m) {
-    return {m[3], m[7], m[11]};
+std::int32_t kindOf(const auto& set) {
+    return static_cast<std::int32_t>(set.number("kind"));
 }
 
-SpotLightDescription readSpot(const PmrLightDesc& desc) {
-    const Transform m = readRotation(desc.transforms, desc.transformCount, "PmrLightDesc");
-    SpotLightDescription spot;
-    spot.position = position(m);
-    spot.direction = -column(m, 2);
-    spot.intensity = checkedColour(desc.emission, "PmrLightDesc: emission", "W/sr");
-    // As floats have pi, the whole sphere is allowed.
-    if (!(desc.coneAngle > 0.0f && desc.coneAngle <= std::numbers::pi_v<float>))
-        throw argumentError(fmt::format(
-            "PmrLightDesc: coneAngle is {}; it must be above 0 and at most pi (radians)",
-            desc.coneAngle));
-    if (!(desc.coneFalloff >= 0.0f && desc.coneFalloff <= desc.coneAngle))
-        throw argumentError(fmt::format(
-            "PmrLightDesc: coneFalloff is {}; it must be 0 to coneAngle, which is {} (radians)",
-            desc.coneFalloff, desc.coneAngle));
-    spot.coneAngle = static_cast<double>(desc.coneAngle);
-    spot.coneFalloff = static_cast<double>(desc.coneFalloff);
-    spot.name = desc.name == nullptr ? "" : desc.name;
-    return spot;
-}
-
-DirectionalLightDescription readDirectional(const PmrLightDesc& desc) {
-    const Transform m = readRotation(desc.transforms, desc.transformCount, "PmrLightDesc");
-    DirectionalLightDescription light;
-    light.direction = -column(m, 2);
-    light.irradiance = checkedColour(desc.emission, "PmrLightDesc: emission", "W/m^2");
-    if (!(desc.angularRadius >= 0.0f && desc.angularRadius <= std::numbers::pi_v<float> / 2))
-        throw argumentError(
-            fmt::format("PmrLightDesc: angularRadius is {}; it must be 0 to pi/2 (radians)",
-                        desc.angularRadius));
-    light.angularRadius = static_cast<double>(desc.angularRadius);
-    light.name = desc.name == nullptr ? "" : desc.name;
+template <typename Light>
+Light made(const LightSet& values) {
+    Light light;
+    values.putInto(light);
     return light;
 }
 
-PointLightDescription readPoint(const PmrLightDesc& desc) {
-    PointLightDescription light;
-    light.position = position(readTransform(desc.transforms, desc.transformCount, "PmrLightDesc"));
-    light.intensity = checkedColour(desc.emission, "PmrLightDesc: emission", "W/sr");
-    light.name = desc.name == nullptr ? "" : desc.name;
-    return light;
+// The kind first: it says what else means something.
+template <typename Set>
+void checkKinds(Set& set, const std::string& owner) {
+    set.set("kind", set.value("kind"), owner);
+    set.check(static_cast<std::uint32_t>(kindOf(set)), owner);
+}
+
+// PMR_LIGHT_* are the places of the kinds in their list.
+template <std::size_t i = 0>
+void addKind(const LightSet& light, std::size_t kind, SceneDescription& description) {
+    if constexpr (i < std::variant_size_v<LightDescription>) {
+        if (kind == i)
+            description.lights.push_back(
+                made<std::variant_alternative_t<i, LightDescription>>(light));
+        else
+            addKind<i + 1>(light, kind, description);
+    }
 }
 
 }  // namespace
 
-void readLight(const PmrLightDesc& desc, SceneDescription& description) {
-    switch (desc.kind) {
-        case PMR_LIGHT_POINT:
-            description.lights.push_back(readPoint(desc));
-            return;
-        case PMR_LIGHT_SPOT:
-            description.lights.push_back(readSpot(desc));
-            return;
-        case PMR_LIGHT_DIRECTIONAL:
-            description.lights.push_back(readDirectional(desc));
-            return;
-        default:
-            throw argumentError(fmt::format(
-                "PmrLightDesc: kind is {}; it must be 0 to 2 (PMR_LIGHT_*)", desc.kind));
-    }
+void checkLight(LightSet& light, const std::string& owner) {
+    checkKinds(light, owner);
+    if (kindOf(light) == PMR_LIGHT_POINT)
+        readTransform(light.value("transforms").numbers.data(), 1, owner.c_str());
+    else
+        checkRotation(light.value("transforms"), owner);
+    const double angle = light.number("coneAngle"), falloff = light.number("coneFalloff");
+    if (kindOf(light) == PMR_LIGHT_SPOT && falloff > angle)
+        throw argumentError(fmt::format(
+            "{}: coneFalloff is {:g}; it must be 0 to coneAngle, which is {:g} (radians)", owner,
+            falloff, angle));
 }
 
-EnvironmentDescription readEnvironment(const PmrEnvironmentDesc& desc) {
-    EnvironmentDescription environment;
-    environment.radiance =
-        checkedColour(desc.radiance, "PmrEnvironmentDesc: radiance", "W m^-2 sr^-1");
-    if (desc.reserved != 0.0f) throw argumentError("PmrEnvironmentDesc: reserved must be 0");
-    environment.toWorld = readRotation(desc.transforms, desc.transformCount, "PmrEnvironmentDesc");
-    return environment;
+void checkEnvironment(EnvironmentSet& environment, const std::string& owner) {
+    environment.check(0, owner);
+    checkRotation(environment.value("transforms"), owner);
+}
+
+void checkCamera(CameraSet& camera, const std::string& owner) {
+    camera.set("kind", camera.value("kind"), owner);
+    if (static_cast<std::size_t>(kindOf(camera)) >= std::variant_size_v<CameraModel>)
+        throw CallError(
+            CallStatus::kUnsupported,
+            fmt::format("{}: this version renders perspective cameras only, not {} ones", owner,
+                        kindOf(camera) == PMR_CAMERA_ORTHOGRAPHIC ? "orthographic" : "panorama"));
+    checkKinds(camera, owner);
+    if (camera.number("lensRadius") > 0)
+        throw CallError(
+            CallStatus::kUnsupported,
+            fmt::format("{}: this version renders pinhole cameras only (lensRadius 0)", owner));
+    readTransform(camera.value("transforms").numbers.data(), 1, owner.c_str());
+}
+
+void addLightTo(const LightSet& light, SceneDescription& description) {
+    addKind(light, static_cast<std::size_t>(kindOf(light)), description);
 }
 
 }  // namespace pm::plugin

@@ -7,6 +7,7 @@
 #include "integrator/scene/scene_description.h"
 #include "integrator/values/notice.h"
 #include "plugin/include/pm_plugin.h"
+#include "plugin/parameters/parameter.h"
 #include "plugin/session/layer_table.h"
 #include "plugin/session/render.h"
 #include "plugin/session/render_listener.h"
@@ -82,6 +83,16 @@ static_assert(same(SettingType::kChoice, PMR_SETTING_CHOICE));
 static_assert(same(SettingType::kText, PMR_SETTING_TEXT));
 static_assert(same(LayerKind::kColour, PMR_LAYER_COLOUR));
 static_assert(same(LayerKind::kData, PMR_LAYER_DATA));
+
+static_assert(same(ParameterType::kNumber, PMR_PARAMETER_NUMBER));
+static_assert(same(ParameterType::kInteger, PMR_PARAMETER_INTEGER));
+static_assert(same(ParameterType::kChoice, PMR_PARAMETER_CHOICE));
+static_assert(same(ParameterType::kText, PMR_PARAMETER_TEXT));
+static_assert(same(ParameterType::kTexture, PMR_PARAMETER_TEXTURE));
+static_assert(same(ParameterType::kObjects, PMR_PARAMETER_OBJECTS));
+static_assert(same(MaterialKind::kSurface, PMR_MATERIAL_SURFACE));
+static_assert(same(MaterialKind::kMirror, PMR_MATERIAL_MIRROR));
+static_assert(same(MaterialKind::kDielectric, PMR_MATERIAL_DIELECTRIC));
 
 static_assert(same(Wrap::kRepeat, PMR_WRAP_REPEAT));
 static_assert(same(Wrap::kClamp, PMR_WRAP_CLAMP));

@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // The reusable objects that a host makes from a context: geometry, textures, materials. All are
-// immutable once made, so any number of scenes and threads share them.
+// immutable once a scene uses them, so any number of scenes and threads share them.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <utility>
 
 #include "integrator/scene/scene_description.h"
 #include "plugin/api/context.h"
 #include "plugin/api/handle_table.h"
+#include "plugin/api/parameter_reader.h"
 #include "plugin/include/pm_plugin.h"
 #include "plugin/textures/texture.h"
 
@@ -63,30 +64,27 @@ class TextureObject {
 std::shared_ptr<TextureObject> makeTexture(std::shared_ptr<Context> context,
                                            const PmrTextureDesc& desc);
 
-// The textures of a material, in the order of PmrMaterialDesc; null where it has none.
-enum class TextureUse { kDiffuse, kGlossy, kGlossyExponent, kTransmission, kEmission, kOpacity };
-inline constexpr std::size_t kTextureUses = 6;
-using MaterialTextures = std::array<std::shared_ptr<TextureObject>, kTextureUses>;
-
+// Threads: any. It may be changed until a scene uses it.
 class MaterialObject {
   public:
     static constexpr ObjectKind kKind = ObjectKind::kMaterial;
 
-    MaterialObject(std::shared_ptr<Context> context, MaterialDescription description,
-                   MaterialTextures textures)
-        : m_context(std::move(context)),
-          m_description(std::move(description)),
-          m_textures(std::move(textures)) {}
+    MaterialObject(std::shared_ptr<Context> context, MaterialSet values)
+        : m_context(std::move(context)), m_values(std::move(values)) {}
 
     const std::shared_ptr<Context>& context() const { return m_context; }
-    // Its texture indices are not filled: they belong to a scene.
-    const MaterialDescription& description() const { return m_description; }
-    const MaterialTextures& textures() const { return m_textures; }
+    // Errors: those of setByName; CallError(STATE) once a scene uses it.
+    void setParameter(const PmrParameterDesc& desc);
+    // For a scene; it doesn't change from then on.
+    const MaterialSet& use();
 
   private:
-    std::shared_ptr<Context> m_context;
-    MaterialDescription m_description;
-    MaterialTextures m_textures;
+    std::string owner() const;  // for errors
+
+    const std::shared_ptr<Context> m_context;
+    std::mutex m_mutex;  // of what follows
+    MaterialSet m_values;
+    bool m_isUsed = false;
 };
 
 // Errors: CallError ARGUMENT naming member, value and range; HANDLE for a texture that is not live.

@@ -6,12 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
 #include "integrator/values/stopwatch.h"
 #include "plugin/api/entry.h"
 #include "plugin/api/light_reader.h"
+#include "plugin/api/parameter_reader.h"
+#include "plugin/api/parameter_tables.h"
 #include "plugin/api/transform_reader.h"
 #include "plugin/session/leave_behind.h"
 #include "plugin/session/render_identity.h"
@@ -21,10 +22,6 @@
 namespace pm::plugin {
 
 namespace {
-
-CallError unsupported(const std::string& text) {
-    return {CallStatus::kUnsupported, text};
-}
 
 std::array<double, 9> checkedRgbToXyz(const double (&given)[9]) {
     // Linear Rec.709 with white D65 (IEC 61966-2-1).
@@ -45,30 +42,13 @@ std::array<double, 9> checkedRgbToXyz(const double (&given)[9]) {
     return matrix;
 }
 
-void refuseOtherCameras(const PmrCameraDesc& desc) {
-    if (desc.kind == PMR_CAMERA_ORTHOGRAPHIC || desc.kind == PMR_CAMERA_PANORAMA)
-        throw unsupported(
-            fmt::format("PmrCameraDesc: this version renders perspective cameras only, not {} ones",
-                        desc.kind == PMR_CAMERA_ORTHOGRAPHIC ? "orthographic" : "panorama"));
-    if (desc.kind != PMR_CAMERA_PERSPECTIVE)
-        throw argumentError(
-            fmt::format("PmrCameraDesc: kind is {}; it must be 0 to 2 (PMR_CAMERA_*)", desc.kind));
-    if (!(desc.lensRadius >= 0.0) || !std::isfinite(desc.lensRadius))
-        throw argumentError(fmt::format(
-            "PmrCameraDesc: lensRadius is {}; it must be 0 or more and finite", desc.lensRadius));
-    if (desc.lensRadius > 0.0)
-        throw unsupported(
-            "PmrCameraDesc: this version renders pinhole cameras only (lensRadius 0)");
-    if (desc.reserved != 0) throw argumentError("PmrCameraDesc: reserved must be 0");
-}
-
 // What a commit makes, by so many threads; it needs nothing but what it is given.
 void build(SceneDescription description, int threads, const std::string& isa,
            const CancelCheck& cancel, RenderScene& made) {
     const Stopwatch watch;
     WorkerArena arena(threads);
     made.scene = arena.execute([&] { return Scene::build(std::move(description), isa, cancel); });
-    made.identity = sceneIdentity(*made.scene, *made.textures, cancel);
+    made.identity = sceneIdentity(*made.scene, *made.textures, sceneTables(), cancel);
     made.buildSeconds = watch.seconds();
 }
 
@@ -90,17 +70,10 @@ std::uint32_t SceneObject::materialIndex(const std::shared_ptr<MaterialObject>& 
     const auto index = static_cast<std::uint32_t>(m_materials.size());
     const auto [found, isNew] = m_materialIndices.try_emplace(material.get(), index);
     if (!isNew) return found->second;
-    MaterialDescription description = material->description();
-    const auto textureIndex = [&](TextureUse use) {
-        const auto& texture = material->textures()[static_cast<std::size_t>(use)];
-        return texture ? m_textures->add(texture->texture()) : kNoTexture;
-    };
-    description.diffuseTexture = textureIndex(TextureUse::kDiffuse);
-    description.glossyTexture = textureIndex(TextureUse::kGlossy);
-    description.glossyExponentTexture = textureIndex(TextureUse::kGlossyExponent);
-    description.transmissionTexture = textureIndex(TextureUse::kTransmission);
-    description.emissionTexture = textureIndex(TextureUse::kEmission);
-    description.opacityTexture = textureIndex(TextureUse::kOpacity);
+    MaterialDescription description;
+    material->use().putInto(description, [this](const std::shared_ptr<const Texture>& texture) {
+        return m_textures->add(texture);
+    });
     m_description.materials.push_back(std::move(description));
     m_materials.push_back(material);
     return index;
@@ -137,19 +110,12 @@ void SceneObject::addInstance(const PmrInstanceDesc& desc) {
     if (!mesh) throw CallError(CallStatus::kHandle, "PmrInstanceDesc: mesh is not a live mesh");
     if (mesh->context() != m_context)
         throw argumentError("PmrInstanceDesc: mesh belongs to another context");
-    constexpr std::uint32_t kAll =
-        PMR_HIDDEN_FROM_CAMERA | PMR_HIDDEN_FROM_SHADOW | PMR_HIDDEN_FROM_REFLECTION;
-    if ((desc.hiddenFrom & ~kAll) != 0)
-        throw argumentError(
-            fmt::format("PmrInstanceDesc: hiddenFrom is {}; it must be a sum of "
-                        "PMR_HIDDEN_FROM_..., at most {}",
-                        desc.hiddenFrom, kAll));
+    InstanceSet values(instanceParameters());
+    readStructInto(values, &desc, *m_context, "PmrInstanceDesc");
+    values.check(0, "PmrInstanceDesc");
     InstanceDescription instance;
     instance.shape = mesh->shape();
-    instance.transform = readTransform(desc.transforms, desc.transformCount, "PmrInstanceDesc");
-    instance.name = desc.name == nullptr ? "" : desc.name;
-    instance.id = desc.id;
-    instance.hiddenFrom = desc.hiddenFrom;
+    values.putInto(instance);
     instance.materials = materialsOf(desc, *mesh);
     m_description.instances.push_back(std::move(instance));
 }
@@ -157,54 +123,96 @@ void SceneObject::addInstance(const PmrInstanceDesc& desc) {
 void SceneObject::addLight(const PmrLightDesc& desc) {
     const std::lock_guard lock(m_mutex);
     requireOpen();
-    readLight(desc, m_description);
+    LightSet light(lightParameters());
+    readStructInto(light, &desc, *m_context, "PmrLightDesc");
+    checkLight(light, "PmrLightDesc");
+    m_lights.push_back(std::move(light));
 }
 
 void SceneObject::setEnvironment(const PmrEnvironmentDesc& desc) {
     const std::lock_guard lock(m_mutex);
     requireOpen();
-    EnvironmentDescription environment = readEnvironment(desc);
-    std::shared_ptr<TextureObject> texture;
-    if (desc.texture != nullptr) {
-        texture = findObject<TextureObject>(desc.texture);
-        if (!texture)
-            throw CallError(CallStatus::kHandle,
-                            "PmrEnvironmentDesc: texture is not a live texture");
-        if (texture->context() != m_context)
-            throw argumentError("PmrEnvironmentDesc: texture belongs to another context");
-    }
-    m_description.environment = environment;
-    m_environmentTexture = std::move(texture);
+    if (desc.reserved != 0.0f) throw argumentError("PmrEnvironmentDesc: reserved must be 0");
+    EnvironmentSet environment(environmentParameters());
+    readStructInto(environment, &desc, *m_context, "PmrEnvironmentDesc");
+    checkEnvironment(environment, "PmrEnvironmentDesc");
+    m_environment = std::move(environment);
 }
 
 void SceneObject::setCamera(const PmrCameraDesc& desc) {
     const std::lock_guard lock(m_mutex);
     requireOpen();
-    refuseOtherCameras(desc);
-    if (!(desc.fieldOfView > 0.0 && desc.fieldOfView < std::numbers::pi))
-        throw argumentError(fmt::format(
-            "PmrCameraDesc: fieldOfView is {}; it must be between 0 and pi (radians, vertical)",
-            desc.fieldOfView));
-    if (!(desc.pixelAspect >= 0.0) || !std::isfinite(desc.pixelAspect))
-        throw argumentError(
-            fmt::format("PmrCameraDesc: pixelAspect is {}; it must be above 0 and finite (0 = 1)",
-                        desc.pixelAspect));
-    CameraDescription camera;
-    camera.cameraToWorld = readTransform(desc.transforms, desc.transformCount, "PmrCameraDesc");
-    camera.verticalFieldOfView = desc.fieldOfView;
-    camera.pixelAspect = desc.pixelAspect == 0.0 ? 1.0 : desc.pixelAspect;
-    m_description.camera = camera;
+    if (desc.reserved != 0) throw argumentError("PmrCameraDesc: reserved must be 0");
+    CameraSet camera(cameraParameters());
+    readStructInto(camera, &desc, *m_context, "PmrCameraDesc");
+    checkCamera(camera, "PmrCameraDesc");
+    m_camera = std::move(camera);
+}
+
+void SceneObject::setInstanceParameter(const PmrParameterDesc& desc) {
+    checkIndex(desc.index, m_description.instances.size());
+    InstanceDescription& instance = m_description.instances[desc.index];
+    const std::string owner = fmt::format("instance {}", desc.index);
+    InstanceSet values(instanceParameters());
+    setByName(values, desc, *m_context, owner);
+    const std::size_t row = indexOf(values.rows(), desc.name, owner);
+    if (values.rows()[row].inStruct.kind == StructPlace::Kind::kTransform)
+        readTransform(values.value(row).numbers.data(), 1, owner.c_str());
+    const auto& place = std::get<Place<InstanceDescription>>(values.rows()[row].places);
+    place.put(instance, values.value(row), kNoTexture);
+}
+
+void SceneObject::setParameter(const PmrParameterDesc& desc) {
+    const std::lock_guard lock(m_mutex);
+    requireOpen();
+    // A copy, so that nothing has changed where it is refused.
+    const auto change = [&](auto& object, const std::string& owner, auto check) {
+        auto changed = object;
+        setByName(changed, desc, *m_context, owner);
+        check(changed, owner);
+        object = std::move(changed);
+    };
+    switch (desc.object) {
+        case PMR_OBJECT_LIGHT:
+            checkIndex(desc.index, m_lights.size());
+            return change(m_lights[desc.index], fmt::format("light {}", desc.index), checkLight);
+        case PMR_OBJECT_ENVIRONMENT:
+            if (!m_environment) throw CallError(CallStatus::kState, "there is no environment yet");
+            return change(*m_environment, "environment", checkEnvironment);
+        case PMR_OBJECT_CAMERA:
+            if (!m_camera) throw CallError(CallStatus::kState, "there is no camera yet");
+            return change(*m_camera, "camera", checkCamera);
+        case PMR_OBJECT_INSTANCE:
+            return setInstanceParameter(desc);
+        default:
+            throw argumentError(fmt::format(
+                "PmrParameterDesc: object is {}; it must be 0 to 4 (PMR_OBJECT_*)", desc.object));
+    }
+}
+
+// The description, whose textures go to their list.
+SceneDescription SceneObject::describe(SceneTextures& textures) const {
+    SceneDescription description = m_description;
+    for (const LightSet& light : m_lights) addLightTo(light, description);
+    if (m_environment) {
+        description.environment.emplace();
+        m_environment->putInto(
+            *description.environment,
+            [&](const std::shared_ptr<const Texture>& texture) { return textures.add(texture); });
+    }
+    if (m_camera) {
+        description.camera.emplace();
+        m_camera->putInto(*description.camera);
+    }
+    return description;
 }
 
 void SceneObject::commit() {
     std::unique_lock lock(m_mutex);
     requireOpen();
-    SceneDescription description = m_description;
     // Their own list: what a cancel leaves behind may still read it when more are added to this.
     const auto textures = std::make_shared<SceneTextures>(*m_textures);
-    if (description.environment)
-        description.environment->texture =
-            m_environmentTexture ? textures->add(m_environmentTexture->texture()) : kNoTexture;
+    SceneDescription description = describe(*textures);
     description.textures = textures;
     m_committed = runLeavable(m_context->buildCheck(), "building the scene",
                               [description = std::move(description), textures,

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "plugin/api/context.h"
 #include "plugin/api/handle_table.h"
 #include "plugin/api/objects.h"
+#include "plugin/api/parameter_reader.h"
 #include "plugin/include/pm_plugin.h"
 #include "plugin/session/render_scene.h"
 #include "plugin/textures/scene_textures.h"
@@ -35,6 +37,9 @@ class SceneObject {
     void addLight(const PmrLightDesc& desc);
     void setEnvironment(const PmrEnvironmentDesc& desc);
     void setCamera(const PmrCameraDesc& desc);
+    // Of a light, the environment, the camera or an instance. Errors also: CallError NAME; STATE
+    // where there is no environment or camera. Nothing is changed then.
+    void setParameter(const PmrParameterDesc& desc);
 
     // Builds on the context's threads. Errors: those of Scene::build; the scene then stays open.
     void commit();
@@ -46,16 +51,20 @@ class SceneObject {
 
   private:
     void requireOpen() const;
+    void setInstanceParameter(const PmrParameterDesc& desc);
+    SceneDescription describe(SceneTextures& textures) const;
     std::uint32_t materialIndex(const std::shared_ptr<MaterialObject>& material);
     std::vector<std::uint32_t> materialsOf(const PmrInstanceDesc& desc, const MeshObject& mesh);
 
     std::shared_ptr<Context> m_context;
     mutable std::mutex m_mutex;
-    SceneDescription m_description;
+    SceneDescription m_description;  // materials and instances; the others are
+    std::vector<LightSet> m_lights;
+    std::optional<EnvironmentSet> m_environment;
+    std::optional<CameraSet> m_camera;
     std::shared_ptr<SceneTextures> m_textures;
     std::unordered_map<const MaterialObject*, std::uint32_t> m_materialIndices;
     std::vector<std::shared_ptr<MaterialObject>> m_materials;  // keeps the keys above alive
-    std::shared_ptr<TextureObject> m_environmentTexture;       // null: none
     std::shared_ptr<const RenderScene> m_committed;            // null before commit
 };
 

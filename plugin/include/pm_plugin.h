@@ -95,7 +95,7 @@ typedef int32_t PmrStatus;
 #define PMR_ERROR_IN_CALLBACK (-10) /* not allowed inside a callback */
 #define PMR_ERROR_TIMEOUT (-11)     /* waitRender or pollRender: nothing yet */
 #define PMR_ERROR_ABI (-12)         /* this ABI version is not offered */
-#define PMR_ERROR_NAME (-13)        /* no setting or layer of that name */
+#define PMR_ERROR_NAME (-13)        /* no setting, parameter or layer of that name */
 #define PMR_ERROR_FILE (-14)        /* a checkpoint, part or photon map is damaged, or is none */
 #define PMR_ERROR_MISMATCH (-15)    /* one of these is of another picture or of other photons */
 
@@ -338,6 +338,58 @@ typedef struct PmrCameraDesc {
     double focusDistance;
     double pixelAspect; /* 0 = 1 */
 } PmrCameraDesc;
+
+/* ---- Parameters by name --------------------------------------------------------------------- */
+
+/* What has parameters. The structs above are presets of them: each of their members that is a
+ * number, a text or a texture is a parameter of the same name (of transforms the one time sample).
+ * What comes after ABI version 1's structs comes as a parameter only. */
+#define PMR_OBJECT_MATERIAL 0
+#define PMR_OBJECT_LIGHT 1
+#define PMR_OBJECT_ENVIRONMENT 2
+#define PMR_OBJECT_CAMERA 3
+#define PMR_OBJECT_INSTANCE 4
+#define PMR_OBJECT_SPHERE 5 /* to be listed only: createSphere has all of it */
+
+#define PMR_PARAMETER_NUMBER 0
+#define PMR_PARAMETER_INTEGER 1
+#define PMR_PARAMETER_CHOICE 2 /* one of `choices`, by its name or by its place there */
+#define PMR_PARAMETER_TEXT 3
+#define PMR_PARAMETER_TEXTURE 4
+#define PMR_PARAMETER_OBJECTS 5 /* handles: by the struct only */
+
+/* What a host needs to make a panel or a manual. Texts belong to the library and live as long. */
+typedef struct PmrParameterInfo {
+    uint64_t size;
+    const char* name;
+    const char* unit;        /* "" = none */
+    const char* defaultText; /* as setParameter takes it as a text */
+    const char* choices;     /* CHOICE: separated by commas; else "" */
+    const char* help;        /* one line */
+    double minimum;          /* NUMBER and INTEGER, of each number */
+    double maximum;          /* infinity: none, but finite */
+    int32_t type;
+    uint32_t count;          /* of numbers */
+    int32_t excludesMinimum; /* 1: above it */
+    int32_t excludesMaximum; /* 1: below it */
+    int32_t changesPixels;   /* 1 when the picture depends on it */
+    int32_t reserved;
+} PmrParameterInfo;
+
+/* One parameter of one object, and its value: numbers, a text ("0.5 0.5 1", "mirror") or, of a
+ * parameter of type TEXTURE, a texture, null for none. */
+typedef struct PmrParameterDesc {
+    uint64_t size;
+    int32_t object;       /* PMR_OBJECT_* */
+    uint32_t index;       /* LIGHT, INSTANCE: which of the scene's, as they were added, from 0 */
+    PmrMaterial material; /* MATERIAL; else null */
+    PmrScene scene;       /* of all others; else null */
+    const char* name;
+    const double* numbers;
+    uint64_t numberCount;
+    const char* text;
+    PmrTexture texture;
+} PmrParameterDesc;
 
 /* ---- Settings ------------------------------------------------------------------------------ */
 
@@ -583,6 +635,17 @@ typedef struct PmrApi {
      * for it, and so does its exit(). Any thread, any time, any number. Came after renderDelivery.
      */
     PmrStatus(PMR_CALL* cancelBuilds)(PmrContext context, int32_t on);
+
+    /* Enumerations; need no context. object: PMR_OBJECT_*; 0 for one that is not there. They came
+     * after cancelBuilds. */
+    uint32_t(PMR_CALL* parameterCount)(int32_t object);
+    PmrStatus(PMR_CALL* parameterInfo)(int32_t object, uint32_t index, PmrParameterInfo* info);
+    /* Sets one parameter of a material that no scene uses yet, or of a light, the environment, the
+     * camera or an instance of a scene that is not committed. PMR_ERROR_NAME: there is none of that
+     * name, lastError has those that there are. PMR_ERROR_ARGUMENT: outside its range, which
+     * lastError has, or together with the object's others not allowed. PMR_ERROR_STATE: used or
+     * committed. The object stays as it was then. */
+    PmrStatus(PMR_CALL* setParameter)(const PmrParameterDesc* desc);
 } PmrApi;
 
 /* The one symbol. Returns PMR_ERROR_ABI when that version is not offered. Any thread. */

@@ -9,10 +9,10 @@
 #include <memory>
 #include <span>
 #include <string_view>
-#include <tuple>
 #include <type_traits>
 #include <variant>
 
+#include "plugin/parameters/parameter_set.h"
 #include "plugin/session/setting_table.h"
 #include "plugin/values/call_error.h"
 #include "plugin/values/hasher.h"
@@ -35,51 +35,28 @@ void addMesh(Hasher& hasher, const TriangleMesh& mesh) {
     hasher.addArray<std::uint32_t>(mesh.materials);
 }
 
-void addMaterial(Hasher& hasher, const MaterialDescription& m) {
-    hasher.add(m.kind);
-    hasher.add(m.fresnelMirror);
-    hasher.add(m.diffuse);
-    hasher.add(m.glossy);
-    hasher.add(m.glossyExponent);
-    hasher.add(m.ior);
-    hasher.add(m.transmission);
-    hasher.add(m.emission);
-    hasher.add(m.transparency);
-    for (const std::int32_t texture : {m.diffuseTexture, m.glossyTexture, m.glossyExponentTexture,
-                                       m.transmissionTexture, m.emissionTexture, m.opacityTexture})
-        hasher.add(texture);
-}
-
-void addInstance(Hasher& hasher, const InstanceDescription& instance) {
+void addInstance(Hasher& hasher, const InstanceDescription& instance, const SceneTables& tables) {
     hasher.add(instance.shape.index());
-    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape)) {
+    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape))
         addMesh(hasher, **mesh);
-    } else {
-        const auto& sphere = std::get<SphereShape>(instance.shape);
-        hasher.add(sphere.centre);
-        hasher.add(sphere.radius);
-    }
-    hasher.addArray<double>(instance.transform);
-    hasher.addArray<std::uint32_t>(instance.materials);
-    // Only where there is some: scenes without keep the checksums that they have had.
-    if (instance.hiddenFrom != 0) hasher.add(instance.hiddenFrom);
+    else
+        hashRows(hasher, tables.spheres, std::get<SphereShape>(instance.shape));
+    hashRows(hasher, tables.instances, instance);
 }
 
 // The number of point lights and theirs, then only what is there: scenes without keep the checksums
 // that they have had.
-void addLights(Hasher& hasher, const SceneDescription& d) {
+void addLights(Hasher& hasher, const SceneDescription& d, const SceneTables& tables) {
     using Point = PointLightDescription;
     hasher.add(static_cast<std::size_t>(std::ranges::count_if(
         d.lights, [](const auto& light) { return std::holds_alternative<Point>(light); })));
     forEachByKind(d.lights, [&](const auto& light) {
         if (!std::is_same_v<std::decay_t<decltype(light)>, Point>) hasher.add(light.kName);
-        std::apply([&](const auto&... value) { (hasher.add(value), ...); }, light.parameters());
+        hashRows(hasher, tables.lights, light);
     });
     if (!d.environment) return;
     hasher.add("environment");
-    hasher.add(d.environment->radiance);
-    hasher.add(d.environment->texture);
-    hasher.addArray<double>(d.environment->toWorld);
+    hashRows(hasher, tables.environments, *d.environment);
 }
 
 void addTexture(Hasher& hasher, const TexturePicture& picture, const CancelCheck& cancel) {
@@ -95,7 +72,7 @@ void addTexture(Hasher& hasher, const TexturePicture& picture, const CancelCheck
 
 }  // namespace
 
-Identity sceneIdentity(const Scene& scene, const SceneTextures& textures,
+Identity sceneIdentity(const Scene& scene, const SceneTextures& textures, const SceneTables& tables,
                        const CancelCheck& cancel) {
     const SceneDescription& d = scene.description();
     Identity identity = {{"instruction set", scene.isa()}, {"rendering space", d.renderingSpace}};
@@ -107,20 +84,18 @@ Identity sceneIdentity(const Scene& scene, const SceneTextures& textures,
         hasher.add(d.instances.size());
         for (const InstanceDescription& instance : d.instances) {
             cancel.throwIfSet("hashing the scene");
-            addInstance(hasher, instance);
+            addInstance(hasher, instance, tables);
         }
     });
     part("materials", [&](Hasher& hasher) {
         hasher.add(d.materials.size());
-        for (const MaterialDescription& material : d.materials) addMaterial(hasher, material);
+        for (const MaterialDescription& material : d.materials)
+            hashRows(hasher, tables.materials, material);
     });
-    part("lights", [&](Hasher& hasher) { addLights(hasher, d); });
+    part("lights", [&](Hasher& hasher) { addLights(hasher, d, tables); });
     part(kCameraPart, [&](Hasher& hasher) {
         hasher.add(d.camera.has_value());
-        if (!d.camera) return;
-        hasher.addArray<double>(d.camera->cameraToWorld);
-        hasher.add(d.camera->verticalFieldOfView);
-        hasher.add(d.camera->pixelAspect);
+        if (d.camera) hashRows(hasher, tables.cameras, *d.camera);
     });
     part("textures", [&](Hasher& hasher) {
         for (const TexturePicture* picture : textures.pictures())

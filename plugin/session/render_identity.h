@@ -5,15 +5,17 @@
 #include "integrator/scene/scene.h"
 #include "integrator/transport/plan/plan.h"
 #include "integrator/values/cancel_check.h"
+#include "plugin/parameters/scene_tables.h"
 #include "plugin/session/setting_values.h"
 #include "plugin/textures/scene_textures.h"
 #include "plugin/values/identity.h"
 
 namespace pm::plugin {
 
-// Instruction set, colour space, geometry, materials, texels, lights and camera. Errors:
+// Instruction set, colour space, geometry, materials, texels, lights and camera, of what is
+// described all rows of the tables. Errors:
 // CallError(IO) when a texture can't be read again; Error(kCancelled) soon after cancel is set.
-Identity sceneIdentity(const Scene& scene, const SceneTextures& textures,
+Identity sceneIdentity(const Scene& scene, const SceneTextures& textures, const SceneTables& tables,
                        const CancelCheck& cancel);
 
 // Version and build, and every setting that changes pixels, but for the number of passes: a

@@ -42,6 +42,8 @@ struct Things {
     std::array<double, 6> bounds{};
     PmrSettingInfo setting = PMR_INIT(PmrSettingInfo);
     PmrLayerInfo layer = PMR_INIT(PmrLayerInfo);
+    PmrParameterInfo parameter = PMR_INIT(PmrParameterInfo);
+    PmrParameterDesc diffuse = PMR_INIT(PmrParameterDesc);
 
     Things() {
         PmrSphereDesc sphere = PMR_INIT(PmrSphereDesc);
@@ -49,6 +51,9 @@ struct Things {
         const PmrMaterialDesc grey = PMR_INIT(PmrMaterialDesc);
         EXPECT_EQ(PMR_OK, api().createSphere(host.context(), &sphere, &mesh));
         EXPECT_EQ(PMR_OK, api().createMaterial(host.context(), &grey, &material));
+        diffuse.material = material;
+        diffuse.name = "diffuse";
+        diffuse.text = "1 0.5 1";
         EXPECT_EQ(PMR_OK, api().createScene(host.context(), nullptr, &open));
         EXPECT_EQ(PMR_OK, api().createMerge(host.context(), &merge));
     }
@@ -68,6 +73,10 @@ std::vector<Row> rowsOfObjects(Things& t) {
          [&t] { return api().settingInfo(0, &t.setting); }},
         {"layerInfo", [] { return api().layerInfo(9999, nullptr); },
          [&t] { return api().layerInfo(0, &t.layer); }},
+        {"parameterInfo", [] { return api().parameterInfo(PMR_OBJECT_LIGHT, 9999, nullptr); },
+         [&t] { return api().parameterInfo(PMR_OBJECT_LIGHT, 0, &t.parameter); }},
+        {"setParameter", [] { return api().setParameter(nullptr); },
+         [&t] { return api().setParameter(&t.diffuse); }},
         {"createContext", [] { return api().createContext(nullptr, nullptr); },
          [] {
              PmrContext made = nullptr;
@@ -158,8 +167,8 @@ TEST(LastError, IsOfTheLastCallWhateverItWas) {
     Things things;
     std::vector<Row> rows = rowsOfObjects(things);
     for (Row& row : rowsOfRenders(things)) rows.push_back(std::move(row));
-    // All functions of the table but those without a status (4) and lastError.
-    EXPECT_EQ((sizeof(PmrApi) - offsetof(PmrApi, versionText)) / sizeof(void*) - 5, rows.size());
+    // All functions of the table but those without a status (5) and lastError.
+    EXPECT_EQ((sizeof(PmrApi) - offsetof(PmrApi, versionText)) / sizeof(void*) - 6, rows.size());
     constexpr const char* kStale = "setting seed is -1";
     for (const Row& row : rows) {
         ASSERT_EQ(PMR_ERROR_ARGUMENT, api().setSettingInteger(things.render, "seed", -1));

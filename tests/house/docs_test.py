@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: The pm authors
 """The documents hold: links lead somewhere, the C example compiles, options exist in pm_host, tests
-exist that docs/testing.md names, tables are even.
+exist that docs/testing.md names, tables are even, docs/parameters.md is what pm_host lists.
 
 usage: docs_test.py C_COMPILER PM_HOST
 """
@@ -11,6 +11,8 @@ import re
 import subprocess
 import sys
 import tempfile
+
+import parameters_page
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DOCUMENTS = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/**/*.md"), *ROOT.glob("scenes/*/*.md")])
@@ -74,11 +76,17 @@ def unknown_tests():
             yield f"docs/testing.md: there is no test {test}"
 
 
+def stale_parameters(host):
+    page = ROOT / "docs" / "parameters.md"
+    if not page.exists() or page.read_text(encoding="utf-8") != parameters_page.page(host):
+        yield "docs/parameters.md: not what pm_host lists; tests/house/parameters_page.py makes it"
+
+
 def main():
     compiler, host = sys.argv[1:3]
     found = [*broken_links(), *broken_example(compiler), *unknown_tests(), *uneven_tables()]
     if pathlib.Path(host).exists():
-        found += unknown_options(host)
+        found += [*unknown_options(host), *stale_parameters(host)]
     else:
         found.append(f"{host} is not built")
     for line in found:

@@ -29,7 +29,9 @@ class SidecarScene : public HostTest {
         write("s.obj", obj);
         if (!sidecar.empty()) write("s.pm.json", "{\"schema\": \"pm-sidecar/1\", " + sidecar + "}");
     }
-    Picture picture(const Arguments& arguments) { return renderExr("s", Arguments{"s.obj"} + arguments); }
+    Picture picture(const Arguments& arguments) {
+        return renderExr("s", Arguments{"s.obj"} + arguments);
+    }
     // Of R, of what the camera sees at the origin of the ground.
     double atOrigin(const std::string& sidecar) {
         scene(kGround, sidecar);

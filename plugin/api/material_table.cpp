@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include <array>
+#include <cstddef>
+
+#include "plugin/api/parameter_tables.h"
+#include "plugin/include/pm_plugin.h"
+#include "plugin/parameters/place.h"
+
+namespace pm::plugin {
+
+namespace {
+
+using Kind = StructPlace::Kind;
+using Type = ParameterType;
+using M = MaterialDescription;
+
+constexpr std::array kMaterialRows = {
+    MaterialParameter{{.name = "kind",
+                       .help = "surface: diffuse, plus a glossy lobe; mirror: glossy is its "
+                               "reflectance; dielectric: smooth boundary of a medium",
+                       .type = Type::kChoice,
+                       .maximum = 2,
+                       .defaultText = "surface",
+                       .choices = "surface,mirror,dielectric"},
+                      {Kind::kInt32, offsetof(PmrMaterialDesc, kind)},
+                      {memberPlace<&M::kind>()}},
+    MaterialParameter{{.name = "fresnel",
+                       .help = "Perfect mirrors: 1 = Schlick's Fresnel from the glossy colour.",
+                       .type = Type::kInteger,
+                       .defaultText = "0"},
+                      {Kind::kInt32, offsetof(PmrMaterialDesc, fresnel)},
+                      {memberPlace<&M::fresnelMirror>()}},
+    MaterialParameter{{.name = "diffuse",
+                       .help = "Surface: Lambertian reflectance.",
+                       .count = 3,
+                       .defaultText = "0 0 0"},
+                      {Kind::kFloats, offsetof(PmrMaterialDesc, diffuse)},
+                      {memberPlace<&M::diffuse>()}},
+    MaterialParameter{{.name = "glossy",
+                       .help = "Surface: reflectance of the Phong lobe at normal incidence; "
+                               "mirror: reflectance.",
+                       .count = 3,
+                       .defaultText = "0 0 0"},
+                      {Kind::kFloats, offsetof(PmrMaterialDesc, glossy)},
+                      {memberPlace<&M::glossy>()}},
+    MaterialParameter{{.name = "glossyExponent",
+                       .help = "Surface: exponent of the Phong lobe; mirror: 0 = perfect.",
+                       .maximum = kNoEnd,
+                       .defaultText = "0"},
+                      {Kind::kFloats, offsetof(PmrMaterialDesc, glossyExponent)},
+                      {memberPlace<&M::glossyExponent>()}},
+    MaterialParameter{{.name = "ior",
+                       .help = "Dielectric: index of refraction inside relative to outside; 0 = "
+                               "1.5.",
+                       .maximum = kNoEnd,
+                       .excludesMinimum = true,
+                       .defaultText = "1.5",
+                       .zeroMeans = 1.5},
+                      {Kind::kFloats, offsetof(PmrMaterialDesc, ior)},
+                      {memberPlace<&M::ior>()}},
+    MaterialParameter{{.name = "transmission",
+                       .help = "Dielectric: tint at each transmission.",
+                       .count = 3,
+                       .defaultText = "0 0 0"},
+                      {Kind::kFloats, offsetof(PmrMaterialDesc, transmission)},
+                      {memberPlace<&M::transmission>()}},
+    MaterialParameter{{.name = "emission",
+                       .help = "Radiance of the front.",
+                       .count = 3,
+                       .unit = "W m^-2 sr^-1",
+                       .maximum = kNoEnd,
+                       .defaultText = "0 0 0"},
+                      {Kind::kFloats, offsetof(PmrMaterialDesc, emission)},
+                      {memberPlace<&M::emission>()}},
+    MaterialParameter{{.name = "transparency",
+                       .help = "Share of light that passes straight through (cut-outs); 0 = "
+                               "opaque.",
+                       .defaultText = "0"},
+                      {Kind::kFloats, offsetof(PmrMaterialDesc, transparency)},
+                      {memberPlace<&M::transparency>()}},
+    MaterialParameter{
+        {.name = "diffuseTexture", .help = "Multiplies diffuse.", .type = Type::kTexture},
+        {Kind::kTexture, offsetof(PmrMaterialDesc, diffuseTexture)},
+        {texturePlace<&M::diffuseTexture>()}},
+    MaterialParameter{
+        {.name = "glossyTexture", .help = "Multiplies glossy.", .type = Type::kTexture},
+        {Kind::kTexture, offsetof(PmrMaterialDesc, glossyTexture)},
+        {texturePlace<&M::glossyTexture>()}},
+    MaterialParameter{{.name = "glossyExponentTexture",
+                       .help = "Multiplies glossyExponent.",
+                       .type = Type::kTexture},
+                      {Kind::kTexture, offsetof(PmrMaterialDesc, glossyExponentTexture)},
+                      {texturePlace<&M::glossyExponentTexture>()}},
+    MaterialParameter{
+        {.name = "transmissionTexture", .help = "Multiplies transmission.", .type = Type::kTexture},
+        {Kind::kTexture, offsetof(PmrMaterialDesc, transmissionTexture)},
+        {texturePlace<&M::transmissionTexture>()}},
+    MaterialParameter{
+        {.name = "emissionTexture", .help = "Multiplies emission.", .type = Type::kTexture},
+        {Kind::kTexture, offsetof(PmrMaterialDesc, emissionTexture)},
+        {texturePlace<&M::emissionTexture>()}},
+    MaterialParameter{{.name = "opacityTexture",
+                       .help = "Opacity is (1 - transparency) times it.",
+                       .type = Type::kTexture},
+                      {Kind::kTexture, offsetof(PmrMaterialDesc, opacityTexture)},
+                      {texturePlace<&M::opacityTexture>()}},
+    MaterialParameter{
+        {.name = "name", .help = "For messages.", .type = Type::kText, .changesPixels = false},
+        {Kind::kText, offsetof(PmrMaterialDesc, name)},
+        {unseenPlace<&M::name>()}},
+};
+
+}  // namespace
+
+std::span<const MaterialParameter> materialParameters() {
+    return kMaterialRows;
+}
+
+}  // namespace pm::plugin
