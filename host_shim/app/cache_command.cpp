@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/cache_command.h"
 
-#include "host_shim/pictures/host_error.h"
-#include "host_shim/render/texture_setup.h"
-
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include <cstdio>
 #include <ctime>
 #include <string>
+
+#include "host_shim/pictures/host_error.h"
+#include "host_shim/render/texture_setup.h"
 
 namespace pm::host {
 namespace {

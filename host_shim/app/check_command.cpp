@@ -2,6 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/check_command.h"
 
+#include <fmt/format.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <string_view>
+
 #include "host_shim/check/check_page.h"
 #include "host_shim/check/check_run.h"
 #include "host_shim/check/junit.h"
@@ -9,12 +15,6 @@
 #include "host_shim/pictures/finished_file.h"
 #include "host_shim/process/outputs.h"
 #include "host_shim/process/plain_text.h"
-
-#include <fmt/format.h>
-
-#include <cstdio>
-#include <cstdlib>
-#include <string_view>
 
 namespace pm::host {
 namespace {

@@ -2,6 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/app/host.h"
 
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+
 #include "host_shim/app/cache_command.h"
 #include "host_shim/app/check_command.h"
 #include "host_shim/app/listings.h"
@@ -11,14 +19,6 @@
 #include "host_shim/process/interrupt.h"
 #include "host_shim/process/plain_text.h"
 #include "host_shim/session/session.h"
-
-#include <fcntl.h>
-#include <fmt/format.h>
-#include <unistd.h>
-
-#include <csignal>
-#include <cstdio>
-#include <cstdlib>
 
 namespace pm::host {
 namespace {

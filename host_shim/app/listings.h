@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <string>
+
 #include "host_shim/colour/colour_pipeline.h"
 #include "host_shim/render/plugin.h"
-
-#include <string>
 
 namespace pm::host {
 

@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/check/check_page.h"
 
-#include "host_shim/pictures/finished_file.h"
-#include "host_shim/report/report_html.h"
-#include "host_shim/report/report_pictures.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+
+#include "host_shim/pictures/finished_file.h"
+#include "host_shim/report/report_html.h"
+#include "host_shim/report/report_pictures.h"
 
 namespace pm::host {
 namespace {

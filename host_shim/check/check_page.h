@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/check/scene_check.h"
-
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "host_shim/check/scene_check.h"
 
 namespace pm::host {
 

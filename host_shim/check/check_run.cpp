@@ -2,11 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/check/check_run.h"
 
-#include "host_shim/check/reference_making.h"
-#include "host_shim/process/interrupt.h"
-#include "host_shim/process/outputs.h"
-#include "host_shim/report/report_command.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +9,11 @@
 #include <limits>
 #include <string_view>
 #include <thread>
+
+#include "host_shim/check/reference_making.h"
+#include "host_shim/process/interrupt.h"
+#include "host_shim/process/outputs.h"
+#include "host_shim/report/report_command.h"
 
 namespace pm::host {
 namespace {

@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <functional>
+#include <vector>
+
 #include "host_shim/check/scene_check.h"
 #include "host_shim/cli/options.h"
 #include "host_shim/process/child_process.h"
 #include "host_shim/process/temporary_folder.h"
-
-#include <functional>
-#include <vector>
 
 namespace pm::host {
 

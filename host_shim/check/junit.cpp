@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/check/junit.h"
 
-#include "host_shim/report/report_html.h"
-
 #include <fmt/format.h>
+
+#include "host_shim/report/report_html.h"
 
 namespace pm::host {
 namespace {

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/check/scene_check.h"
-
 #include <string>
 #include <vector>
+
+#include "host_shim/check/scene_check.h"
 
 namespace pm::host {
 

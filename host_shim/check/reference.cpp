@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/check/reference.h"
 
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/check/region_spread.h"
-
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "host_shim/check/region_spread.h"
 
 namespace pm::host {
 

@@ -2,10 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/check/reference_making.h"
 
-#include "host_shim/pictures/display_compare.h"
-#include "host_shim/pictures/finished_file.h"
-#include "host_shim/pictures/picture_io.h"
-
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 
@@ -16,6 +12,10 @@
 #include <iterator>
 #include <memory>
 #include <utility>
+
+#include "host_shim/pictures/display_compare.h"
+#include "host_shim/pictures/finished_file.h"
+#include "host_shim/pictures/picture_io.h"
 
 namespace pm::host {
 namespace {

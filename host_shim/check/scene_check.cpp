@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/check/scene_check.h"
 
+#include <fmt/format.h>
+
 #include "host_shim/cli/command_line.h"
 #include "host_shim/colour/display_picture.h"
 #include "host_shim/pictures/picture_io.h"
-
-#include <fmt/format.h>
 
 namespace pm::host {
 namespace {

@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "host_shim/check/suite.h"
 #include "host_shim/check/verdict.h"
 #include "host_shim/colour/colour_pipeline.h"
-
-#include <optional>
-#include <string>
 
 namespace pm::host {
 

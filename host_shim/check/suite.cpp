@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/check/suite.h"
 
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <fstream>
 #include <initializer_list>
+#include <nlohmann/json.hpp>
 #include <string_view>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

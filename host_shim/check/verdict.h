@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/check/reference.h"
-#include "host_shim/pictures/display_compare.h"
-#include "host_shim/pictures/picture.h"
-
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "host_shim/check/reference.h"
+#include "host_shim/pictures/display_compare.h"
+#include "host_shim/pictures/picture.h"
 
 namespace pm::host {
 

@@ -2,6 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/cli/command_line.h"
 
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <limits>
+#include <optional>
+#include <ranges>
+
 #include "host_shim/cli/not_available.h"
 #include "host_shim/cli/option_table.h"
 #include "host_shim/cli/option_values.h"
@@ -11,14 +19,6 @@
 #include "host_shim/formats/mtl/mtl_dialect.h"
 #include "host_shim/formats/text_lines.h"
 #include "host_shim/pictures/picture_io.h"
-
-#include <fmt/format.h>
-#include <CLI/CLI.hpp>
-
-#include <algorithm>
-#include <limits>
-#include <optional>
-#include <ranges>
 
 namespace pm::host {
 namespace {

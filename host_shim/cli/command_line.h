@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/cli/options.h"
-
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "host_shim/cli/options.h"
 
 namespace pm::host {
 

@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/cli/not_available.h"
 
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <string_view>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -2,14 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/cli/option_table.h"
 
-#include "host_shim/formats/mtl/mtl_dialect.h"
-#include "host_shim/pictures/picture_io.h"
-
 #include <CLI/CLI.hpp>
-
 #include <algorithm>
 #include <array>
 #include <string_view>
+
+#include "host_shim/formats/mtl/mtl_dialect.h"
+#include "host_shim/pictures/picture_io.h"
 
 namespace pm::host {
 namespace {

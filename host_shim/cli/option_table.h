@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/cli/command_line.h"
-
 #include <map>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "host_shim/cli/command_line.h"
 
 namespace CLI {
 class App;

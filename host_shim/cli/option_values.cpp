@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/cli/option_values.h"
 
-#include "host_shim/formats/text_lines.h"
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
+
+#include "host_shim/formats/text_lines.h"
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -2,17 +2,17 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/colour/colour_pipeline.h"
-#include "host_shim/formats/scene_reader.h"
-#include "host_shim/look/framing.h"
-#include "host_shim/pictures/picture.h"
-
 #include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "host_shim/colour/colour_pipeline.h"
+#include "host_shim/formats/scene_reader.h"
+#include "host_shim/look/framing.h"
+#include "host_shim/pictures/picture.h"
 
 namespace pm::host {
 

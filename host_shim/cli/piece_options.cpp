@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/cli/piece_options.h"
 
-#include "host_shim/cli/option_values.h"
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+
+#include "host_shim/cli/option_values.h"
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

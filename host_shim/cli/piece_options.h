@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/cli/options.h"
-
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
+
+#include "host_shim/cli/options.h"
 
 namespace pm::host {
 

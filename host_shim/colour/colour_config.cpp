@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/colour/colour_config.h"
 
-#include "host_shim/colour/built_in_config.h"
-
 #include <fmt/format.h>
 
 #include <charconv>
@@ -11,6 +9,8 @@
 #include <filesystem>
 #include <fstream>
 #include <optional>
+
+#include "host_shim/colour/built_in_config.h"
 
 namespace pm::host {
 namespace {

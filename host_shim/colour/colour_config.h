@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/colour/colour_pipeline.h"
-
 #include <OpenColorIO/OpenColorIO.h>
 
 #include <functional>
 #include <string>
 #include <vector>
+
+#include "host_shim/colour/colour_pipeline.h"
 
 namespace pm::host {
 

@@ -2,12 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/colour/colour_pipeline.h"
 
+#include <fmt/format.h>
+#include <xxhash.h>
+
 #include "host_shim/colour/built_in_config.h"
 #include "host_shim/colour/pipeline_state.h"
-
-#include <fmt/format.h>
-
-#include <xxhash.h>
 
 namespace pm::host {
 

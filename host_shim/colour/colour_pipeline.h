@@ -2,11 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/colour/display_transform.h"
-#include "host_shim/colour/picture_statement.h"
-#include "host_shim/colour/space_conversion.h"
-#include "host_shim/pictures/host_error.h"
-
 #include <array>
 #include <filesystem>
 #include <memory>
@@ -14,6 +9,11 @@
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "host_shim/colour/display_transform.h"
+#include "host_shim/colour/picture_statement.h"
+#include "host_shim/colour/space_conversion.h"
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/colour/display_picture.h"
 
-#include "host_shim/pictures/host_error.h"
-
 #include <algorithm>
 #include <array>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/colour/space_conversion.h"
-
 #include <cmath>
 #include <cstdint>
 #include <span>
+
+#include "host_shim/colour/space_conversion.h"
 
 namespace pm::host {
 

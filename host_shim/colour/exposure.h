@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/picture.h"
-
 #include <array>
 #include <string>
+
+#include "host_shim/pictures/picture.h"
 
 namespace pm::host {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/colour/pipeline_state.h"
-#include "host_shim/colour/primaries.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+
+#include "host_shim/colour/pipeline_state.h"
+#include "host_shim/colour/primaries.h"
 
 namespace pm::host {
 namespace {

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/colour/space_conversion.h"
 
-#include "host_shim/colour/colour_config.h"
-
 #include <algorithm>
+
+#include "host_shim/colour/colour_config.h"
 
 namespace pm::host {
 

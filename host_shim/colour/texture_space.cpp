@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // ColourPipeline: which space a texture is in, and the way from there.
-#include "host_shim/colour/built_in_config.h"
-#include "host_shim/colour/pipeline_state.h"
-#include "host_shim/colour/primaries.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "host_shim/colour/built_in_config.h"
+#include "host_shim/colour/pipeline_state.h"
+#include "host_shim/colour/primaries.h"
 
 namespace pm::host {
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/colour/pipeline_state.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+
+#include "host_shim/colour/pipeline_state.h"
 
 namespace pm::host {
 namespace {

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/formats/file_names.h"
 
+#include <algorithm>
+
 #include "host_shim/formats/text_encoding.h"
 #include "host_shim/formats/text_lines.h"
-
-#include <algorithm>
 
 namespace pm::host {
 namespace {

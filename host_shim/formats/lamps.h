@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <string>
+
 #include "host_shim/formats/scene_data.h"
 #include "host_shim/formats/warnings.h"
-
-#include <string>
 
 namespace pm::host {
 

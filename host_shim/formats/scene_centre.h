@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/formats/scene_data.h"
-
 #include <array>
 #include <functional>
 #include <optional>
+
+#include "host_shim/formats/scene_data.h"
 
 namespace pm::host {
 

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/formats/scene_files.h"
 
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/formats/file_names.h"
-
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "host_shim/formats/file_names.h"
 
 namespace pm::host {
 

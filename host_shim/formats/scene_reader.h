@@ -2,10 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/formats/scene_data.h"
-#include "host_shim/formats/scene_files.h"
-#include "host_shim/formats/warnings.h"
-
 #include <array>
 #include <filesystem>
 #include <optional>
@@ -13,6 +9,10 @@
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "host_shim/formats/scene_data.h"
+#include "host_shim/formats/scene_files.h"
+#include "host_shim/formats/warnings.h"
 
 namespace pm::host {
 

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/formats/source_file.h"
 
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 
 #include <cerrno>
@@ -11,6 +9,8 @@
 #include <fstream>
 #include <sstream>
 #include <utility>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

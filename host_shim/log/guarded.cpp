@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/log/guarded.h"
 
-#include "host_shim/pictures/host_error.h"
-#include "host_shim/process/interrupt.h"
-
 #include <exception>
 #include <new>
 #include <system_error>
+
+#include "host_shim/pictures/host_error.h"
+#include "host_shim/process/interrupt.h"
 
 namespace pm::host {
 

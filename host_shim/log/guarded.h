@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/log/log.h"
-
 #include <functional>
 #include <string>
+
+#include "host_shim/log/log.h"
 
 namespace pm::host {
 

@@ -2,9 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/log/log.h"
 
-#include "host_shim/pictures/host_error.h"
-#include "host_shim/process/plain_text.h"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
@@ -13,6 +10,9 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+
+#include "host_shim/pictures/host_error.h"
+#include "host_shim/process/plain_text.h"
 
 namespace pm::host {
 namespace {

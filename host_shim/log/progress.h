@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <string>
+
 #include "host_shim/cli/options.h"
 #include "host_shim/log/log.h"
-
-#include <string>
 
 namespace pm::host {
 

@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/look/framing.h"
 
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

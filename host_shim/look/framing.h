@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/formats/scene_data.h"
-
 #include <array>
 #include <optional>
+
+#include "host_shim/formats/scene_data.h"
 
 namespace pm::host {
 

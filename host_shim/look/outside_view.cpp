@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/look/outside_view.h"
 
-#include "host_shim/look/framing.h"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "host_shim/look/framing.h"
 
 namespace pm::host {
 namespace {

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/look/occupancy_grid.h"
-
 #include <array>
 #include <optional>
+
+#include "host_shim/look/occupancy_grid.h"
 
 namespace pm::host {
 

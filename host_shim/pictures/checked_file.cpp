@@ -2,16 +2,16 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/pictures/checked_file.h"
 
-#include "host_shim/pictures/host_error.h"
-
-#include <fmt/format.h>
-
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/finished_file.h"
-
 #include <OpenImageIO/filesystem.h>
 
 #include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <vector>
+
+#include "host_shim/pictures/finished_file.h"
 
 namespace pm::host {
 

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/host_error.h"
-#include "host_shim/pictures/picture.h"
-
 #include <cstdint>
 #include <optional>
+
+#include "host_shim/pictures/host_error.h"
+#include "host_shim/pictures/picture.h"
 
 namespace pm::host {
 

@@ -2,17 +2,16 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/pictures/display_compare.h"
 
-#include "host_shim/pictures/compare.h"
-#include "host_shim/pictures/picture_input.h"
-#include "host_shim/pictures/picture_io.h"
-
 #include <OpenImageIO/imagebuf.h>
 #include <OpenImageIO/imagebufalgo.h>
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "host_shim/pictures/compare.h"
+#include "host_shim/pictures/picture_input.h"
+#include "host_shim/pictures/picture_io.h"
 
 namespace pm::host {
 namespace {

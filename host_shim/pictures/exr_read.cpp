@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
+#include <OpenImageIO/imageio.h>
+#include <fmt/format.h>
+
 #include "host_shim/pictures/picture_input.h"
 #include "host_shim/pictures/picture_io.h"
-
-#include <OpenImageIO/imageio.h>
-
-#include <fmt/format.h>
 
 namespace pm::host {
 namespace {

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/pictures/finished_file.h"
 
-#include <fmt/format.h>
-
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/host_error.h"
-
 #include <filesystem>
 #include <string>
 #include <string_view>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 

@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/checked_file.h"
-#include "host_shim/pictures/finished_file.h"
-
 #include <OpenImageIO/imageio.h>
 
 #include <filesystem>
 #include <functional>
 #include <memory>
+
+#include "host_shim/pictures/checked_file.h"
+#include "host_shim/pictures/finished_file.h"
 
 namespace pm::host {
 

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/pictures/picture_input.h"
 
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 

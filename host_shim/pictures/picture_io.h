@@ -2,16 +2,16 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/file_ending.h"
-#include "host_shim/pictures/finished_file.h"
-#include "host_shim/pictures/host_error.h"
-#include "host_shim/pictures/picture.h"
-
 #include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "host_shim/pictures/file_ending.h"
+#include "host_shim/pictures/finished_file.h"
+#include "host_shim/pictures/host_error.h"
+#include "host_shim/pictures/picture.h"
 
 namespace pm::host {
 

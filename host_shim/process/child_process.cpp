@@ -2,9 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/process/child_process.h"
 
-#include "host_shim/pictures/host_error.h"
-#include "host_shim/process/interrupt.h"
-
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
@@ -16,6 +13,9 @@
 #include <cstring>
 #include <map>
 #include <thread>
+
+#include "host_shim/pictures/host_error.h"
+#include "host_shim/process/interrupt.h"
 
 namespace pm::host {
 namespace {

@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/process/outputs.h"
 
-#include "host_shim/pictures/host_error.h"
-#include "host_shim/pictures/picture_io.h"
-
 #include <fmt/format.h>
 
 #include <set>
 #include <string_view>
 #include <vector>
+
+#include "host_shim/pictures/host_error.h"
+#include "host_shim/pictures/picture_io.h"
 
 namespace pm::host {
 namespace {

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/process/temporary_folder.h"
 
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 #include <stdlib.h>
 #include <unistd.h>
@@ -12,6 +10,8 @@
 #include <cstdio>
 #include <cstring>
 #include <string>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 

@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/render/material_builder.h"
 
-#include "host_shim/process/interrupt.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <limits>
 #include <utility>
+
+#include "host_shim/process/interrupt.h"
 
 namespace pm::host {
 namespace {

@@ -2,17 +2,17 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/colour/colour_pipeline.h"
-#include "host_shim/formats/scene_data.h"
-#include "host_shim/formats/warnings.h"
-#include "host_shim/render/plugin.h"
-#include "host_shim/textures/texture_preparation.h"
-
 #include <functional>
 #include <optional>
 #include <set>
 #include <string>
 #include <vector>
+
+#include "host_shim/colour/colour_pipeline.h"
+#include "host_shim/formats/scene_data.h"
+#include "host_shim/formats/warnings.h"
+#include "host_shim/render/plugin.h"
+#include "host_shim/textures/texture_preparation.h"
 
 namespace pm::host {
 

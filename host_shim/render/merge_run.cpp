@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/render/merge_run.h"
 
+#include <fmt/format.h>
+
 #include "host_shim/pictures/host_error.h"
 #include "host_shim/process/interrupt.h"
-
-#include <fmt/format.h>
 
 namespace pm::host {
 

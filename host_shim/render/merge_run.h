@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/log/log.h"
-#include "host_shim/render/picture_source.h"
-
 #include <filesystem>
 #include <string>
 #include <vector>
+
+#include "host_shim/log/log.h"
+#include "host_shim/render/picture_source.h"
 
 namespace pm::host {
 

@@ -3,14 +3,12 @@
 #include "host_shim/render/picture_assembly.h"
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cstddef>
+#include <nlohmann/json.hpp>
 #include <string_view>
 #include <vector>
-
-#include <cstddef>
-#include <string_view>
 
 namespace pm::host {
 namespace {

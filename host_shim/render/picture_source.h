@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/render/plugin.h"
-
 #include <cstdint>
 #include <string>
+
+#include "host_shim/render/plugin.h"
 
 namespace pm::host {
 

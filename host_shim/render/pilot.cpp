@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/render/pilot.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include "host_shim/colour/exposure.h"
 #include "host_shim/process/interrupt.h"
 #include "host_shim/render/picture_assembly.h"
 #include "host_shim/render/render_run.h"
-
-#include <algorithm>
-#include <cmath>
 
 namespace pm::host {
 namespace {

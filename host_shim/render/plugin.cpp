@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/render/plugin.h"
 
-#include "host_shim/pictures/host_error.h"
-
 #include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <vector>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "plugin/include/pm_plugin.h"
-
 #include <filesystem>
 #include <memory>
 #include <string>
+
+#include "plugin/include/pm_plugin.h"
 
 namespace pm::host {
 

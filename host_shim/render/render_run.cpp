@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/render/render_run.h"
 
-#include "host_shim/process/interrupt.h"
-
 #include <fmt/format.h>
+
+#include "host_shim/process/interrupt.h"
 
 namespace pm::host {
 

@@ -2,16 +2,16 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <exception>
+#include <string>
+#include <vector>
+
 #include "host_shim/cli/options.h"
 #include "host_shim/log/log.h"
 #include "host_shim/log/progress.h"
 #include "host_shim/render/picture_source.h"
 #include "host_shim/render/scene_builder.h"
 #include "host_shim/report/bucket_times.h"
-
-#include <exception>
-#include <string>
-#include <vector>
 
 namespace pm::host {
 

@@ -2,9 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/render/scene_builder.h"
 
-#include "host_shim/process/interrupt.h"
-#include "host_shim/render/scene_memory.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,6 +9,9 @@
 #include <limits>
 #include <map>
 #include <utility>
+
+#include "host_shim/process/interrupt.h"
+#include "host_shim/render/scene_memory.h"
 
 namespace pm::host {
 namespace {

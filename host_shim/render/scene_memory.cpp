@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/render/scene_memory.h"
 
-#include "host_shim/formats/text_lines.h"
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 
 #include <optional>
+
+#include "host_shim/formats/text_lines.h"
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <cstdint>
+
 #include "host_shim/cli/options.h"
 #include "host_shim/formats/scene_data.h"
-
-#include <cstdint>
 
 namespace pm::host {
 

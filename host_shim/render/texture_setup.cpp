@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/render/texture_setup.h"
 
-#include "host_shim/formats/warnings.h"
-#include "host_shim/render/memory_left.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <charconv>
 #include <thread>
+
+#include "host_shim/formats/warnings.h"
+#include "host_shim/render/memory_left.h"
 
 namespace pm::host {
 namespace {

@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <memory>
+
 #include "host_shim/cli/options.h"
 #include "host_shim/log/log.h"
 #include "host_shim/process/temporary_folder.h"
 #include "host_shim/textures/texture_preparation.h"
-
-#include <memory>
 
 namespace pm::host {
 

@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/render/tiled_output.h"
 
-#include "host_shim/render/picture_assembly.h"
-
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
+#include <nlohmann/json.hpp>
 #include <optional>
+
+#include "host_shim/render/picture_assembly.h"
 
 namespace pm::host {
 namespace {

@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/cli/options.h"
-#include "host_shim/colour/colour_pipeline.h"
-#include "host_shim/pictures/writers/exr_tiles.h"
-#include "host_shim/render/render_run.h"
-
 #include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "host_shim/cli/options.h"
+#include "host_shim/colour/colour_pipeline.h"
+#include "host_shim/pictures/writers/exr_tiles.h"
+#include "host_shim/render/render_run.h"
 
 namespace pm::host {
 

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "plugin/include/pm_plugin.h"
-
 #include <cstdint>
 #include <vector>
+
+#include "plugin/include/pm_plugin.h"
 
 namespace pm::host {
 

@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/report/report_charts.h"
 
-#include "host_shim/report/report_html.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "host_shim/report/report_html.h"
 
 namespace pm::host {
 namespace {

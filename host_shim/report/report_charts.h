@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/picture.h"
-#include "host_shim/report/bucket_times.h"
-#include "host_shim/report/report_pictures.h"
-
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "host_shim/pictures/picture.h"
+#include "host_shim/report/bucket_times.h"
+#include "host_shim/report/report_pictures.h"
 
 namespace pm::host {
 

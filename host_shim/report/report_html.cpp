@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/report/report_html.h"
 
-#include "host_shim/process/plain_text.h"
-
 #include <fmt/format.h>
+
+#include "host_shim/process/plain_text.h"
 
 namespace pm::host {
 namespace {

@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/report/report_pictures.h"
 
-#include "host_shim/pictures/picture_io.h"
-#include "host_shim/report/report_html.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "host_shim/pictures/picture_io.h"
+#include "host_shim/report/report_html.h"
 
 namespace pm::host {
 namespace {

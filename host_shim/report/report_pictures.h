@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/picture.h"
-
 #include <array>
 #include <cstddef>
 #include <string>
 #include <vector>
+
+#include "host_shim/pictures/picture.h"
 
 namespace pm::host {
 

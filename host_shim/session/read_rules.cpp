@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/session/read_rules.h"
 
-#include "host_shim/formats/all/scene_readers.h"
-#include "host_shim/formats/sidecar/sidecar.h"
-#include "host_shim/process/interrupt.h"
-
 #include <fmt/format.h>
 
 #include <cstdlib>
+
+#include "host_shim/formats/all/scene_readers.h"
+#include "host_shim/formats/sidecar/sidecar.h"
+#include "host_shim/process/interrupt.h"
 
 namespace pm::host {
 

@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/cli/options.h"
-#include "host_shim/formats/scene_data.h"
-
 #include <array>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "host_shim/cli/options.h"
+#include "host_shim/formats/scene_data.h"
 
 namespace pm::host {
 

@@ -2,18 +2,18 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/session/report.h"
 
-#include "host_shim/report/report_charts.h"
-#include "host_shim/report/report_command.h"
-#include "host_shim/report/report_html.h"
-
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
 #include <vector>
+
+#include "host_shim/report/report_charts.h"
+#include "host_shim/report/report_command.h"
+#include "host_shim/report/report_html.h"
 
 namespace pm::host {
 namespace {

@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <array>
+#include <string>
+#include <vector>
+
 #include "host_shim/colour/display_transform.h"
 #include "host_shim/pictures/picture.h"
 #include "host_shim/render/picture_source.h"
 #include "host_shim/report/bucket_times.h"
 #include "host_shim/report/report_pictures.h"
-
-#include <array>
-#include <string>
-#include <vector>
 
 namespace pm::host {
 

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Report: what it gathers of a picture.
-#include "host_shim/session/report.h"
-
-#include "host_shim/colour/display_picture.h"
-
-#include <nlohmann/json.hpp>
-
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "host_shim/colour/display_picture.h"
+#include "host_shim/session/report.h"
 
 namespace pm::host {
 namespace {

@@ -2,6 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/session/session.h"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+
 #include "host_shim/colour/display_picture.h"
 #include "host_shim/formats/all/scene_readers.h"
 #include "host_shim/formats/lamps.h"
@@ -19,12 +25,6 @@
 #include "host_shim/render/texture_setup.h"
 #include "host_shim/session/read_rules.h"
 #include "host_shim/session/session_files.h"
-
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <chrono>
-#include <cstdio>
 
 namespace pm::host {
 namespace {

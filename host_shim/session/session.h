@@ -2,6 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "host_shim/cli/options.h"
 #include "host_shim/colour/colour_pipeline.h"
 #include "host_shim/colour/exposure.h"
@@ -11,11 +16,6 @@
 #include "host_shim/render/tiled_output.h"
 #include "host_shim/session/report.h"
 #include "host_shim/session/statistics.h"
-
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace pm::host {
 

@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // A Session that made a black picture: why, and what helps.
-#include "host_shim/session/session.h"
+#include <fmt/format.h>
+
+#include <algorithm>
 
 #include "host_shim/look/room_view.h"
 #include "host_shim/process/interrupt.h"
 #include "host_shim/render/picture_assembly.h"
 #include "host_shim/session/read_rules.h"
-
-#include <fmt/format.h>
-
-#include <algorithm>
+#include "host_shim/session/session.h"
 
 namespace pm::host {
 namespace {

@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/session/session_files.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "host_shim/formats/scene_reader.h"
 #include "host_shim/formats/sidecar/sidecar.h"
 #include "host_shim/pictures/picture_io.h"
 #include "host_shim/session/read_rules.h"
-
-#include <algorithm>
-#include <utility>
 
 namespace pm::host {
 

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/cli/options.h"
-#include "host_shim/formats/scene_data.h"
-
 #include <filesystem>
 #include <vector>
+
+#include "host_shim/cli/options.h"
+#include "host_shim/formats/scene_data.h"
 
 namespace pm::host {
 

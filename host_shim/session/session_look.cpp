@@ -2,7 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 // What a Session does so that a first picture shows something: where the camera stands, a light to
 // see by, and exposure.
-#include "host_shim/session/session.h"
+#include <fmt/format.h>
+
+#include <algorithm>
 
 #include "host_shim/cli/option_values.h"
 #include "host_shim/look/outside_view.h"
@@ -10,10 +12,7 @@
 #include "host_shim/process/interrupt.h"
 #include "host_shim/render/pilot.h"
 #include "host_shim/session/read_rules.h"
-
-#include <fmt/format.h>
-
-#include <algorithm>
+#include "host_shim/session/session.h"
 
 namespace pm::host {
 namespace {

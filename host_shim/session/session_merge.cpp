@@ -1,6 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Session::merge: pm_host merge PART... -o FILE.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+
 #include "host_shim/cli/option_values.h"
 #include "host_shim/pictures/picture_io.h"
 #include "host_shim/process/interrupt.h"
@@ -9,11 +14,6 @@
 #include "host_shim/render/picture_assembly.h"
 #include "host_shim/session/session.h"
 #include "host_shim/session/session_files.h"
-
-#include <fmt/format.h>
-
-#include <algorithm>
-#include <cstdio>
 
 namespace pm::host {
 namespace {

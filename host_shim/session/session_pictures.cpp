@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // A Session whose render has ended: its pictures are written and compared.
-#include "host_shim/session/session.h"
+#include <fmt/format.h>
+
+#include <cstdio>
 
 #include "host_shim/colour/display_picture.h"
 #include "host_shim/pictures/compare.h"
@@ -11,10 +13,7 @@
 #include "host_shim/process/outputs.h"
 #include "host_shim/render/picture_assembly.h"
 #include "host_shim/report/report_command.h"
-
-#include <fmt/format.h>
-
-#include <cstdio>
+#include "host_shim/session/session.h"
 
 namespace pm::host {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // A Session that writes down what it found for its scene.
+#include <fmt/format.h>
+
 #include "host_shim/formats/sidecar/sidecar.h"
 #include "host_shim/formats/source_file.h"
 #include "host_shim/pictures/finished_file.h"
 #include "host_shim/session/read_rules.h"
 #include "host_shim/session/session.h"
-
-#include <fmt/format.h>
 
 namespace pm::host {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Session's end of a render whose picture is too large to be held: its tiles are in the files.
-#include "host_shim/session/session.h"
-
 #include <fmt/format.h>
+
+#include "host_shim/session/session.h"
 
 namespace pm::host {
 

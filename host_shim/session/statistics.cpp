@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/session/statistics.h"
 
-#include "host_shim/process/plain_text.h"
-
 #include <fmt/format.h>
 #include <unistd.h>
-#include <nlohmann/json.hpp>
 
 #include <array>
+#include <nlohmann/json.hpp>
+
+#include "host_shim/process/plain_text.h"
 
 namespace pm::host {
 namespace {

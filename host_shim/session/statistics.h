@@ -2,18 +2,17 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/formats/scene_data.h"
-#include "host_shim/log/log.h"
-#include "host_shim/pictures/display_compare.h"
-
-#include <nlohmann/json_fwd.hpp>
-
 #include <cstdint>
 #include <map>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "host_shim/formats/scene_data.h"
+#include "host_shim/log/log.h"
+#include "host_shim/pictures/display_compare.h"
 
 namespace pm::host {
 

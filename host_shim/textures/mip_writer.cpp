@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/textures/mip_writer.h"
 
-#include "host_shim/pictures/host_error.h"
-#include "host_shim/pictures/image_output.h"
-
 #include <xxhash.h>
 
 #include <algorithm>
 #include <cstring>
 #include <new>
+
+#include "host_shim/pictures/host_error.h"
+#include "host_shim/pictures/image_output.h"
 
 namespace pm::host {
 namespace {

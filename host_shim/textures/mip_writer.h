@@ -2,9 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/checked_file.h"
-#include "host_shim/textures/row_halver.h"
-
 #include <OpenImageIO/imageio.h>
 
 #include <array>
@@ -14,6 +11,9 @@
 #include <memory>
 #include <optional>
 #include <vector>
+
+#include "host_shim/pictures/checked_file.h"
+#include "host_shim/textures/row_halver.h"
 
 struct XXH3_state_s;
 

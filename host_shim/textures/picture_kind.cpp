@@ -2,11 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/textures/picture_kind.h"
 
-#include "host_shim/pictures/host_error.h"
-
-#include <fmt/format.h>
-
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -15,6 +12,8 @@
 #include <cerrno>
 #include <cstring>
 #include <string_view>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/textures/picture_layout.h"
 
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/textures/picture_rows.h"
 
-#include "host_shim/pictures/host_error.h"
-#include "host_shim/textures/picture_kind.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+
+#include "host_shim/pictures/host_error.h"
+#include "host_shim/textures/picture_kind.h"
 
 namespace pm::host {
 namespace {

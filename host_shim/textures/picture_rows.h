@@ -2,9 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/colour/picture_statement.h"
-#include "host_shim/textures/picture_layout.h"
-
 #include <OpenImageIO/imageio.h>
 
 #include <cstdint>
@@ -13,6 +10,9 @@
 #include <span>
 #include <string>
 #include <vector>
+
+#include "host_shim/colour/picture_statement.h"
+#include "host_shim/textures/picture_layout.h"
 
 namespace pm::host {
 

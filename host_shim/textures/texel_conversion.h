@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/colour/space_conversion.h"
-
 #include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
+
+#include "host_shim/colour/space_conversion.h"
 
 namespace pm::host {
 

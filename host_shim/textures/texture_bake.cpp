@@ -2,9 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/textures/texture_bake.h"
 
-#include "host_shim/textures/mip_writer.h"
-#include "host_shim/textures/texel_conversion.h"
-
 #include <xxhash.h>
 
 #include <algorithm>
@@ -12,6 +9,9 @@
 #include <future>
 #include <memory>
 #include <new>
+
+#include "host_shim/textures/mip_writer.h"
+#include "host_shim/textures/texel_conversion.h"
 
 namespace pm::host {
 namespace {

@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/colour/space_conversion.h"
-#include "host_shim/pictures/checked_file.h"
-#include "host_shim/textures/picture_rows.h"
-
 #include <array>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
+
+#include "host_shim/colour/space_conversion.h"
+#include "host_shim/pictures/checked_file.h"
+#include "host_shim/textures/picture_rows.h"
 
 namespace pm::host {
 

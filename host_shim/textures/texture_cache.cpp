@@ -2,11 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/textures/texture_cache.h"
 
-#include "host_shim/pictures/host_error.h"
-
-#include <fmt/format.h>
-
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <pwd.h>
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -20,6 +17,8 @@
 #include <fstream>
 #include <tuple>
 #include <unordered_set>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

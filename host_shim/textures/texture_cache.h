@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/finished_file.h"
-#include "host_shim/textures/texture_index.h"
-
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include "host_shim/pictures/finished_file.h"
+#include "host_shim/textures/texture_index.h"
 
 namespace pm::host {
 

@@ -2,16 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/textures/texture_index.h"
 
-#include "host_shim/pictures/host_error.h"
-
-#include <fmt/format.h>
-
-#include <xxhash.h>
-
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/random.h>
 #include <sys/stat.h>
 #include <unistd.h>
+#include <xxhash.h>
 
 #include <algorithm>
 #include <array>
@@ -20,6 +16,8 @@
 #include <cstring>
 #include <memory>
 #include <new>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -2,11 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/textures/texture_preparation.h"
 
-#include "host_shim/colour/asked_work.h"
-#include "host_shim/pictures/host_error.h"
-#include "host_shim/textures/memory_budget.h"
-#include "host_shim/textures/picture_kind.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +10,11 @@
 #include <chrono>
 #include <new>
 #include <thread>
+
+#include "host_shim/colour/asked_work.h"
+#include "host_shim/pictures/host_error.h"
+#include "host_shim/textures/memory_budget.h"
+#include "host_shim/textures/picture_kind.h"
 
 namespace pm::host {
 namespace {

@@ -2,10 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/colour/colour_pipeline.h"
-#include "host_shim/textures/texture_bake.h"
-#include "host_shim/textures/texture_cache.h"
-
 #include <cstdint>
 #include <exception>
 #include <filesystem>
@@ -14,6 +10,10 @@
 #include <memory>
 #include <string>
 #include <vector>
+
+#include "host_shim/colour/colour_pipeline.h"
+#include "host_shim/textures/texture_bake.h"
+#include "host_shim/textures/texture_cache.h"
 
 namespace pm::host {
 

@@ -134,7 +134,7 @@ TEST(ParameterTable, EveryMemberHasARow) {
     EXPECT_EQ(8u, lightParameters().size());
     EXPECT_EQ(112u, sizeof(EnvironmentDescription));
     EXPECT_EQ(3u, environmentParameters().size());
-    EXPECT_EQ(112u, sizeof(CameraDescription));
+    EXPECT_EQ(120u, sizeof(CameraDescription));
     EXPECT_EQ(7u, cameraParameters().size());
 }
 

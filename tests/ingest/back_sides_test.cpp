@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Backs of lamps that shine from both sides.
+#include <gtest/gtest.h>
+
 #include "host_shim/formats/lamps.h"
 #include "tests/ingest/heard.h"
-
-#include <gtest/gtest.h>
 
 namespace pm::host::test {
 namespace {

@@ -2,13 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 // The command line: what it means, and what it refuses.
 #include "host_shim/cli/command_line.h"
-#include "host_shim/cli/option_values.h"
-#include "tests/ingest/heard.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <locale>
+
+#include "host_shim/cli/option_values.h"
+#include "tests/ingest/heard.h"
 
 namespace pm::host::test {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // What wrote an MTL file, by its header, and what its numbers mean then.
-#include "host_shim/formats/mtl/coat_albedo.h"
-#include "host_shim/formats/mtl/materials.h"
-#include "tests/ingest/heard.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+
+#include "host_shim/formats/mtl/coat_albedo.h"
+#include "host_shim/formats/mtl/materials.h"
+#include "tests/ingest/heard.h"
 
 namespace pm::host::test {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Names of files in scene files, as people and other systems write them.
-#include "host_shim/formats/scene_files.h"
-#include "tests/ingest/heard.h"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <fstream>
+
+#include "host_shim/formats/scene_files.h"
+#include "tests/ingest/heard.h"
 
 namespace pm::host::test {
 namespace {

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Where a camera stands that nobody placed: in rooms, and where much is seen of what is no room.
-#include "host_shim/look/framing.h"
-#include "host_shim/look/outside_view.h"
-#include "host_shim/look/room_view.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <initializer_list>
+
+#include "host_shim/look/framing.h"
+#include "host_shim/look/outside_view.h"
+#include "host_shim/look/room_view.h"
 
 namespace pm::host::test {
 namespace {

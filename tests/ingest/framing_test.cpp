@@ -2,12 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 // The camera that is framed from the bounds.
 #include "host_shim/look/framing.h"
-#include "tests/ingest/heard.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "tests/ingest/heard.h"
 
 namespace pm::host::test {
 namespace {

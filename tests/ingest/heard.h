@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/formats/obj/obj_reader.h"
-#include "host_shim/formats/warnings.h"
-#include "host_shim/pictures/host_error.h"
-
 #include <algorithm>
 #include <locale>
 #include <string>
 #include <utility>
 #include <vector>
+
+#include "host_shim/formats/obj/obj_reader.h"
+#include "host_shim/formats/warnings.h"
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host::test {
 

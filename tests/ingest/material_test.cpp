@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // MTL sections to materials, as section by section.
-#include "host_shim/formats/mtl/material_checks.h"
-#include "host_shim/formats/mtl/materials.h"
-#include "tests/ingest/heard.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "host_shim/formats/mtl/material_checks.h"
+#include "host_shim/formats/mtl/materials.h"
+#include "tests/ingest/heard.h"
 
 namespace pm::host::test {
 namespace {

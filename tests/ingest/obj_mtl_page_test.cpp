@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // docs/obj_mtl.md names what the readers dispatch on: all of it, and nothing else.
-#include "host_shim/formats/mtl/mtl_dialect.h"
-#include "host_shim/formats/mtl/mtl_keys.h"
-#include "host_shim/formats/obj/cage_tags.h"
-#include "host_shim/formats/obj/obj_keys.h"
-#include "tests/ingest/heard.h"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <iterator>
 #include <set>
+
+#include "host_shim/formats/mtl/mtl_dialect.h"
+#include "host_shim/formats/mtl/mtl_keys.h"
+#include "host_shim/formats/obj/cage_tags.h"
+#include "host_shim/formats/obj/obj_keys.h"
+#include "tests/ingest/heard.h"
 
 namespace pm::host::test {
 namespace {

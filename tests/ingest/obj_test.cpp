@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // OBJ ingest on small texts: what is kept, what is refused and at which line.
-#include "host_shim/formats/lamps.h"
-#include "tests/ingest/heard.h"
-
 #include <gtest/gtest.h>
 
 #include <clocale>
 #include <string>
+
+#include "host_shim/formats/lamps.h"
+#include "tests/ingest/heard.h"
 
 namespace pm::host::test {
 namespace {

@@ -2,13 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 // Which files the names in scene files lead to, and which they may not lead to.
 #include "host_shim/formats/scene_files.h"
-#include "tests/ingest/heard.h"
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
+
+#include "tests/ingest/heard.h"
 
 namespace pm::host::test {
 namespace {

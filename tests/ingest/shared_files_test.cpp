@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 // Files that other people's loaders stumbled over. They lie outside the repository; without them
 // the tests are skipped.
-#include "tests/ingest/heard.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <map>
+
+#include "tests/ingest/heard.h"
 
 namespace pm::host::test {
 namespace {

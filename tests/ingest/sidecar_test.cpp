@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 // What a sidecar says, what it adds to a scene, and what is refused of it.
 #include "host_shim/formats/sidecar/sidecar.h"
-#include "host_shim/look/framing.h"
-#include "tests/ingest/heard.h"
 
 #include <gtest/gtest.h>
 
@@ -11,6 +9,9 @@
 #include <filesystem>
 #include <fstream>
 #include <numbers>
+
+#include "host_shim/look/framing.h"
+#include "tests/ingest/heard.h"
 
 namespace pm::host::test {
 namespace {

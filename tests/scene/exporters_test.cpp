@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Scenes as programs export them, and what they look like.
-#include "host_shim/pictures/picture_io.h"
-#include "tests/colour/scratch.h"
-#include "tests/scene/host_test.h"
-#include "tests/scene/picture_measures.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <fstream>
+
+#include "host_shim/pictures/picture_io.h"
+#include "tests/colour/scratch.h"
+#include "tests/scene/host_test.h"
+#include "tests/scene/picture_measures.h"
 
 namespace pm::host::test {
 namespace {

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "tests/scene/host_test.h"
 
+#include <fmt/format.h>
+
 #include "host_shim/pictures/picture_io.h"
 #include "tests/colour/scratch.h"
-
-#include <fmt/format.h>
 
 namespace pm::host::test {
 

@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/picture.h"
-#include "tests/robust/host_process.h"
-
 #include <array>
 #include <string>
 #include <vector>
+
+#include "host_shim/pictures/picture.h"
+#include "tests/robust/host_process.h"
 
 namespace pm::host::test {
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // The measures themselves: a test by a measure that is never "too far" would hold nothing.
-#include "tests/scene/picture_measures.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
+
+#include "tests/scene/picture_measures.h"
 
 namespace pm::host::test {
 namespace {

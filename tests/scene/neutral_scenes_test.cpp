@@ -3,13 +3,13 @@
 // Three scenes against pictures that other renderers agree on. They lie outside the repository;
 // without them the tests are skipped. The references are 256 x 256; they are compared at half of
 // it, where a pixel is the mean of four of theirs, or at a quarter.
-#include "host_shim/pictures/picture_io.h"
-#include "tests/scene/host_test.h"
-#include "tests/scene/picture_measures.h"
-
 #include <fmt/format.h>
 
 #include <cstdlib>
+
+#include "host_shim/pictures/picture_io.h"
+#include "tests/scene/host_test.h"
+#include "tests/scene/picture_measures.h"
 
 namespace pm::host::test {
 namespace {

@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 // The repository's scenes by both integrators: no light is lost or made. Standard errors come from
 // runs with different seeds, because photons are shared by the pixels of a run.
-#include "tests/scene/host_test.h"
-#include "tests/scene/picture_measures.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <map>
+
+#include "tests/scene/host_test.h"
+#include "tests/scene/picture_measures.h"
 
 namespace pm::host::test {
 namespace {

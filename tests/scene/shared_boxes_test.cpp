@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 // Boxes that other people made. They lie outside the repository; without them the tests are
 // skipped.
+#include <fmt/format.h>
+
 #include "host_shim/pictures/picture_io.h"
 #include "tests/colour/scratch.h"
 #include "tests/scene/host_test.h"
 #include "tests/scene/picture_measures.h"
-
-#include <fmt/format.h>
 
 namespace pm::host::test {
 namespace {

@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 // Pictures of scenes with a sidecar, against closed forms and against the same scenes made by other
 // means.
-#include "tests/scene/host_test.h"
-#include "tests/scene/picture_measures.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "tests/scene/host_test.h"
+#include "tests/scene/picture_measures.h"
 
 namespace pm::host::test {
 namespace {

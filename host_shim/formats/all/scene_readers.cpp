@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/formats/all/scene_readers.h"
 
-#include "host_shim/formats/obj/obj_reader.h"
-#include "host_shim/pictures/file_ending.h"
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
 #include <vector>
+
+#include "host_shim/formats/obj/obj_reader.h"
+#include "host_shim/pictures/file_ending.h"
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/formats/scene_reader.h"
-
 #include <filesystem>
 #include <span>
 #include <string>
+
+#include "host_shim/formats/scene_reader.h"
 
 namespace pm::host {
 

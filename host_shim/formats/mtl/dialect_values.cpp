@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/formats/mtl/coat_albedo.h"
-#include "host_shim/formats/mtl/mtl_dialect.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "host_shim/formats/mtl/coat_albedo.h"
+#include "host_shim/formats/mtl/mtl_dialect.h"
 
 namespace pm::host {
 namespace {

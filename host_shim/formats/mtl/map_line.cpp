@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/formats/mtl/map_line.h"
 
-#include "host_shim/formats/mtl/mtl_keys.h"
-#include "host_shim/formats/text_lines.h"
-
 #include <algorithm>
 #include <cmath>
+
+#include "host_shim/formats/mtl/mtl_keys.h"
+#include "host_shim/formats/text_lines.h"
 
 namespace pm::host {
 namespace {

@@ -2,11 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/formats/scene_data.h"
-#include "host_shim/formats/warnings.h"
-
 #include <span>
 #include <string>
+
+#include "host_shim/formats/scene_data.h"
+#include "host_shim/formats/warnings.h"
 
 namespace pm::host {
 

@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <filesystem>
+#include <string>
+
 #include "host_shim/formats/mtl/map_line.h"
 #include "host_shim/formats/scene_data.h"
 #include "host_shim/formats/scene_files.h"
-
-#include <filesystem>
-#include <string>
 
 namespace pm::host {
 

@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/formats/mtl/materials.h"
 
-#include "host_shim/formats/mtl/material_maps.h"
-#include "host_shim/formats/mtl/mtl_keys.h"
-#include "host_shim/formats/mtl/mtl_text.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "host_shim/formats/mtl/material_maps.h"
+#include "host_shim/formats/mtl/mtl_keys.h"
+#include "host_shim/formats/mtl/mtl_text.h"
 
 namespace pm::host {
 namespace {

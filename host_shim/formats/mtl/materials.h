@@ -2,16 +2,16 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/formats/mtl/mtl_dialect.h"
-#include "host_shim/formats/scene_data.h"
-#include "host_shim/formats/scene_files.h"
-#include "host_shim/formats/warnings.h"
-
 #include <filesystem>
 #include <functional>
 #include <map>
 #include <string>
 #include <string_view>
+
+#include "host_shim/formats/mtl/mtl_dialect.h"
+#include "host_shim/formats/scene_data.h"
+#include "host_shim/formats/scene_files.h"
+#include "host_shim/formats/warnings.h"
 
 namespace pm::host {
 

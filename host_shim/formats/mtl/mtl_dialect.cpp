@@ -2,13 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/formats/mtl/mtl_dialect.h"
 
-#include "host_shim/formats/mtl/mtl_keys.h"
-#include "host_shim/formats/text_lines.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <array>
+
+#include "host_shim/formats/mtl/mtl_keys.h"
+#include "host_shim/formats/text_lines.h"
 
 namespace pm::host {
 namespace {

@@ -2,10 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/formats/mtl/mtl_text.h"
 
+#include <cmath>
+
 #include "host_shim/formats/mtl/mtl_keys.h"
 #include "host_shim/formats/text_lines.h"
-
-#include <cmath>
 
 namespace pm::host {
 namespace {

@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <span>
+#include <string>
+#include <vector>
+
 #include "host_shim/formats/obj/mesh_assembly.h"
 #include "host_shim/formats/obj/obj_text.h"
 #include "host_shim/formats/scene_data.h"
 #include "host_shim/formats/warnings.h"
-
-#include <span>
-#include <string>
-#include <vector>
 
 namespace pm::host {
 

@@ -2,19 +2,19 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/formats/obj/material_library.h"
 
-#include "host_shim/formats/file_names.h"
-#include "host_shim/formats/mtl/material_checks.h"
-#include "host_shim/formats/mtl/materials.h"
-#include "host_shim/formats/source_file.h"
-#include "host_shim/formats/text_lines.h"
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 #include <set>
 #include <utility>
+
+#include "host_shim/formats/file_names.h"
+#include "host_shim/formats/mtl/material_checks.h"
+#include "host_shim/formats/mtl/materials.h"
+#include "host_shim/formats/source_file.h"
+#include "host_shim/formats/text_lines.h"
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -2,16 +2,16 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
 #include "host_shim/formats/mtl/mtl_dialect.h"
 #include "host_shim/formats/obj/obj_text.h"
 #include "host_shim/formats/scene_data.h"
 #include "host_shim/formats/scene_files.h"
 #include "host_shim/formats/warnings.h"
-
-#include <filesystem>
-#include <optional>
-#include <string>
-#include <vector>
 
 namespace pm::host {
 

@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/formats/obj/obj_text.h"
-#include "host_shim/formats/scene_data.h"
-#include "host_shim/formats/warnings.h"
-
 #include <tiny_obj_loader.h>
 
 #include <cstdint>
 #include <string>
 #include <vector>
+
+#include "host_shim/formats/obj/obj_text.h"
+#include "host_shim/formats/scene_data.h"
+#include "host_shim/formats/warnings.h"
 
 namespace pm::host {
 

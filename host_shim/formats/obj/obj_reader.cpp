@@ -2,15 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/formats/obj/obj_reader.h"
 
-#include "host_shim/formats/mtl/mtl_dialect.h"
-#include "host_shim/formats/obj/cage_tags.h"
-#include "host_shim/formats/obj/material_library.h"
-#include "host_shim/formats/obj/mesh_assembly.h"
-#include "host_shim/formats/obj/obj_text.h"
-#include "host_shim/formats/scene_centre.h"
-#include "host_shim/formats/source_file.h"
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 #include <tiny_obj_loader.h>
 
@@ -23,6 +14,15 @@
 #include <span>
 #include <streambuf>
 #include <utility>
+
+#include "host_shim/formats/mtl/mtl_dialect.h"
+#include "host_shim/formats/obj/cage_tags.h"
+#include "host_shim/formats/obj/material_library.h"
+#include "host_shim/formats/obj/mesh_assembly.h"
+#include "host_shim/formats/obj/obj_text.h"
+#include "host_shim/formats/scene_centre.h"
+#include "host_shim/formats/source_file.h"
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

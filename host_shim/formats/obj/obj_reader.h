@@ -2,16 +2,16 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/formats/scene_data.h"
-#include "host_shim/formats/scene_reader.h"
-#include "host_shim/formats/warnings.h"
-
 #include <array>
 #include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+
+#include "host_shim/formats/scene_data.h"
+#include "host_shim/formats/scene_reader.h"
+#include "host_shim/formats/warnings.h"
 
 namespace pm::host {
 

@@ -2,10 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/formats/obj/obj_text.h"
 
-#include "host_shim/formats/obj/obj_keys.h"
-#include "host_shim/formats/text_lines.h"
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -15,6 +11,10 @@
 #include <numeric>
 #include <unordered_map>
 #include <unordered_set>
+
+#include "host_shim/formats/obj/obj_keys.h"
+#include "host_shim/formats/text_lines.h"
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

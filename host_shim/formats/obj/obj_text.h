@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/formats/scene_data.h"
-#include "host_shim/formats/warnings.h"
-
 #include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
 #include <vector>
+
+#include "host_shim/formats/scene_data.h"
+#include "host_shim/formats/warnings.h"
 
 namespace pm::host {
 

@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/formats/sidecar/json_place.h"
 
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <set>
 #include <utility>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -2,11 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include <nlohmann/json.hpp>
-
 #include <array>
 #include <initializer_list>
 #include <limits>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <string_view>

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Lights and cameras of a sidecar.
-#include "host_shim/formats/sidecar/sidecar_parts.h"
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numbers>
+
+#include "host_shim/formats/sidecar/sidecar_parts.h"
 
 namespace pm::host {
 namespace {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Where the things of a sidecar stand.
-#include "host_shim/formats/sidecar/sidecar_parts.h"
-
 #include <fmt/format.h>
 
 #include <cmath>
 #include <numbers>
+
+#include "host_shim/formats/sidecar/sidecar_parts.h"
 
 namespace pm::host {
 namespace {

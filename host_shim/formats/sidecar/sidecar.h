@@ -2,15 +2,15 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/formats/scene_data.h"
-#include "host_shim/formats/scene_files.h"
-
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
+
+#include "host_shim/formats/scene_data.h"
+#include "host_shim/formats/scene_files.h"
 
 namespace pm::host {
 

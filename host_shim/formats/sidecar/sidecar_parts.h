@@ -3,10 +3,10 @@
 // What the parts of a sidecar share.
 #pragma once
 
+#include <optional>
+
 #include "host_shim/formats/scene_data.h"
 #include "host_shim/formats/sidecar/json_place.h"
-
-#include <optional>
 
 namespace pm::host {
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
+#include <fmt/format.h>
+
+#include <algorithm>
+
 #include "host_shim/formats/sidecar/sidecar.h"
 #include "host_shim/formats/sidecar/sidecar_parts.h"
 #include "host_shim/formats/source_file.h"
 #include "host_shim/pictures/host_error.h"
-
-#include <fmt/format.h>
-
-#include <algorithm>
 
 namespace pm::host {
 namespace {

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // A sidecar and the scene that it stands beside.
-#include "host_shim/formats/sidecar/sidecar.h"
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 #include <set>
+
+#include "host_shim/formats/sidecar/sidecar.h"
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
+#include <algorithm>
+
 #include "host_shim/formats/sidecar/sidecar.h"
 #include "host_shim/formats/sidecar/sidecar_parts.h"
-
-#include <algorithm>
 
 namespace pm::host {
 namespace {

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/pictures/image_output.h"
-#include "host_shim/pictures/writers/exr_spec.h"
-#include "host_shim/pictures/writers/picture_format.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
+
+#include "host_shim/pictures/image_output.h"
+#include "host_shim/pictures/writers/exr_spec.h"
+#include "host_shim/pictures/writers/picture_format.h"
 
 namespace pm::host {
 namespace {

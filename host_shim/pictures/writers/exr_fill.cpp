@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/pictures/writers/exr_fill.h"
 
-#include "host_shim/pictures/host_error.h"
-
 #include <fmt/format.h>
 
 #include <array>
@@ -12,6 +10,8 @@
 #include <fstream>
 #include <map>
 #include <string>
+
+#include "host_shim/pictures/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -2,9 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/pictures/writers/exr_spec.h"
 
-#include "host_shim/pictures/image_output.h"
-
 #include <cmath>
+
+#include "host_shim/pictures/image_output.h"
 
 namespace pm::host {
 namespace {

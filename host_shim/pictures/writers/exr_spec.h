@@ -3,11 +3,11 @@
 // What the writers of EXR files share.
 #pragma once
 
-#include "host_shim/pictures/picture.h"
-
 #include <OpenImageIO/imageio.h>
 
 #include <cstdint>
+
+#include "host_shim/pictures/picture.h"
 
 namespace pm::host {
 

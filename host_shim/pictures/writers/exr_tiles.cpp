@@ -2,16 +2,16 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/pictures/writers/exr_tiles.h"
 
-#include "host_shim/pictures/host_error.h"
-#include "host_shim/pictures/writers/exr_fill.h"
-#include "host_shim/pictures/writers/exr_spec.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <map>
 #include <string>
 #include <utility>
+
+#include "host_shim/pictures/host_error.h"
+#include "host_shim/pictures/writers/exr_fill.h"
+#include "host_shim/pictures/writers/exr_spec.h"
 
 namespace pm::host {
 namespace {

@@ -2,11 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/checked_file.h"
-#include "host_shim/pictures/finished_file.h"
-#include "host_shim/pictures/picture.h"
-#include "host_shim/pictures/picture_io.h"
-
 #include <OpenImageIO/imageio.h>
 
 #include <cstdint>
@@ -14,6 +9,11 @@
 #include <memory>
 #include <span>
 #include <vector>
+
+#include "host_shim/pictures/checked_file.h"
+#include "host_shim/pictures/finished_file.h"
+#include "host_shim/pictures/picture.h"
+#include "host_shim/pictures/picture_io.h"
 
 namespace pm::host {
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/pictures/writers/picture_format.h"
-
 #include <fmt/format.h>
 
 #include <algorithm>
+
+#include "host_shim/pictures/writers/picture_format.h"
 
 namespace pm::host {
 namespace {

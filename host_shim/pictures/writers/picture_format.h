@@ -2,12 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "host_shim/pictures/picture_io.h"
-
 #include <OpenImageIO/imageio.h>
 
 #include <span>
 #include <string_view>
+
+#include "host_shim/pictures/picture_io.h"
 
 namespace pm::host {
 

@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-#include "host_shim/pictures/file_ending.h"
-#include "host_shim/pictures/picture_io.h"
-#include "host_shim/pictures/writers/picture_format.h"
-
-#include <fmt/format.h>
-
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <unistd.h>
+
 #include <algorithm>
 #include <array>
 #include <cerrno>
 #include <cstring>
 #include <vector>
+
+#include "host_shim/pictures/file_ending.h"
+#include "host_shim/pictures/picture_io.h"
+#include "host_shim/pictures/writers/picture_format.h"
 
 namespace pm::host {
 namespace {
