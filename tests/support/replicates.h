@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "integrator/light_sampling/light_sampler.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "integrator/transport/photon/photon_pass.h"
 #include "tests/support/scene_maker.h"
 

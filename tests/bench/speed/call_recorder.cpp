@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "integrator/materials/bsdf.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "integrator/transport/path/direct_light.h"
 #include "integrator/values/error.h"
 

@@ -12,7 +12,7 @@
 #include "integrator/photons/estimate/irradiance_sites.h"
 #include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/sampling/sampler.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "scheduler/buckets/hilbert_order.h"
 #include "tests/bench/run/bench_scenes.h"
 #include "tests/bench/speed/speed_bench.h"

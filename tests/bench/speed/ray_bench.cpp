@@ -6,7 +6,7 @@
 #include "integrator/light_sampling/light_sampler.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "tests/bench/run/bench_scenes.h"
 #include "tests/bench/speed/bare_embree.h"
 #include "tests/bench/speed/speed_bench.h"

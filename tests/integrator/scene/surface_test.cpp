@@ -11,7 +11,7 @@
 
 #include "integrator/light_sampling/light_sampler.h"
 #include "integrator/sampling/sampler.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "integrator/shapes/huge_triangles.h"
 #include "integrator/transport/path/path_integrator.h"
 #include "tests/support/scene_maker.h"

@@ -277,7 +277,7 @@ TEST(CausticCasters, HoldEverything) {
     const auto casters = castersOf(maker);
     for (std::uint32_t shape = 0; shape < 30; ++shape)
         for (int i = 0; i < 100; ++i) {
-            Light triangle;
+            SurfaceLight triangle;
             triangle.shape = shape;
             triangle.primitive = static_cast<std::uint32_t>(i);
             const Vec3d p(scene->pointOnLight(triangle, random.next2D()).position);

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "integrator/light_sampling/light_sampler.h"
-#include "integrator/scene/camera/camera.h"
+#include "integrator/scene/camera.h"
 #include "tests/support/rooms.h"
 #include "tests/support/scene_maker.h"
 #include "tests/support/statistics.h"
