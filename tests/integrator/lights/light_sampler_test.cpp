@@ -67,7 +67,7 @@ TEST(LightSampler, ChoosesByTheProbabilitiesItStates) {
     EXPECT_LE(missed, 5);  // on a limb, where the ray's offset counts
     // E[1 / pdf] over a light is the solid angle it fills; of the sphere that is known.
     const Vec3d toCentre =
-        lamps.scene->sphere(lamps.light(2).shape).centre - Vec3d(lamps.floor.position);
+        lamps.scene->sphere(lamps.light(2).surface()->shape).centre - Vec3d(lamps.floor.position);
     const double sin2 = 0.49 / lengthSquared(toCentre);
     EXPECT_NEAR(inverse[2], 2 * kPiD * (1 - std::sqrt(1 - sin2)), 0.02 * inverse[2]);
     double power = 0;
@@ -82,7 +82,7 @@ TEST(LightSampler, SphereDensity) {
     const Lamps lamps;
     Random random(2);
     const Vec3d toCentre =
-        lamps.scene->sphere(lamps.light(2).shape).centre - Vec3d(lamps.floor.position);
+        lamps.scene->sphere(lamps.light(2).surface()->shape).centre - Vec3d(lamps.floor.position);
     DirectionTest test;
     test.axis = Vec3f(normalize(toCentre));
     test.smallestCosine = std::sqrt(1 - 0.49 / lengthSquared(toCentre));
