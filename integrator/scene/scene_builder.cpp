@@ -211,6 +211,9 @@ class Scene::Builder {
             transform[static_cast<std::size_t>(4 * axis + 3)] -= m_scene.m_centre[axis];
         record.mesh = mesh;
         record.placement.emplace(transform);
+        // Of rays from anywhere in the scene, in whichever place float does least well.
+        double& margin = m_margins[mesh.get()];
+        margin = std::max(margin, record.placement->errorInObject(2.0 * m_scene.m_radius));
         const double farthest = std::max(maxAbsComponent(box.lo - m_scene.m_centre),
                                          maxAbsComponent(box.hi - m_scene.m_centre));
         // As surfaceOffset takes it.
@@ -234,8 +237,7 @@ class Scene::Builder {
     // Built in the mesh's own space, for all of its instances and for scenes to come.
     std::shared_ptr<const SharedMesh> sharedMesh(const ShapeRecord& record) const {
         const TriangleMesh& mesh = *record.mesh;
-        // Of rays from anywhere in the scene.
-        const double needed = record.placement->errorInObject(2.0 * m_scene.m_radius);
+        const double needed = m_margins.at(&mesh);
         const std::string& isa = m_scene.m_tracer.isa();
         return mesh.rayTracing.get<SharedMesh>(
             [&](const SharedMesh& kept) { return kept.isa() == isa && kept.margin() >= needed; },
@@ -506,7 +508,8 @@ class Scene::Builder {
     CancelCheck m_cancel;
     std::uint32_t m_steps = 0;
     std::unordered_map<const TriangleMesh*, std::size_t> m_uses;
-    std::unordered_map<const TriangleMesh*, double> m_areas;  // in their own space
+    // Of instanced ones, in their own space.
+    std::unordered_map<const TriangleMesh*, double> m_areas, m_margins;
 };
 
 Scene::Scene(SceneDescription description, const std::string& isa, const CancelCheck& cancel)

@@ -239,6 +239,24 @@ TEST(Instances, AreInMemoryOnce) {
     EXPECT_LT(thousand, 3 * two);
 }
 
+// However unlike its places are, all share what was built.
+TEST(Instances, ShareOneStructureWhateverTheirScales) {
+    const Mesh mesh = ball(8);
+    SceneMaker maker;
+    std::vector<Transform> places;
+    for (int i = 0; i < 40; ++i) {
+        const double scale = std::pow(10.0, 2 - i % 5);
+        places.push_back(times(moved({300.0 * i, 0, 0}), scaled({scale, scale, scale})));
+    }
+    instances(maker, mesh, maker.diffuse(Rgb(0.5f)), places);
+    const auto scene = maker.build();
+    ASSERT_TRUE(scene->hasInstances());
+    const auto kept = mesh->rayTracing.get<SharedMesh>(
+        [](const SharedMesh&) { return true; }, [] { return std::shared_ptr<const SharedMesh>(); });
+    // By each instance, the mesh and here.
+    EXPECT_EQ(kept.use_count(), 42);
+}
+
 // A new scene of the same meshes, with other places and lights, builds none of them again.
 TEST(Instances, AreBuiltOnceForAllScenes) {
     const Mesh mesh = ball(8);
