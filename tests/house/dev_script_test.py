@@ -54,7 +54,9 @@ class DevScript(unittest.TestCase):
     def dev(self, *arguments, missing=(), **environment):
         self.log.write_text("")
         installed = " ".join(p for p in self.packages if p not in missing)
-        variables = dict(os.environ, PATH=f"{self.tools}:{os.environ['PATH']}", INSTALLED=installed,
+        # What the suite itself was called with is not this test's.
+        outer = {name: value for name, value in os.environ.items() if name != "PM_TOGETHER"}
+        variables = dict(outer, PATH=f"{self.tools}:{os.environ['PATH']}", INSTALLED=installed,
                          DEV_TEST_LOG=str(self.log), **environment)  # fmt: skip
         done = subprocess.run([str(self.root / "dev"), *arguments], cwd=self.work, env=variables,
                               stdin=subprocess.DEVNULL, capture_output=True, text=True)  # fmt: skip
