@@ -113,17 +113,13 @@ std::string listOrders(const PmrApi& api) {
 }
 
 std::string listParameters(const PmrApi& api) {
-    // In the order of PMR_OBJECT_*.
-    constexpr std::array kObjects = {"material", "light",    "environment",
-                                     "camera",   "instance", "sphere"};
     std::string text;
-    for (std::size_t object = 0; object < kObjects.size(); ++object) {
-        const auto number = static_cast<int32_t>(object);
-        for (uint32_t i = 0; i < api.parameterCount(number); ++i) {
+    for (int32_t object = 0; const char* name = api.objectName(object); ++object) {
+        for (uint32_t i = 0; i < api.parameterCount(object); ++i) {
             auto info = PMR_INIT(PmrParameterInfo);
-            if (api.parameterInfo(number, i, &info) != PMR_OK) continue;
-            text += fmt::format("{}.{}: {} [{}]\n", kObjects[object], info.name, info.help,
-                                parameterRange(info));
+            if (api.parameterInfo(object, i, &info) != PMR_OK) continue;
+            text +=
+                fmt::format("{}.{}: {} [{}]\n", name, info.name, info.help, parameterRange(info));
         }
     }
     return text;

@@ -21,6 +21,7 @@ class PlacedSphere;
 // camera that isn't turned sees the middle as it is.
 struct SphereShape {
     using Placed = PlacedSphere;
+    static constexpr const char* kName = "sphere";
 
     Vec3d centre;
     double radius = 1.0;  // > 0, scene units

@@ -73,6 +73,8 @@ constexpr PmrApi kApi = {
     .parameterCount = api::parameterCount,
     .parameterInfo = api::parameterInfo,
     .setParameter = api::setParameter,
+    .createShape = api::createShape,
+    .objectName = api::objectName,
 };
 
 }  // namespace

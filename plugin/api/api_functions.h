@@ -85,5 +85,9 @@ PmrStatus PMR_CALL cancelBuilds(PmrContext context, int32_t on) noexcept;
 uint32_t PMR_CALL parameterCount(int32_t object) noexcept;
 PmrStatus PMR_CALL parameterInfo(int32_t object, uint32_t index, PmrParameterInfo* info) noexcept;
 PmrStatus PMR_CALL setParameter(const PmrParameterDesc* desc) noexcept;
+PmrStatus PMR_CALL createShape(PmrContext context, int32_t object,
+                               const PmrParameterDesc* const* parameters, uint32_t count,
+                               PmrMesh* mesh) noexcept;
+const char* PMR_CALL objectName(int32_t object) noexcept;
 
 }  // namespace pm::plugin::api

@@ -3,6 +3,8 @@
 // Contexts, reusable objects and scenes.
 #include <fmt/format.h>
 
+#include <vector>
+
 #include "plugin/api/api_functions.h"
 #include "plugin/api/context.h"
 #include "plugin/api/entry.h"
@@ -78,6 +80,20 @@ PmrStatus PMR_CALL createCage(PmrContext context, const PmrCageDesc* desc, PmrMe
 PmrStatus PMR_CALL createSphere(PmrContext context, const PmrSphereDesc* desc,
                                 PmrMesh* mesh) noexcept {
     return create(context, desc, mesh, "PmrSphereDesc", "mesh", makeSphere);
+}
+
+PmrStatus PMR_CALL createShape(PmrContext context, int32_t object,
+                               const PmrParameterDesc* const* parameters, uint32_t count,
+                               PmrMesh* mesh) noexcept {
+    return onObject<Context>(context, [&](const std::shared_ptr<Context>& owner) {
+        clearResult(mesh, "mesh");
+        if (parameters == nullptr && count > 0)
+            throw argumentError(fmt::format("parameters is null, but count is {}", count));
+        std::vector<PmrParameterDesc> known;
+        for (uint32_t i = 0; i < count; ++i)
+            known.push_back(readStruct(parameters[i], "PmrParameterDesc"));
+        *mesh = publish<PmrMesh>(makeShape(owner, object, known));
+    });
 }
 
 PmrStatus PMR_CALL retainMesh(PmrMesh mesh) noexcept {

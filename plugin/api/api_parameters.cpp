@@ -3,6 +3,11 @@
 // Parameters by name, and their enumeration.
 #include <fmt/format.h>
 
+#include <array>
+#include <tuple>
+#include <variant>
+#include <vector>
+
 #include "plugin/api/api_functions.h"
 #include "plugin/api/entry.h"
 #include "plugin/api/objects.h"
@@ -21,25 +26,43 @@ std::vector<const ParameterInfo*> infosOf(std::span<const Row> rows) {
     return infos;
 }
 
-// Of a kind of object; empty where there is none of that number.
-std::vector<const ParameterInfo*> infosOf(std::int32_t object) {
-    const SceneTables tables = sceneTables();
-    switch (object) {
-        case PMR_OBJECT_MATERIAL:
-            return infosOf(tables.materials);
-        case PMR_OBJECT_LIGHT:
-            return infosOf(tables.lights);
-        case PMR_OBJECT_ENVIRONMENT:
-            return infosOf(tables.environments);
-        case PMR_OBJECT_CAMERA:
-            return infosOf(tables.cameras);
-        case PMR_OBJECT_INSTANCE:
-            return infosOf(tables.instances);
-        case PMR_OBJECT_SPHERE:
-            return infosOf(tables.spheres);
-        default:
-            return {};
-    }
+// A kind of object, by its number PMR_OBJECT_*.
+struct ObjectTable {
+    const char* name;
+    std::vector<const ParameterInfo*> infos;
+};
+
+template <typename Kinds>
+struct NamesOf;
+template <typename Mesh, typename... Curved>
+struct NamesOf<std::variant<Mesh, Curved...>> {
+    static constexpr std::array<const char*, sizeof...(Curved)> kNames = {Curved::kName...};
+};
+
+const std::vector<ObjectTable>& objectTables() {
+    static const std::vector<ObjectTable> tables = [] {
+        const SceneTables rows = sceneTables();
+        std::vector<ObjectTable> made = {{"material", infosOf(rows.materials)},
+                                         {"light", infosOf(rows.lights)},
+                                         {"environment", infosOf(rows.environments)},
+                                         {"camera", infosOf(rows.cameras)},
+                                         {"instance", infosOf(rows.instances)}};
+        const auto* name = NamesOf<Shape>::kNames.data();
+        std::apply(
+            [&](const auto&... ofShape) {
+                (made.push_back({*name++, infosOf(ofShape)}), ...);
+            },
+            rows.shapes);
+        return made;
+    }();
+    return tables;
+}
+
+// Null where there is none of that number.
+const ObjectTable* findTable(std::int32_t object) {
+    const std::vector<ObjectTable>& tables = objectTables();
+    const bool isThere = object >= 0 && object < std::ssize(tables);
+    return isThere ? &tables[static_cast<std::size_t>(object)] : nullptr;
 }
 
 PmrParameterInfo toInfo(const ParameterInfo& row) {
@@ -73,7 +96,8 @@ std::shared_ptr<Object> objectOf(Handle handle, const char* member) {
 
 uint32_t PMR_CALL parameterCount(int32_t object) noexcept {
     try {
-        return static_cast<uint32_t>(infosOf(object).size());
+        const ObjectTable* table = findTable(object);
+        return table == nullptr ? 0 : static_cast<uint32_t>(table->infos.size());
     } catch (...) {
         return 0;
     }
@@ -81,10 +105,19 @@ uint32_t PMR_CALL parameterCount(int32_t object) noexcept {
 
 PmrStatus PMR_CALL parameterInfo(int32_t object, uint32_t index, PmrParameterInfo* info) noexcept {
     return onNothing([&] {
-        const std::vector<const ParameterInfo*> infos = infosOf(object);
-        checkIndex(index, infos.size());
-        writeStruct(info, toInfo(*infos[index]), "PmrParameterInfo");
+        const ObjectTable* table = findTable(object);
+        checkIndex(index, table == nullptr ? 0 : table->infos.size());
+        writeStruct(info, toInfo(*table->infos[index]), "PmrParameterInfo");
     });
+}
+
+const char* PMR_CALL objectName(int32_t object) noexcept {
+    try {
+        const ObjectTable* table = findTable(object);
+        return table == nullptr ? nullptr : table->name;
+    } catch (...) {
+        return nullptr;
+    }
 }
 
 PmrStatus PMR_CALL setParameter(const PmrParameterDesc* desc) noexcept {

@@ -12,7 +12,6 @@
 #include "integrator/geometry/triangulate.h"
 #include "integrator/values/error.h"
 #include "plugin/api/objects.h"
-#include "plugin/api/parameter_tables.h"
 #include "plugin/api/struct_reader.h"
 #include "plugin/session/leave_behind.h"
 #include "plugin/session/memory_limit.h"
@@ -282,15 +281,4 @@ std::shared_ptr<MeshObject> makeCage(std::shared_ptr<Context> context, const Pmr
     BuiltMesh built = isSmall ? cut(check) : runLeavable(check, "tessellating", std::move(cut));
     return finishMesh(std::move(context), std::move(built), slotCount);
 }
-
-std::shared_ptr<MeshObject> makeSphere(std::shared_ptr<Context> context,
-                                       const PmrSphereDesc& desc) {
-    SphereSet values(sphereParameters());
-    readStructInto(values, &desc, *context, "PmrSphereDesc");
-    values.check(0, "PmrSphereDesc");
-    SphereShape sphere;
-    values.putInto(sphere);
-    return std::make_shared<MeshObject>(std::move(context), sphere, 1);
-}
-
 }  // namespace pm::plugin

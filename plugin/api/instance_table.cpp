@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-// Instances, the shapes that have numbers, and cameras.
+// Instances and cameras.
 #include <array>
 #include <cstddef>
 #include <numbers>
@@ -63,26 +63,6 @@ constexpr std::array kInstanceRows = {
         {.name = "name", .help = "For messages.", .type = Type::kText, .changesPixels = false},
         {Kind::kText, offsetof(PmrInstanceDesc, name)},
         {unseenPlace<&I::name>()}},
-};
-
-constexpr std::array kSphereRows = {
-    SphereParameter{{.name = "centre",
-                     .help = "In object space.",
-                     .count = 3,
-                     .unit = "scene units",
-                     .minimum = -kMaxCoordinate,
-                     .maximum = kMaxCoordinate,
-                     .defaultText = "0 0 0"},
-                    {Kind::kDoubles, offsetof(PmrSphereDesc, centre)},
-                    {memberPlace<&SphereShape::centre>()}},
-    SphereParameter{{.name = "radius",
-                     .help = "In object space.",
-                     .unit = "scene units",
-                     .maximum = kMaxCoordinate,
-                     .excludesMinimum = true,
-                     .defaultText = "0"},
-                    {Kind::kDoubles, offsetof(PmrSphereDesc, radius)},
-                    {memberPlace<&SphereShape::radius>()}},
 };
 
 constexpr std::uint32_t kPerspective = 1u << PMR_CAMERA_PERSPECTIVE;
@@ -160,17 +140,13 @@ std::span<const InstanceParameter> instanceParameters() {
     return kInstanceRows;
 }
 
-std::span<const SphereParameter> sphereParameters() {
-    return kSphereRows;
-}
-
 std::span<const CameraParameter> cameraParameters() {
     return kCameraRows;
 }
 
 SceneTables sceneTables() {
     return {materialParameters(), lightParameters(),    environmentParameters(),
-            cameraParameters(),   instanceParameters(), sphereParameters()};
+            cameraParameters(),   instanceParameters(), {sphereParameters()}};
 }
 
 }  // namespace pm::plugin

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <span>
 #include <string>
 #include <utility>
 
@@ -42,6 +43,9 @@ class MeshObject {
 std::shared_ptr<MeshObject> makeMesh(std::shared_ptr<Context> context, const PmrMeshDesc& desc);
 std::shared_ptr<MeshObject> makeCage(std::shared_ptr<Context> context, const PmrCageDesc& desc);
 std::shared_ptr<MeshObject> makeSphere(std::shared_ptr<Context> context, const PmrSphereDesc& desc);
+// object: PMR_OBJECT_SPHERE and those that follow. Errors: those of setByName.
+std::shared_ptr<MeshObject> makeShape(std::shared_ptr<Context> context, std::int32_t object,
+                                      std::span<const PmrParameterDesc> parameters);
 
 class TextureObject {
   public:

@@ -19,7 +19,6 @@ using LightSet = ParameterSet<LightParameter>;
 using EnvironmentSet = ParameterSet<EnvironmentParameter>;
 using CameraSet = ParameterSet<CameraParameter>;
 using InstanceSet = ParameterSet<InstanceParameter>;
-using SphereSet = ParameterSet<SphereParameter>;
 
 // What a struct says of one parameter, not checked yet but for transforms. type: the struct's, for
 // errors. Errors: those of readTransform; CallError HANDLE for a texture that is not live, ARGUMENT

@@ -17,7 +17,8 @@ std::span<const CameraParameter> cameraParameters();
 std::span<const InstanceParameter> instanceParameters();
 std::span<const SphereParameter> sphereParameters();
 
-// All of them.
+// All of them. A new kind of shape has its table in a file of its own, declared above and added to
+// the end of SceneTables::shapes.
 SceneTables sceneTables();
 
 }  // namespace pm::plugin

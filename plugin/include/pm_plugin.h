@@ -349,7 +349,7 @@ typedef struct PmrCameraDesc {
 #define PMR_OBJECT_ENVIRONMENT 2
 #define PMR_OBJECT_CAMERA 3
 #define PMR_OBJECT_INSTANCE 4
-#define PMR_OBJECT_SPHERE 5 /* to be listed only: createSphere has all of it */
+#define PMR_OBJECT_SPHERE 5 /* the first of the shapes that createShape makes */
 
 #define PMR_PARAMETER_NUMBER 0
 #define PMR_PARAMETER_INTEGER 1
@@ -383,7 +383,7 @@ typedef struct PmrParameterDesc {
     int32_t object;       /* PMR_OBJECT_* */
     uint32_t index;       /* LIGHT, INSTANCE: which of the scene's, as they were added, from 0 */
     PmrMaterial material; /* MATERIAL; else null */
-    PmrScene scene;       /* of all others; else null */
+    PmrScene scene;       /* LIGHT to INSTANCE; else null */
     const char* name;
     const double* numbers;
     uint64_t numberCount;
@@ -646,6 +646,14 @@ typedef struct PmrApi {
      * lastError has, or together with the object's others not allowed. PMR_ERROR_STATE: used or
      * committed. The object stays as it was then. */
     PmrStatus(PMR_CALL* setParameter)(const PmrParameterDesc* desc);
+    /* A shape of a kind that has parameters, one material slot; what is not among them has its
+     * default. object: PMR_OBJECT_SPHERE or one of those that follow; of each parameter it must be
+     * the same, material and scene null. Errors: those of setParameter. Came after setParameter. */
+    PmrStatus(PMR_CALL* createShape)(PmrContext context, int32_t object,
+                                     const PmrParameterDesc* const* parameters, uint32_t count,
+                                     PmrMesh* mesh);
+    /* What it is called: "material", "sphere". Needs no context; null for one that is not there. */
+    const char*(PMR_CALL* objectName)(int32_t object);
 } PmrApi;
 
 /* The one symbol. Returns PMR_ERROR_ABI when that version is not offered. Any thread. */

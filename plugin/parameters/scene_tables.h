@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <tuple>
 #include <variant>
 
 #include "integrator/scene/scene_description.h"
@@ -25,6 +26,21 @@ using CameraParameter = Parameter<CameraDescription>;
 using InstanceParameter = Parameter<InstanceDescription>;
 using SphereParameter = Parameter<SphereShape>;
 
+// A table for each kind of shape that is no mesh, in the order of Shape.
+template <typename Kinds>
+struct ShapeTablesOf;
+template <typename Mesh, typename... Curved>
+struct ShapeTablesOf<std::variant<Mesh, Curved...>> {
+    using Type = std::tuple<std::span<const Parameter<Curved>>...>;
+};
+using ShapeTables = ShapeTablesOf<Shape>::Type;
+
+// The table of one of those kinds.
+template <typename Curved>
+std::span<const Parameter<Curved>> rowsOf(const ShapeTables& tables) {
+    return std::get<std::span<const Parameter<Curved>>>(tables);
+}
+
 // A table for each thing that a host describes by a struct. The rows must outlive it.
 struct SceneTables {
     std::span<const MaterialParameter> materials;
@@ -32,7 +48,7 @@ struct SceneTables {
     std::span<const EnvironmentParameter> environments;
     std::span<const CameraParameter> cameras;
     std::span<const InstanceParameter> instances;
-    std::span<const SphereParameter> spheres;
+    ShapeTables shapes;
 };
 
 }  // namespace pm::plugin

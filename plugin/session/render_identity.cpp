@@ -37,10 +37,15 @@ void addMesh(Hasher& hasher, const TriangleMesh& mesh) {
 
 void addInstance(Hasher& hasher, const InstanceDescription& instance, const SceneTables& tables) {
     hasher.add(instance.shape.index());
-    if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape))
-        addMesh(hasher, **mesh);
-    else
-        hashRows(hasher, tables.spheres, std::get<SphereShape>(instance.shape));
+    std::visit(
+        [&](const auto& shape) {
+            using Kind = std::decay_t<decltype(shape)>;
+            if constexpr (std::is_same_v<Kind, std::shared_ptr<const TriangleMesh>>)
+                addMesh(hasher, *shape);
+            else
+                hashRows(hasher, rowsOf<Kind>(tables.shapes), shape);
+        },
+        instance.shape);
     hashRows(hasher, tables.instances, instance);
 }
 

@@ -88,6 +88,7 @@ std::vector<Row> rowsOfObjects(Things& t) {
         {"createMesh", [=] { return api().createMesh(context, nullptr, nullptr); }},
         {"createCage", [=] { return api().createCage(context, nullptr, nullptr); }},
         {"createSphere", [=] { return api().createSphere(context, nullptr, nullptr); }},
+        {"createShape", [=] { return api().createShape(context, -1, nullptr, 0, nullptr); }},
         {"retainMesh", [] { return api().retainMesh(nullptr); },
          [&t] { return api().retainMesh(t.mesh); }},
         {"releaseMesh", [] { return api().releaseMesh(nullptr); },
