@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "integrator/materials/lobes/lobes.h"
+#include "integrator/materials/lobe_kinds.h"
 #include "integrator/materials/materials.h"
 #include "integrator/shapes/surface.h"
 #include "integrator/values/rgb.h"

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include "integrator/materials/lobes/lobes.h"
+#include "integrator/materials/lobe_kinds.h"
 #include "integrator/materials/materials.h"
 #include "integrator/shapes/surface.h"
 

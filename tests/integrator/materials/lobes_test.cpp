@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 // What every lobe of the lists in lobes.h promises, whichever model it is: a new one is tested here
 // as it is made by default, without a line of its own.
-#include "integrator/materials/lobes/lobes.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -11,6 +9,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "integrator/materials/lobe_kinds.h"
 #include "tests/support/statistics.h"
 
 namespace pm::test {

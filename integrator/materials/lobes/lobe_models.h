@@ -2,21 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include <array>
 #include <concepts>
-#include <variant>
 
-#include "integrator/materials/lobes/dielectric.h"
-#include "integrator/materials/lobes/lambertian.h"
-#include "integrator/materials/lobes/mirror.h"
-#include "integrator/materials/lobes/pane.h"
-#include "integrator/materials/lobes/phong.h"
-#include "integrator/materials/lobes/straight.h"
+#include "integrator/materials/lobes/lobe_point.h"
+#include "integrator/materials/lobes/smooth_boundary.h"
 
-// All lobes there are, and what a lobe has to do. A new one is a file here, its name in one of the
-// lists below, and a line in material_lobes.cpp that makes it of a material's numbers. Lobes are
-// plain values; what the surface is like comes with the LobePoint, and what they reflect, textures
-// and opacity included, as their reflectance.
+// What a lobe has to do. Lobes are plain values, a file each; what the surface is like comes with
+// the LobePoint, and what they reflect, textures and opacity included, as their reflectance.
 namespace pm {
 
 // evaluate: f |cos| for light from `in`. pdfSolidAngle: density of sample(), times `choice`, the
@@ -58,31 +50,6 @@ struct NotSmooth {
     static bool sendsByWays(const LobePoint&) { return false; }
     static float etaSquared() { return 1.0f; }
     static bool sample(const LobePoint&, float, BsdfSample&) { return false; }
-};
-
-template <DiffuseModel... Models>
-using OneOfDiffuse = std::variant<Models...>;
-template <ScatteringModel... Models>
-using OneOfScattering = std::variant<Models...>;
-template <SmoothModel... Models>
-using OneOfSmooth = std::variant<Models...>;
-
-// The lists; the first of each stands where a surface has no such lobe.
-using DiffuseLobe = OneOfDiffuse<Lambertian>;
-using GlossyLobe = OneOfScattering<Phong>;  // and broad ones
-using SmoothLobe = OneOfSmooth<NotSmooth, Mirror, Dielectric, Pane>;
-
-// The lobes of a surface at a point, with what each reflects or transmits.
-struct Lobes {
-    std::array<Rgb, kLobeCount> reflectance{};
-    DiffuseLobe diffuse;
-    GlossyLobe glossy;
-    SmoothLobe smooth;
-    Lobe glossyRole = Lobe::kGlossy;  // or kBroad
-
-    Rgb& of(Lobe lobe) { return reflectance[static_cast<std::size_t>(lobe)]; }
-    const Rgb& of(Lobe lobe) const { return reflectance[static_cast<std::size_t>(lobe)]; }
-    bool isSmooth() const { return !std::holds_alternative<NotSmooth>(smooth); }
 };
 
 }  // namespace pm

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <variant>
+
+#include "integrator/materials/lobes/dielectric.h"
+#include "integrator/materials/lobes/lambertian.h"
+#include "integrator/materials/lobes/lobe_models.h"
+#include "integrator/materials/lobes/mirror.h"
+#include "integrator/materials/lobes/pane.h"
+#include "integrator/materials/lobes/phong.h"
+#include "integrator/materials/lobes/straight.h"
+#include "integrator/materials/material_description.h"
+
+namespace pm {
+
+template <DiffuseModel... Models>
+using OneOfDiffuse = std::variant<Models...>;
+template <ScatteringModel... Models>
+using OneOfScattering = std::variant<Models...>;
+template <SmoothModel... Models>
+using OneOfSmooth = std::variant<Models...>;
+
+// The lists of all lobes there are; the first of each stands where a surface has no such lobe. A
+// new one is a file in lobes/, its name in one of these, and what makes it of a material's numbers:
+// here of diffuse ones, of others in material_lobes.cpp.
+using DiffuseLobe = OneOfDiffuse<Lambertian>;
+using GlossyLobe = OneOfScattering<Phong>;  // and broad ones
+using SmoothLobe = OneOfSmooth<NotSmooth, Mirror, Dielectric, Pane>;
+
+inline DiffuseLobe diffuseLobe(const MaterialDescription&) {
+    return Lambertian{};
+}
+
+// The lobes of a surface at a point, with what each reflects or transmits.
+struct Lobes {
+    std::array<Rgb, kLobeCount> reflectance{};
+    DiffuseLobe diffuse;
+    GlossyLobe glossy;
+    SmoothLobe smooth;
+    Lobe glossyRole = Lobe::kGlossy;  // or kBroad
+
+    Rgb& of(Lobe lobe) { return reflectance[static_cast<std::size_t>(lobe)]; }
+    const Rgb& of(Lobe lobe) const { return reflectance[static_cast<std::size_t>(lobe)]; }
+    bool isSmooth() const { return !std::holds_alternative<NotSmooth>(smooth); }
+};
+
+}  // namespace pm
