@@ -79,7 +79,8 @@ class Body {
             m_scene.material(m_scene.description().instances[index].materials[0]);
         if (isInvisible(material)) return true;
         if (!isOpaque(material)) return false;
-        const SphereShape sphere = m_scene.sphere(index);
+        if (!m_scene.isSphere(index)) return false;
+        const SphereShape sphere = m_scene.ballAround(index);
         const bool shines = !isBlack(material.emission);
         if (!isBlackBody(material))
             m_balls.push_back({sphere.centre, sphere.radius, shines});

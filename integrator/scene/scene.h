@@ -159,8 +159,12 @@ class Scene {
     // Of the light of that number; says no of one that is no triangle, has a texture, or is
     // intersected in double.
     const LampTriangle& lampTriangle(std::size_t light) const { return m_lampTriangles[light]; }
-    // The sphere of a sphere light (or of any sphere shape), scene's own coordinates.
+    // The sphere of a sphere light, scene's own coordinates.
     SphereShape sphere(std::uint32_t shape) const;
+    // Of a shape that is no mesh: whether it is a sphere, and a ball that holds it, which then is
+    // that.
+    bool isSphere(std::uint32_t shape) const;
+    SphereShape ballAround(std::uint32_t shape) const;
 
     const std::vector<Notice>& notices() const { return m_notices; }
     const std::string& isa() const { return m_tracer.isa(); }

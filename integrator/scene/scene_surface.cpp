@@ -195,4 +195,12 @@ SphereShape Scene::sphere(std::uint32_t shape) const {
     return m_shapes[shape].curved->sphere()->sphere();
 }
 
+bool Scene::isSphere(std::uint32_t shape) const {
+    return m_shapes[shape].curved->sphere() != nullptr;
+}
+
+SphereShape Scene::ballAround(std::uint32_t shape) const {
+    return m_shapes[shape].curved->ball();
+}
+
 }  // namespace pm

@@ -30,6 +30,12 @@ class CurvedShape {
     double area() const {
         return std::visit([](const auto& kind) { return kind.area(); }, m_kind);
     }
+    // A ball that holds it; of a sphere that itself.
+    SphereShape ball() const {
+        if (const PlacedSphere* own = sphere()) return own->sphere();
+        const Box3d box = bounds();
+        return {box.middle(), 0.5 * length(box.size())};
+    }
     // All of a line's, of which the first behind the origin of a ray is what it meets.
     RayRoots roots(const Vec3d& origin, const Vec3d& direction) const {
         return std::visit([&](const auto& kind) { return kind.roots(origin, direction); }, m_kind);

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: The pm authors
-"""Which of a library's files can't be compiled together with its others in one go.
+"""Which of a target's files can't be compiled together with its others in one go.
 
 usage: same_names.py FILE...
 
@@ -16,6 +16,7 @@ import sys
 NAMESPACE = re.compile(r"^namespace \{\n(.*?)^\}  // namespace$", re.M | re.S)
 TYPE = re.compile(r"^(?:struct|class|enum class|enum|using) (?:alignas\([^)]*\) )?(\w+)", re.M)
 CONSTANT = re.compile(r"^(?:static |inline )?const(?:expr)? [^;({=]*?\b(k[A-Z]\w*)", re.M)
+MACROS = ("TEST", "TEST_F", "TEST_P")  # whose functions have the names that they are given
 FUNCTION = re.compile(r"^(?![ /}#])[^=;{\n]*?\b(\w+)\(([^{;]*)\)[^(){;]*\{", re.M)
 
 
@@ -25,7 +26,8 @@ def names(file):
     with open(file, encoding="utf-8") as source:
         for body in NAMESPACE.findall(source.read()):
             found.update(TYPE.findall(body), CONSTANT.findall(body))
-            found.update((name, parameters.count(",")) for name, parameters in FUNCTION.findall(body))
+            found.update((name, parameters.count(",")) for name, parameters in FUNCTION.findall(body)
+                         if name not in MACROS)  # fmt: skip
     return found
 
 

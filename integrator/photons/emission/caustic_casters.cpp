@@ -123,7 +123,7 @@ std::vector<Item> castingItems(const Scene& scene, const CancelCheck& cancel) {
                 std::get_if<std::shared_ptr<const TriangleMesh>>(&instances[i].shape)) {
             addMesh(scene, instances[i], **mesh, items, cancel);
         } else if (castsCaustics(scene.material(instances[i].materials[0]))) {
-            const SphereShape sphere = scene.sphere(i);
+            const SphereShape sphere = scene.ballAround(i);
             const Vec3f centre(sphere.centre);
             // What rounding to float takes off is given back.
             const double rounding = 0x1p-22 * (maxAbsComponent(sphere.centre) + sphere.radius);
