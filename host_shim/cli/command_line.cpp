@@ -74,6 +74,27 @@ void readCamera(const Typed& typed, Options& options) {
     checkOnlyPixel(options);
 }
 
+void readSky(const Typed& typed, SkyOptions& sky) {
+    constexpr double kMostStrength = 1e6;
+    sky.environment = typed.environment;
+    if (!typed.sun.empty()) sky.sun = sunValue("--sun", typed.sun);
+    if (sky.sun && !sky.environment.empty())
+        throw HostError(ExitCode::kUsage,
+                        "--sun makes a sky of its own; it is that or --environment");
+    const auto read = [](const char* option, const std::string& text, double low, double high,
+                         bool isFor, const char* what, std::optional<double>& value) {
+        if (text.empty()) return;
+        if (!isFor) throw HostError(ExitCode::kUsage, fmt::format("{} needs {}", option, what));
+        value = numberValue(option, text, low, high);
+    };
+    const bool hasPicture = !sky.environment.empty(), hasSun = sky.sun.has_value();
+    read("--turbidity", typed.turbidity, 1.7, 10, hasSun, "--sun", sky.turbidity);
+    read("--environment-rotation", typed.environmentRotation, -360, 360, hasPicture,
+         "--environment", sky.rotation);
+    read("--environment-strength", typed.environmentStrength, 0, kMostStrength,
+         hasPicture || hasSun, "--environment or --sun", sky.strength);
+}
+
 // N is N:N, a level for all pixels.
 void readAntiAliasing(const std::string& text, Options& options) {
     const auto colon = text.find(':');
@@ -183,6 +204,7 @@ void readChoices(const Typed& typed, Options& options) {
                  {"orders", 0},
                  {"settings", 0},
                  {"parameters", 0}});
+    readSky(typed, options.sky);
     options.cameraLight = chosen<CameraLight>(
         "--camera-light", typed.cameraLight, CameraLight::kAuto,
         {{"auto", CameraLight::kAuto}, {"on", CameraLight::kOn}, {"off", CameraLight::kOff}});

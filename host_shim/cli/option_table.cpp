@@ -105,6 +105,17 @@ void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
     addText(app, "--camera-light", typed.cameraLight, "auto|on|off",
             "a point light at the camera; auto: where the scene has no light, or where no --eye is "
             "given and its own light reaches nothing that is seen (auto)");
+    addText(app, "--environment", typed.environment, "FILE",
+            "light from all around by a latitude-longitude picture, .hdr or .exr");
+    addText(app, "--sun", typed.sun, "AZIMUTH,ELEVATION",
+            "a clear sky with the sun there, degrees: azimuth 0 is -z, or +y where z is up, 90 is "
+            "+x");
+    addText(app, "--turbidity", typed.turbidity, "T",
+            "how hazy the sky of --sun is, 1.7 to 10 (3)");
+    addText(app, "--environment-rotation", typed.environmentRotation, "DEG",
+            "turns --environment about the vertical (0)");
+    addText(app, "--environment-strength", typed.environmentStrength, "S",
+            "factor of --environment or of --sun with its sky (1)");
     addList(app, "--aov", typed.layers, "NAME[,NAME]",
             "extra channels in the EXR, see --list aovs");
 }

@@ -20,7 +20,8 @@ namespace pm::host {
 struct Typed {
     std::string scene, frame, size, eye, lookAt, up, fov, crop, aa, seed, subdivide, onlyPixel,
         errorLimit, progress, checkpoint, photonMap, mtlDialect, textureCache, textureCacheSize,
-        exposure, cameraLight, checkSuite, jobs, timeBudget, seeds;
+        exposure, cameraLight, environment, environmentRotation, environmentStrength, sun,
+        turbidity, checkSuite, jobs, timeBudget, seeds;
     std::vector<std::string> onlyScenes, outputs, context, layers, parts, searchPaths;
     std::map<std::string, std::string> settings;  // option -> text
 };

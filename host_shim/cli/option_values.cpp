@@ -111,6 +111,18 @@ std::array<double, 3> pointValue(const std::string& option, std::string_view tex
     return point;
 }
 
+std::array<double, 2> sunValue(const std::string& option, std::string_view text) {
+    const auto parts = split(text, ',');
+    std::array<double, 2> sun{};
+    const bool good = parts.size() == 2 && parseNumber(parts[0], sun[0]) &&
+                      parseNumber(parts[1], sun[1]) && std::abs(sun[0]) <= 360 && sun[1] > 0 &&
+                      sun[1] <= 90;
+    if (!good)
+        refuse(option, text,
+               "AZIMUTH,ELEVATION in degrees, within +-360 and (0, 90], is wanted, such as 135,40");
+    return sun;
+}
+
 std::array<std::int32_t, 2> sizeValue(const std::string& option, std::string_view text) {
     return pixels<2>(option, text, 'x', {1, kLargestSize},
                      "WIDTHxHEIGHT in whole pixels from 1 to 65536 is wanted, such as 640x480");

@@ -48,6 +48,13 @@ struct CheckOptions {
     std::filesystem::path plugin;
 };
 
+// A light that is infinitely far, in place of what the scene has.
+struct SkyOptions {
+    std::filesystem::path environment;           // a picture; empty: none
+    std::optional<std::array<double, 2>> sun;    // azimuth, elevation; degrees
+    std::optional<double> rotation, strength, turbidity;
+};
+
 // What the command line says, checked as far as it can be without files.
 struct Options {
     std::vector<std::string> commandLine;
@@ -69,6 +76,7 @@ struct Options {
     ColourOptions colour;
     ExposureOption exposure;
     CameraLight cameraLight{CameraLight::kAuto};
+    SkyOptions sky;
     std::filesystem::path reference;
     std::optional<double> errorLimit;
     std::string statistics;  // file, "-" = standard output, empty = none

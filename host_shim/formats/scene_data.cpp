@@ -95,6 +95,7 @@ Transform SceneData::toWorld(const InstanceData& instance) const {
 }
 
 bool SceneData::hasLight() const {
+    if (sky && sky->strength > 0) return true;
     if (environment && isLit(environment->radiance)) return true;
     if (std::ranges::any_of(lights, [](const LightData& light) { return isLit(light.emission); }))
         return true;

@@ -37,12 +37,13 @@ struct MaterialData {
     std::array<float, 3> diffuse{0.8f, 0.8f, 0.8f};
     std::array<float, 3> glossy{};
     float glossyExponent{};
+    float roughness{};  // of mirrors and glass, in [0, 1]; 0: by the exponent, or smooth
     float ior{1.5f};
     std::array<float, 3> transmission{1.0f, 1.0f, 1.0f};
     std::array<float, 3> emission{};  // radiance, W m^-2 sr^-1
     bool emitsFromBothSides{};        // see addBackSides
     float transparency{};
-    std::optional<TextureUse> diffuseTexture, glossyTexture, glossyExponentTexture,
+    std::optional<TextureUse> diffuseTexture, glossyTexture, glossyExponentTexture, roughnessTexture,
         transmissionTexture, emissionTexture, opacityTexture;
 
     bool emits() const { return emission[0] > 0 || emission[1] > 0 || emission[2] > 0; }
@@ -147,6 +148,15 @@ struct EnvironmentData {
     std::optional<Transform> transform;  // a rotation
 };
 
+// A clear sky by day, with the sun in it.
+struct SkyData {
+    double azimuth{};      // degrees: 0 is -z, 90 is +x; where z is up 0 is +y
+    double elevation{45};  // degrees above the horizon, in (0, 90]
+    double turbidity{3};   // in [1.7, 10]
+    double strength{1};    // 0 or more
+    bool isZUp{};
+};
+
 // What of a camera is not its place.
 struct CameraLens {
     enum class Kind { kPerspective, kOrthographic, kPanorama };
@@ -176,6 +186,7 @@ struct SceneData {
     std::vector<InstanceData> instances;
     std::vector<LightData> lights;
     std::optional<EnvironmentData> environment;
+    std::optional<SkyData> sky;  // in place of it
     std::vector<CameraData> cameras;
     std::uint64_t faceCount{};  // of all meshes
     std::vector<MaterialFile> materialFiles;

@@ -32,10 +32,11 @@ void store(const Rgb3& colour, float largest, float (&target)[3]) {
 
 using TextureOfKind = std::pair<const std::optional<TextureUse>*, TextureKind>;
 
-std::array<TextureOfKind, 6> usesOf(const MaterialData& material) {
+std::array<TextureOfKind, 7> usesOf(const MaterialData& material) {
     return {{{&material.diffuseTexture, TextureKind::kColour},
              {&material.glossyTexture, TextureKind::kColour},
              {&material.glossyExponentTexture, TextureKind::kData},
+             {&material.roughnessTexture, TextureKind::kData},
              {&material.transmissionTexture, TextureKind::kColour},
              {&material.emissionTexture, TextureKind::kColour},
              {&material.opacityTexture, TextureKind::kMask}}};
@@ -158,7 +159,27 @@ PmrMaterial MaterialBuilder::build(const MaterialData& material) {
     PmrMaterial handle = nullptr;
     m_context.check(m_context.api().createMaterial(m_context.handle(), &desc, &handle), of);
     m_materials.push_back(handle);
+    setRoughness(material, handle, of);
     return handle;
+}
+
+// What is in no struct is set by name.
+void MaterialBuilder::setRoughness(const MaterialData& material, PmrMaterial handle,
+                                   const std::string& of) {
+    if (!(material.roughness > 0)) return;
+    const double roughness = static_cast<double>(material.roughness);
+    auto number = PMR_INIT(PmrParameterDesc);
+    number.object = PMR_OBJECT_MATERIAL;
+    number.material = handle;
+    auto picture = number;
+    number.name = "roughness";
+    number.numbers = &roughness;
+    number.numberCount = 1;
+    m_context.check(m_context.api().setParameter(&number), of);
+    picture.name = "roughnessTexture";
+    picture.texture = texture(material.roughnessTexture, TextureKind::kData, of);
+    if (picture.texture != nullptr)
+        m_context.check(m_context.api().setParameter(&picture), of);
 }
 
 }  // namespace pm::host

@@ -8,6 +8,8 @@
 
 #include "host_shim/formats/all/scene_readers.h"
 #include "host_shim/formats/sidecar/sidecar.h"
+#include "host_shim/formats/sidecar/sidecar_parts.h"
+#include "host_shim/formats/source_file.h"
 #include "host_shim/process/interrupt.h"
 
 namespace pm::host {
@@ -45,6 +47,29 @@ const CameraData* cameraInUse(const Options& options, const std::vector<CameraDa
                                               : "the cameras of the scene are " + names));
 }
 
+namespace {
+
+// The command line's in place of the scene's.
+void addSky(const SkyOptions& asked, SceneData& scene) {
+    if (!asked.environment.empty()) {
+        checkSceneFile(asked.environment, "a picture");
+        scene.sky.reset();
+        EnvironmentData& environment = scene.environment.emplace();
+        environment.texture.emplace();
+        environment.texture->file = asked.environment.string();
+        environment.texture->place = "--environment";
+        environment.radiance.fill(static_cast<float>(asked.strength.value_or(1)));
+        if (asked.rotation) environment.transform = rotationOf({0, *asked.rotation, 0});
+    } else if (asked.sun) {
+        scene.environment.reset();
+        scene.sky = {(*asked.sun)[0], (*asked.sun)[1],
+                     asked.turbidity.value_or(SkyData{}.turbidity), asked.strength.value_or(1),
+                     false};
+    }
+}
+
+}  // namespace
+
 SceneData readScene(const Options& options, const WarningSink& warn,
                     const std::optional<std::array<double, 3>>& eye) {
     ReadRules rules = readRules(options);
@@ -61,6 +86,7 @@ SceneData readScene(const Options& options, const WarningSink& warn,
     if (!place && camera != nullptr) place = placeOf(*camera);
     SceneData scene = sceneReaderFor(options.scene).read({options.scene, warn, goOn, place, rules});
     if (sidecar) addSidecar(*sidecar, scene);
+    addSky(options.sky, scene);
     return scene;
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 
 #include "host_shim/colour/display_picture.h"
@@ -25,6 +26,7 @@
 #include "host_shim/render/texture_setup.h"
 #include "host_shim/session/read_rules.h"
 #include "host_shim/session/session_files.h"
+#include "host_shim/sky/sky_light.h"
 
 namespace pm::host {
 namespace {
@@ -220,6 +222,8 @@ void Session::buildScene(const ColourPipeline& colour, MaterialBuilder& material
                               data.materialFiles.size(), camera.eye[0], camera.eye[1],
                               camera.eye[2], camera.lookAt[0], camera.lookAt[1], camera.lookAt[2]));
     checkSceneFits(m_options, data);
+    TemporaryFolder ofSky;
+    makeSky(camera.up[2] > std::abs(camera.up[1]), ofSky, data);
     buildLit(data, camera, colour, materials, scene);
     if (m_options.writeSidecar) writeSidecar(data);
     const TextureCounts textures = materials.textureCounts();

@@ -82,6 +82,14 @@ Rgb Bsdf::diffuse() const {
                       m_lobes.diffuse);
 }
 
+float Bsdf::arrival() const {
+    return std::visit([&](const auto& model) { return model.arrival(m_at); }, m_lobes.diffuse);
+}
+
+bool Bsdf::arrivesEvenly() const {
+    return std::holds_alternative<Lambertian>(m_lobes.diffuse);
+}
+
 Rgb Bsdf::reflectedOf(const Rgb& irradiance) const {
     return irradiance * diffuse() * kInvPi;
 }
@@ -146,6 +154,8 @@ bool Bsdf::takeBy(const OneOfModels& lobe, Vec2f u, BsdfSample& sample) const {
     const bool hasValue =
         std::visit([&](const auto& model) { return model.sample(m_at, u, sample); }, lobe);
     if (!hasValue) return false;
+    // What goes through has no density that others could ask for.
+    if (dot(sample.direction, m_at.ng) < 0.0f) return sample.pdfSolidAngle > 0.0f;
     sample.pdfSolidAngle = pdfSolidAngle(sample.lobe, sample.direction);
     return sample.pdfSolidAngle > 0.0f;
 }

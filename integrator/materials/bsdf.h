@@ -57,6 +57,10 @@ class Bsdf {
 
     // By the diffuse lobe: radiance that leaves along `out` of a radiance of 1 from everywhere.
     Rgb diffuse() const;
+    // What light from `out` counts for in the irradiance of which that is, beside light of the mean.
+    float arrival() const;
+    // Whether that is the same from all sides.
+    bool arrivesEvenly() const;
     // The same of an irradiance.
     Rgb reflectedOf(const Rgb& irradiance) const;
     // All that is reflected or transmitted, for the albedo layer.

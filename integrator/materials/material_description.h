@@ -24,6 +24,8 @@ struct MaterialDescription {
     Rgb diffuse;
     Rgb glossy;
     float glossyExponent = 0.0f;
+    float roughness = 0.0f;  // of facets; 0: by the exponent, or smooth
+    Rgb conductorN, conductorK;  // of metal; k black: the colour is its reflectance at any angle
     float ior = 1.5f;
     Rgb transmission{1.0f};
     Rgb emission;
@@ -31,6 +33,7 @@ struct MaterialDescription {
     std::int32_t diffuseTexture = kNoTexture;
     std::int32_t glossyTexture = kNoTexture;
     std::int32_t glossyExponentTexture = kNoTexture;
+    std::int32_t roughnessTexture = kNoTexture;
     std::int32_t transmissionTexture = kNoTexture;
     std::int32_t emissionTexture = kNoTexture;
     std::int32_t opacityTexture = kNoTexture;
@@ -40,7 +43,7 @@ struct MaterialDescription {
 inline bool hasTexture(const MaterialDescription& material) {
     for (const std::int32_t texture :
          {material.diffuseTexture, material.glossyTexture, material.glossyExponentTexture,
-          material.transmissionTexture, material.emissionTexture, material.opacityTexture})
+          material.roughnessTexture, material.transmissionTexture, material.emissionTexture, material.opacityTexture})
         if (texture != kNoTexture) return true;
     return false;
 }
@@ -54,10 +57,21 @@ inline bool isDiffuseAtMost(const MaterialDescription& material) {
 // Half of a Phong lobe's greatest value lies 10 degrees aside, or farther.
 inline constexpr float kMostBroadExponent = 45.0f;
 
-// Whether the material's Phong lobe, where it has one, is so broad that it casts no caustics: light
-// that it scatters is found as diffuse light is. By the number alone, whatever its texture.
+// As wide as a Phong lobe of that exponent: alpha^2 = 2 / (n + 2).
+inline constexpr float kLeastBroadRoughness = 0.454f;
+
+// Whether the material's glossy lobe, where it has one, is so broad that it casts no caustics:
+// light that it scatters is found as diffuse light is. By the number alone, whatever its texture.
+// Glass is never: what goes through it is none of the surface's.
 inline bool isBroad(const MaterialDescription& material) {
-    return material.glossyExponent <= kMostBroadExponent;
+    if (material.kind == MaterialKind::kDielectric) return false;
+    return material.roughness > 0.0f ? material.roughness >= kLeastBroadRoughness
+                                     : material.glossyExponent <= kMostBroadExponent;
+}
+
+// Whether light that a mirror or glass sends on is spread.
+inline bool isRough(const MaterialDescription& material) {
+    return material.roughness > 0.0f || material.glossyExponent > 0.0f;
 }
 
 // Whether light can leave the material in one direction, or two, like from a mirror or glass.
@@ -87,14 +101,15 @@ inline bool reflectsDiffusely(const MaterialDescription& material) {
 // Whether the material may have a lobe that is glossy or broad.
 inline bool mayBeGlossy(const MaterialDescription& material) {
     return (material.kind == MaterialKind::kSurface && !isBlack(material.glossy)) ||
-           (material.kind == MaterialKind::kMirror && material.glossyExponent > 0.0f);
+           (material.kind == MaterialKind::kMirror && isRough(material)) ||
+           (material.kind == MaterialKind::kDielectric && material.roughness > 0.0f);
 }
 
 // Whether the numbers are those of a broad lobe. So may glass have them, to no effect on what it
 // does; times that the plan expects count it.
 inline bool hasBroadNumbers(const MaterialDescription& material) {
     return !isBlack(material.glossy) && isBroad(material) &&
-           (material.kind == MaterialKind::kSurface || material.glossyExponent > 0.0f);
+           (material.kind == MaterialKind::kSurface || isRough(material));
 }
 
 // Whether light that meets the material goes nowhere from there, whatever its textures.
@@ -122,9 +137,9 @@ inline bool castsCaustics(const MaterialDescription& material) {
     if (material.kind != MaterialKind::kDielectric && !material.fresnelMirror &&
         material.glossyTexture == kNoTexture && !(maxChannel(material.glossy) > kCarriesNothing))
         return false;
-    const bool isPhong = material.kind == MaterialKind::kSurface ||
-                         (material.kind == MaterialKind::kMirror && material.glossyExponent > 0.0f);
-    return !(isPhong && isBroad(material));
+    const bool mayBeBroad = material.kind == MaterialKind::kSurface ||
+                         (material.kind == MaterialKind::kMirror && isRough(material));
+    return !(mayBeBroad && isBroad(material));
 }
 
 }  // namespace pm

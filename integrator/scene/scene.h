@@ -205,6 +205,7 @@ class Scene {
     static void nameSurface(const ShapeRecord& shape, std::uint32_t primitive, Surface& surface);
 
     SceneDescription m_description;
+    std::vector<std::shared_ptr<const GlassAlbedo>> m_glass;  // see Materials
     Materials m_materials{m_description.materials, m_description.textures.get()};
     std::vector<ShapeRecord> m_shapes;
     std::vector<Light> m_lights;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <optional>
 #include <unordered_map>
 
@@ -47,6 +48,7 @@ class Scene::Builder {
         m_scene.m_viewersDiffer = findViewers();
         m_scene.m_letsThrough =
             std::ranges::any_of(m_scene.m_description.materials, pm::letsThrough);
+        makeGlass();
         addToTracer();
         for (std::uint32_t i = 0; i < m_scene.m_shapes.size(); ++i) findLights(i);
         m_scene.lookAtTextures(m_cancel);
@@ -69,6 +71,27 @@ class Scene::Builder {
     void goOn() {
         constexpr std::uint32_t kStepsBetweenLooks = 1 << 16;
         if (++m_steps % kStepsBetweenLooks == 0) m_cancel.throwIfSet("building the scene");
+    }
+
+    // The tables of materials that are rough glass, one for each index of refraction.
+    void makeGlass() {
+        const auto& materials = m_scene.m_description.materials;
+        const auto isRoughGlass = [](const MaterialDescription& material) {
+            return material.kind == MaterialKind::kDielectric && material.roughness > 0.0f;
+        };
+        if (std::ranges::none_of(materials, isRoughGlass)) return;
+        std::map<float, std::shared_ptr<const GlassAlbedo>> tables;
+        for (const MaterialDescription& material : materials) {
+            std::shared_ptr<const GlassAlbedo> table;
+            if (isRoughGlass(material)) {
+                m_cancel.throwIfSet("building the scene");
+                auto& made = tables[material.ior];
+                if (!made) made = std::make_shared<const GlassAlbedo>(material.ior);
+                table = made;
+            }
+            m_scene.m_glass.push_back(std::move(table));
+        }
+        m_scene.m_materials.glass = m_scene.m_glass;
     }
 
     void checkInstances() const {

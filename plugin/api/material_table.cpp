@@ -109,6 +109,39 @@ constexpr std::array kMaterialRows = {
         {.name = "name", .help = "For messages.", .type = Type::kText, .changesPixels = false},
         {Kind::kText, offsetof(PmrMaterialDesc, name)},
         {unseenPlace<&M::name>()}},
+    MaterialParameter{{.name = "roughness",
+                       .help = "In place of an exponent: the root of GGX's alpha. Surfaces then "
+                               "have a coat that reflects the glossy colour at normal incidence "
+                               "and all at grazing angles; mirrors and dielectrics below 0.01 are "
+                               "smooth.",
+                       .defaultText = "0",
+                       .isLater = true},
+                      {},
+                      {memberPlace<&M::roughness>()}},
+    MaterialParameter{{.name = "roughnessTexture",
+                       .help = "Multiplies roughness.",
+                       .type = Type::kTexture,
+                       .isLater = true},
+                      {},
+                      {texturePlace<&M::roughnessTexture>()}},
+    MaterialParameter{{.name = "conductorN",
+                       .help = "Mirror: real part of a metal's index of refraction, where "
+                               "conductorK isn't 0.",
+                       .count = 3,
+                       .maximum = 100,
+                       .defaultText = "0 0 0",
+                       .isLater = true},
+                      {},
+                      {memberPlace<&M::conductorN>()}},
+    MaterialParameter{{.name = "conductorK",
+                       .help = "Mirror: its imaginary part; 0: the glossy colour is what it "
+                               "reflects.",
+                       .count = 3,
+                       .maximum = 100,
+                       .defaultText = "0 0 0",
+                       .isLater = true},
+                      {},
+                      {memberPlace<&M::conductorK>()}},
 };
 
 }  // namespace

@@ -58,7 +58,8 @@ MAY_INCLUDE = {
     "host_shim/formats/all": "formats formats/obj pictures",
     "host_shim/log": "cli pictures process",
     "host_shim/render": "cli colour formats log look pictures pictures/writers plugin/include process report textures",
-    "host_shim/session": "cli colour formats formats/all formats/sidecar log look pictures process render report",
+    "host_shim/sky": "formats pictures process",
+    "host_shim/session": "cli colour formats formats/all formats/sidecar log look pictures process render report sky",
     "host_shim/app": "check cli colour formats log pictures process render session",
     "host_shim": "app",
 }

@@ -55,6 +55,14 @@ class PrincipledSection {
         m_section.maps.erase(key);
     }
 
+    // A picture of it, which the number then multiplies; of old exporters a picture of exponents
+    // stands for none.
+    bool keepsRoughnessMap() {
+        if (!m_section.hasMap("map_Pr")) return false;
+        m_section.numbers["Pr"] = 1;
+        return true;
+    }
+
     // A number that a picture stands for is not written.
     double roughness() {
         constexpr double kOfPictures = 0.5;  // Blender's own default
@@ -107,31 +115,34 @@ class PrincipledSection {
     }
 
     void makeGlass() {
-        if (roughness() > 0.1) note("Pr", "rough glass is not rendered yet; it is taken as smooth");
+        const bool hasRoughnessMap = keepsRoughnessMap();
+        const double rough = hasRoughnessMap ? 1 : roughness();
         Colour tint = m_section.colour("Kd").value_or(Colour{1, 1, 1});
         // Since Blender 4 it is the colour of a way through two boundaries.
         if (m_dialect == MtlDialect::kBlender4)
             for (double& channel : tint) channel = std::sqrt(std::max(channel, 0.0));
         if (m_section.hasMap("map_Kd")) m_section.maps["map_Tf"] = m_section.maps["map_Kd"];
-        for (const char* key : {"Kd", "map_Kd", "Ks", "map_Ks", "Pr", "Pm", "Ns"}) drop(key);
+        for (const char* key : {"Kd", "map_Kd", "Ks", "map_Ks", "Pm", "Ns"}) drop(key);
+        if (!hasRoughnessMap) drop("Pr");
+        if (rough > 0) m_section.numbers["Pr"] = rough;
         m_section.colours["Tf"] = tint;
         m_section.numbers["illum"] = 7;
         if (!m_section.number("Ni")) m_section.numbers["Ni"] = 1.45;
     }
 
     void makeSurface() {
-        const double rough = roughness(), metal = metallic();
+        const double metal = metallic();
+        constexpr double kWholly = 0.999;
+        const bool hasRoughnessMap = metal >= kWholly && keepsRoughnessMap();
+        const double rough = hasRoughnessMap ? 1 : roughness();
         const Colour base = m_section.colour("Kd").value_or(Colour{1, 1, 1});
         const Colour coat = specular();
-        for (const char* key : {"Pr", "Pm", "Ns", "Tf"}) drop(key);
+        for (const char* key : {"Pm", "Ns", "Tf"}) drop(key);
+        if (!hasRoughnessMap) drop("Pr");
         // Of what is cut away light goes straight on, whatever the index.
         drop("Ni");
+        if (metal >= kWholly) return makeMetal(base, rough);
         m_section.numbers["Ns"] = exponentOfRoughness(rough);
-        constexpr double kWholly = 0.999;
-        if (metal >= kWholly) {
-            makeMetal(base, rough);
-            return;
-        }
         const bool hasMap = m_section.hasMap("map_Kd");
         Colour diffuse{}, glossy{}, added{};
         for (std::size_t i = 0; i < 3; ++i) {
@@ -162,13 +173,14 @@ class PrincipledSection {
         return coat > 0 ? std::max(0.0, meanOfCoat(coat, rough) - coat * meanOfLobe(rough)) : 0;
     }
 
+    // Blender's metals reflect their colour at normal incidence and all at grazing angles.
     void makeMetal(const Colour& base, double rough) {
-        constexpr double kSmooth = 0.05;
         if (m_section.hasMap("map_Kd")) m_section.maps["map_Ks"] = m_section.maps["map_Kd"];
         drop("Kd");
         drop("map_Kd");
         m_section.colours["Ks"] = base;
-        m_section.numbers["illum"] = rough <= kSmooth ? 5 : 3;
+        m_section.numbers["illum"] = 5;
+        if (rough > 0) m_section.numbers["Pr"] = rough;
     }
 
     MtlDialect m_dialect;
@@ -257,6 +269,10 @@ Translation translateToGeneric(MtlDialect dialect, MtlSection& section) {
             keepDiffuse(section);
             break;
         case MtlDialect::kGeneric:
+            // The keys for physically based materials mean what Blender's do.
+            if (section.number("Pr") || section.number("Pm") || section.hasMap("map_Pr"))
+                return PrincipledSection(MtlDialect::kBlender4, section).translate();
+            break;
         case MtlDialect::kMcGuire:
             break;
     }

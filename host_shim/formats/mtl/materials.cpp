@@ -104,6 +104,7 @@ class MaterialReader {
         m_material.diffuseTexture = map("map_Kd", false);
         m_material.glossyTexture = map("map_Ks", false);
         m_material.glossyExponentTexture = map("map_Ns", true);
+        m_material.roughnessTexture = map("map_Pr", true);
         m_material.opacityTexture = map("map_d", true);
         m_material.emissionTexture = map("map_Ke", false);
         m_material.transmissionTexture = map("map_Tf", false);
@@ -223,7 +224,18 @@ class MaterialReader {
         }
     }
 
+    // Of mirrors and glass.
+    void readRoughness() {
+        const double value = number("Pr", 0);
+        m_material.roughness = static_cast<float>(std::clamp(value, 0.0, 1.0));
+        if (static_cast<double>(m_material.roughness) != value && (value < 0 || value > 1))
+            note(Warning::kMaterialValue, "Pr",
+                 fmt::format("Pr {} is outside [0,1]; {} is taken", value, m_material.roughness));
+        if (m_material.roughness > 0) m_material.glossyExponentTexture.reset();
+    }
+
     void readDielectric() {
+        readRoughness();
         m_material.transmission = {1, 1, 1};
         if (given("Tf") || m_section.hasMap("map_Tf")) {
             m_material.transmission = reflectance("Tf", colour("Tf"));
@@ -264,6 +276,8 @@ class MaterialReader {
 
     void readMirror() {
         dropDiffuse("mirror");
+        readRoughness();
+        if (m_material.roughness > 0) return;
         if (m_material.fresnel) {
             m_material.glossyExponentTexture.reset();
         } else {
@@ -273,6 +287,7 @@ class MaterialReader {
     }
 
     void readLobe() {
+        m_material.roughnessTexture.reset();
         const bool noLobe = illum() == 0 || illum() == 1;
         if (noLobe || !hasExponent()) {
             m_material.glossy = {};

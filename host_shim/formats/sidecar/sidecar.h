@@ -46,6 +46,7 @@ struct Sidecar {
     std::vector<SidecarSphere> spheres;
     std::vector<LightData> lights;
     std::optional<EnvironmentData> environment;
+    std::optional<SkyData> sky;
     std::vector<CameraData> cameras;
 
     // Names of materials that it puts on something.

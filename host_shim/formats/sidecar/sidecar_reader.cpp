@@ -90,6 +90,17 @@ EnvironmentData readEnvironment(const JsonPlace& at, SceneFiles& files) {
     return environment;
 }
 
+SkyData readSky(const JsonPlace& at) {
+    at.allowKeys({"azimuth", "elevation", "turbidity", "strength"});
+    SkyData sky;
+    sky.azimuth = at.member("azimuth").number({-360, 360, true, true, "degrees"});
+    sky.elevation = at.member("elevation").number({0, 90, false, true, "degrees"});
+    if (at.has("turbidity"))
+        sky.turbidity = at.member("turbidity").number({1.7, 10, true, true, ""});
+    if (at.has("strength")) sky.strength = at.member("strength").number({0, 1e6, true, true, ""});
+    return sky;
+}
+
 }  // namespace
 
 fs::path sidecarOf(const fs::path& scene) {
@@ -113,7 +124,7 @@ Sidecar readSidecar(std::string_view text, const std::string& file, SceneFiles& 
     const nlohmann::ordered_json json = parseJson(text, file);
     const JsonPlace all(json, file);
     all.allowKeys(
-        {"$schema", "schema", "instances", "spheres", "lights", "environment", "cameras"});
+        {"$schema", "schema", "instances", "spheres", "lights", "environment", "sky", "cameras"});
     all.member("schema").choice({kSidecarSchema});
     Sidecar sidecar;
     sidecar.file = file;
@@ -121,6 +132,9 @@ Sidecar readSidecar(std::string_view text, const std::string& file, SceneFiles& 
         sidecar.instances.push_back(readInstance(at));
     for (const JsonPlace& at : all.entriesOf("spheres")) sidecar.spheres.push_back(readSphere(at));
     for (const JsonPlace& at : all.entriesOf("lights")) sidecar.lights.push_back(readLight(at));
+    if (all.has("environment") && all.has("sky"))
+        all.refuse("has environment and sky; it is one of them");
+    if (all.has("sky")) sidecar.sky = readSky(all.member("sky"));
     if (all.has("environment"))
         sidecar.environment = readEnvironment(all.member("environment"), files);
     for (const JsonPlace& at : all.entriesOf("cameras")) {

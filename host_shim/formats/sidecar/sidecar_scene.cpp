@@ -68,6 +68,7 @@ class Addition {
         m_scene.lights.insert(m_scene.lights.end(), m_sidecar.lights.begin(),
                               m_sidecar.lights.end());
         if (m_sidecar.environment) m_scene.environment = m_sidecar.environment;
+        if (m_sidecar.sky) m_scene.sky = m_sidecar.sky;
         m_scene.cameras.insert(m_scene.cameras.end(), m_sidecar.cameras.begin(),
                                m_sidecar.cameras.end());
     }

@@ -14,6 +14,8 @@ struct Lambertian {
     // Radiance that leaves along `out` of a radiance of 1 from everywhere.
     static Rgb albedo(const LobePoint&, const Rgb& reflectance) { return reflectance; }
 
+    static float arrival(const LobePoint&) { return 1.0f; }
+
     // Light counts by its cosine to the shading normal, and photons that it sends off leave by that
     // to the geometric one: eq. 5.19 with one side of it used up where they arrived.
     static Rgb evaluate(const LobePoint& at, const Rgb& reflectance, const Vec3f& in) {

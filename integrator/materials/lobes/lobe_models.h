@@ -25,20 +25,24 @@ concept ScatteringModel = requires(const T& lobe, const LobePoint& at, const Rgb
 };
 
 // albedo: radiance along `out` of a radiance of 1 from everywhere. Maps of photons and gather
-// points know irradiance only: they see nothing else of the lobe.
+// points know irradiance only: they see nothing else of the lobe. arrival: what light from `out`
+// counts for in that irradiance, more or less than 1; its mean over even light is 1.
 template <typename T>
 concept DiffuseModel = ScatteringModel<T> &&
     requires(const T& lobe, const LobePoint& at, const Rgb& reflectance) {
     { lobe.albedo(at, reflectance) } -> std::same_as<Rgb>;
+    { lobe.arrival(at) } -> std::same_as<float>;
 };
 
-// A delta, in the roles kReflection and kRefraction. shares: what it sends on by each. sendsByWays:
+// A delta, in the roles kReflection and kRefraction. shares: what it sends on by each; asked once,
+// before all else, so that it may keep what it finds. sendsByWays:
 // photons leave by the ways of smooth_boundary.h, whose shares may add to more than 1. etaSquared:
 // the index on the far side over this side's, squared. sample: finds the direction for the role
 // that the sample says, and finishes the weight; pdfSolidAngle is the probability of the choice.
 template <typename T>
-concept SmoothModel = requires(const T& lobe, const LobePoint& at, float u, BsdfSample& sample) {
-    { lobe.shares(at) } -> std::same_as<SmoothShares>;
+concept SmoothModel = requires(T& made, const T& lobe, const LobePoint& at, float u,
+                              BsdfSample& sample) {
+    { made.shares(at) } -> std::same_as<SmoothShares>;
     { lobe.sendsByWays(at) } -> std::same_as<bool>;
     { lobe.etaSquared() } -> std::same_as<float>;
     { lobe.sample(at, u, sample) } -> std::same_as<bool>;

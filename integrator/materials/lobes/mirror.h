@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include "integrator/materials/lobes/fresnel.h"
 #include "integrator/materials/lobes/smooth_boundary.h"
 
 namespace pm {
 
 // A smooth mirror.
 struct Mirror {
-    Rgb tint;  // reflectance at normal incidence
-    bool risesToGrazing = false;
+    Fresnel fresnel;
 
     SmoothShares shares(const LobePoint& at) const {
         return {sendsByWays(at) ? shareOf(ways(at)) : shareSeenFrom(at, at.out), Rgb()};
@@ -23,14 +23,8 @@ struct Mirror {
     }
 
   private:
-    Rgb colour(float cosine) const {
-        if (!risesToGrazing) return tint;
-        // Schlick 1994: the reflectance rises to 1 at grazing angles.
-        const float m = 1.0f - cosine;
-        return tint + (Rgb(1.0f) - tint) * (m * m * m * m * m);
-    }
     Rgb shareSeenFrom(const LobePoint& at, const Vec3f& eye) const {
-        return colour(cosineSeenFrom(at, eye, false)) * at.opacity;
+        return fresnel.at(cosineSeenFrom(at, eye, false)) * at.opacity;
     }
     PhotonWays ways(const LobePoint& at) const {
         PhotonWays found = reflectedWays(at);

@@ -380,7 +380,7 @@ class PhotonWalk {
 
     static void store(const Surface& surface, const Bsdf& bsdf, const Rgb& flux, Batch& batch,
                       std::vector<Photon>& photons) {
-        photons.push_back({surface.position, flux * bsdf.normalRatio(),
+        photons.push_back({surface.position, flux * (bsdf.normalRatio() * bsdf.arrival()),
                            PackedNormal(bsdf.facingGeometricNormal())});
         ++batch.balance.stored;
     }

@@ -111,6 +111,15 @@ struct LastScatter {
     bool hasLamps = false;          // what lamps are along it has been added: lightAlong()
 };
 
+// Of a sample of a surface's BSDF. Lamps are not sampled through a surface: light from there is
+// found by the sample alone.
+inline LastScatter lastScatter(const Surface& from, const Bsdf& bsdf, const BsdfSample& sample,
+                               std::uint32_t lampSamples = 1) {
+    const bool isThrough = dot(sample.direction, bsdf.facingGeometricNormal()) < 0.0f;
+    return {from, sample.direction, sample.lobe, sample.pdfSolidAngle,
+            isThrough ? 0 : lampSamples};
+}
+
 // Emission of `surface` towards the path that came by `last`, weighted against next-event
 // estimation where that could have found it.
 Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const LastScatter& last);

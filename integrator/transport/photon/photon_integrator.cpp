@@ -107,7 +107,7 @@ bool PhotonIntegrator::Branch::goOn(const Surface& surface, const Bsdf& bsdf,
     if (!path.scatter(surface, bsdf, sample, sampler, isPart)) return false;
     if (sample.lobe == Lobe::kStraight) return true;
     state.scatter(sample.lobe);
-    last = {surface, sample.direction, sample.lobe, sample.pdfSolidAngle, lampSamples};
+    last = lastScatter(surface, bsdf, sample, lampSamples);
     return true;
 }
 
@@ -226,7 +226,9 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(const Surface& surface,
     const Vec3f& normal = bsdf.facingGeometricNormal();
     const GatherPoints::Place place{tree.view.screen, surface.position, bsdf.facingShadingNormal(),
                                     normal, surface.offset};
-    const bool kept = m_maps.points && m_maps.points->estimate(place, indirect);
+    // What is kept is of light from all sides alike.
+    const bool kept =
+        m_maps.points && bsdf.arrivesEvenly() && m_maps.points->estimate(place, indirect);
     result.rays += indirect.rays;
     if (kept) {
         add(indirect.irradiance, reflected, result.indirect, result);

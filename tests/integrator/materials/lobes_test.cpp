@@ -105,7 +105,7 @@ TEST(Lobes, AlbedoIsWhatEvenLightGives) {
 }
 
 TEST(Lobes, SmoothOnesMakeNoEnergyAndFindUnitDirections) {
-    forEachOf<SmoothLobe>([](const auto& model) {
+    forEachOf<SmoothLobe>([](auto model) {
         for (const double degrees : {0.0, 40.0, 75.0}) {
             const LobePoint at = seenAt(degrees, {0, 0, 1}, Transport::kRadiance);
             const SmoothShares shares = model.shares(at);
