@@ -154,8 +154,6 @@ bool Bsdf::takeBy(const OneOfModels& lobe, Vec2f u, BsdfSample& sample) const {
     const bool hasValue =
         std::visit([&](const auto& model) { return model.sample(m_at, u, sample); }, lobe);
     if (!hasValue) return false;
-    // What goes through has no density that others could ask for.
-    if (dot(sample.direction, m_at.ng) < 0.0f) return sample.pdfSolidAngle > 0.0f;
     sample.pdfSolidAngle = pdfSolidAngle(sample.lobe, sample.direction);
     return sample.pdfSolidAngle > 0.0f;
 }

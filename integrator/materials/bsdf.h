@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <variant>
 
 #include "integrator/materials/lobe_kinds.h"
 #include "integrator/materials/materials.h"
@@ -36,6 +37,8 @@ class Bsdf {
     float probability(Lobe lobe) const { return m_probability[index(lobe)]; }
     // What the lobe reflects or transmits; at a refraction without its factor 1 / etaSquared().
     const Rgb& reflectance(Lobe lobe) const { return m_lobes.of(lobe); }
+    // Whether light that comes from behind leaves by a lobe that is not delta.
+    bool goesThrough() const { return std::holds_alternative<RoughGlass>(m_lobes.glossy); }
     // Nothing but a diffuse lobe, or less.
     bool isDiffuseOnly() const { return m_diffuseOnly; }
     // Mean over channels of what could be reflected or transmitted is 0.

@@ -16,9 +16,6 @@ namespace pm {
 // scattered by more than one facet leaves on both sides, evenly but for what each loses, as Kulla &
 // Conty 2017 have it for reflection: with m(mu) what is missing along mu on a side and M its mean,
 // m(out) m(in) / (pi M), so that energy is kept and the lobe reciprocal.
-//
-// Light from behind comes in no evaluate() and no density: who samples lamps finds what is
-// reflected, and what shines through is found by sample() alone.
 struct RoughGlass {
     Ggx ggx;
     Rgb tint{1.0f};  // of what it lets through
@@ -35,19 +32,22 @@ struct RoughGlass {
 
     static float cosine(const LobePoint& at) { return std::max(1e-4f, dot(at.out, at.ns)); }
 
+    // For light from both sides.
     Rgb evaluate(const LobePoint& at, const Rgb& reflectance, const Vec3f& in) const {
-        if (!at.isReflection(in)) return {};
         const Frame frame(at.ns);
         const Vec3f out = toLocal(frame, at.out), local = toLocal(frame, in);
-        if (!(out.z > 0.0f && local.z > 0.0f)) return {};
-        return scaled(at, reflectance, Rgb(reflectedValue(out, local))) * at.adjointCorrection(in);
+        if (!isEither(at, out, local, in)) return {};
+        const Rgb value =
+            local.z > 0.0f ? Rgb(reflectedValue(out, local)) : tint * throughValue(at, out, local);
+        return scaled(at, reflectance, value) * at.adjointCorrection(in);
     }
 
     float pdfSolidAngle(const LobePoint& at, const Vec3f& in, float choice) const {
         const Frame frame(at.ns);
         const Vec3f out = toLocal(frame, at.out), local = toLocal(frame, in);
-        if (!(out.z > 0.0f && local.z > 0.0f)) return 0.0f;
-        return choice * reflectedDensity(out, local);
+        if (!isEither(at, out, local, in)) return 0.0f;
+        return choice *
+               (local.z > 0.0f ? reflectedDensity(out, local) : throughDensity(out, local));
     }
 
     bool sample(const LobePoint& at, Vec2f u, BsdfSample& sample) const {
@@ -69,17 +69,21 @@ struct RoughGlass {
         }
         if (goesThrough ? !(in.z < 0.0f) : !(in.z > 0.0f)) return false;
         sample.direction = normalize(frame.toWorld(in));
-        const Rgb value = goesThrough ? tint * throughValue(at, out, in) : Rgb(reflectedValue(out, in));
+        const Rgb value =
+            goesThrough ? tint * throughValue(at, out, in) : Rgb(reflectedValue(out, in));
         const float density = goesThrough ? throughDensity(out, in) : reflectedDensity(out, in);
         if (!(density > 0.0f)) return false;
-        sample.weight = scaled(at, sample.weight, value) *
-                        (at.adjointCorrection(sample.direction) / density);
-        sample.pdfSolidAngle *= density;
-        const float side = dot(sample.direction, at.ng);
-        return goesThrough ? side < 0.0f : side > 0.0f && at.isReflection(sample.direction);
+        sample.weight =
+            scaled(at, sample.weight, value) * (at.adjointCorrection(sample.direction) / density);
+        return isEither(at, out, in, sample.direction);
     }
 
   private:
+    // On the same side of both normals.
+    static bool isEither(const LobePoint& at, const Vec3f& out, const Vec3f& local,
+                         const Vec3f& in) {
+        return out.z > 0.0f && local.z != 0.0f && (local.z > 0.0f) == (dot(in, at.ng) > 0.0f);
+    }
     static Vec3f toLocal(const Frame& frame, const Vec3f& w) {
         return {dot(w, frame.tangent), dot(w, frame.bitangent), dot(w, frame.normal)};
     }
@@ -118,9 +122,8 @@ struct RoughGlass {
     float reflectedDensity(const Vec3f& out, const Vec3f& in) const {
         const Vec3f h = normalize(out + in);
         const float more = missing(out);
-        return reflects(out) *
-               (more * in.z * kInvPi + (1.0f - more) * ggx.visibleDensity(out, h) /
-                                           (4.0f * std::max(1e-12f, dot(out, h))));
+        return reflects(out) * (more * in.z * kInvPi + (1.0f - more) * ggx.visibleDensity(out, h) /
+                                                           (4.0f * std::max(1e-12f, dot(out, h))));
     }
     // The facet by which light goes from one to the other; false: by none.
     bool facetOf(const Vec3f& out, const Vec3f& in, Vec3f& h) const {

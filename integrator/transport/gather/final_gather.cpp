@@ -102,7 +102,7 @@ Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray
             return result;
         if (sample.lobe == Lobe::kStraight) continue;
         atOnce = false;
-        way.last = lastScatter(surface, bsdf, sample);
+        way.last = lastScatter(surface, sample);
         if (scene.viewersDiffer() && !isDelta(sample.lobe) &&
             GatherWay::isAsked(ends, sample.lobe)) {
             const Rgb light = way.path.throughput *

@@ -26,6 +26,7 @@ struct Question {
     const Bsdf& bsdf;
     LampStrategy diffuse;
     std::uint32_t samples;
+    Vec3f side;  // normal of that from which light is asked for
 };
 
 // By one of the lamp samples, to be divided by their number.
@@ -36,6 +37,7 @@ DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, st
     LightSample light;
     if (!asked.lights.sample(chosen, asked.surface, light) || !(light.pdfSolidAngle > 0.0f))
         return result;
+    if (bsdf.goesThrough() && !(dot(light.direction, asked.side) > 0.0f)) return result;
     const auto contribution = [&](Lobe lobe) {
         if (!bsdf.has(lobe)) return Rgb{};
         const Rgb value = bsdf.evaluate(lobe, light.direction);
@@ -63,7 +65,7 @@ DirectRadiance sumOfSamples(const Question& asked, const Sampler& sampler, std::
     const std::span<ChosenLight> turn(chosen.data(), std::min(asked.samples, kMost));
     for (std::uint32_t next = 0; next < asked.samples;) {
         for (ChosenLight& one : turn) one.u = sampler.part(asked.samples, next++).next2D();
-        asked.lights.choose(asked.surface, asked.bsdf.facingGeometricNormal(), turn);
+        asked.lights.choose(asked.surface, asked.side, turn);
         for (const ChosenLight& one : turn) {
             const DirectRadiance part = byLampSample(asked, one, rays);
             sum.diffuse += part.diffuse;
@@ -78,12 +80,22 @@ DirectRadiance sumOfSamples(const Question& asked, const Sampler& sampler, std::
 DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
                               const Surface& surface, const Bsdf& bsdf, LampStrategy diffuse,
                               std::uint32_t samples, Sampler& sampler, std::uint32_t& rays) {
-    const Question asked{scene, lights, surface, bsdf, diffuse, samples};
+    Question asked{scene, lights, surface, bsdf, diffuse, samples, bsdf.facingGeometricNormal()};
     DirectRadiance sum;
-    if (!lights.empty())
-        sum = samples == 1 ? sumOfSamples<1>(asked, sampler, rays)
-                           : sumOfSamples<kAtOnce>(asked, sampler, rays);
-    sampler.skip();
+    const auto add = [&] {
+        if (!lights.empty()) {
+            const DirectRadiance found = samples == 1 ? sumOfSamples<1>(asked, sampler, rays)
+                                                      : sumOfSamples<kAtOnce>(asked, sampler, rays);
+            sum.diffuse += found.diffuse;
+            sum.glossy += found.glossy;
+        }
+        sampler.skip();
+    };
+    add();
+    if (bsdf.goesThrough()) {
+        asked.side = -asked.side;
+        add();
+    }
     const auto number = static_cast<float>(samples);
     return {sum.diffuse / number, sum.glossy / number};
 }

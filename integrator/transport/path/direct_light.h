@@ -94,7 +94,8 @@ enum class LampStrategy : std::uint8_t {
 
 // Next-event estimation for both lobes: the mean of `samples` lamp samples, a power of two, with a
 // shadow ray each; weighted against finding the same light by sampling the lobe once, for the
-// diffuse lobe as `diffuse` says. Draws from one dimension of `sampler`. Counts its rays in `rays`.
+// diffuse lobe as `diffuse` says. Draws from one dimension of `sampler`, from two where light comes
+// through the surface as well. Counts its rays in `rays`.
 // Source: Veach 1997, section 9.2 (several samples of one strategy).
 DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
                               const Surface& surface, const Bsdf& bsdf, LampStrategy diffuse,
@@ -111,13 +112,10 @@ struct LastScatter {
     bool hasLamps = false;          // what lamps are along it has been added: lightAlong()
 };
 
-// Of a sample of a surface's BSDF. Lamps are not sampled through a surface: light from there is
-// found by the sample alone.
-inline LastScatter lastScatter(const Surface& from, const Bsdf& bsdf, const BsdfSample& sample,
+// Of a sample of a surface's BSDF.
+inline LastScatter lastScatter(const Surface& from, const BsdfSample& sample,
                                std::uint32_t lampSamples = 1) {
-    const bool isThrough = dot(sample.direction, bsdf.facingGeometricNormal()) < 0.0f;
-    return {from, sample.direction, sample.lobe, sample.pdfSolidAngle,
-            isThrough ? 0 : lampSamples};
+    return {from, sample.direction, sample.lobe, sample.pdfSolidAngle, lampSamples};
 }
 
 // Emission of `surface` towards the path that came by `last`, weighted against next-event

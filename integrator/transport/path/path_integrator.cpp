@@ -44,7 +44,7 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
         }
         state.scatter(sample.lobe);
         if (sample.lobe == Lobe::kStraight) continue;
-        last = lastScatter(surface, bsdf, sample);
+        last = lastScatter(surface, sample);
         if (m_scene.viewersDiffer() && !isDelta(sample.lobe)) {
             result.of(state.classify()) +=
                 path.throughput * lightAlong(m_scene, m_lights, path.ray, last, result.rays);

@@ -107,7 +107,7 @@ bool PhotonIntegrator::Branch::goOn(const Surface& surface, const Bsdf& bsdf,
     if (!path.scatter(surface, bsdf, sample, sampler, isPart)) return false;
     if (sample.lobe == Lobe::kStraight) return true;
     state.scatter(sample.lobe);
-    last = lastScatter(surface, bsdf, sample, lampSamples);
+    last = lastScatter(surface, sample, lampSamples);
     return true;
 }
 
