@@ -26,7 +26,7 @@ MaterialDescription diffuseAndGlossy(float diffuse, float glossy, float exponent
     return m;
 }
 
-MaterialDescription glass(float ior) {
+MaterialDescription glassOf(float ior) {
     MaterialDescription m;
     m.kind = MaterialKind::kDielectric;
     m.ior = ior;
@@ -186,7 +186,7 @@ TEST(Bsdf, PhotonsLeaveAMirrorWhereTheCameraLooks) {
 }
 
 TEST(Bsdf, PhotonsLeaveGlassWhereTheCameraLooks) {
-    const Bench bench(glass(1.5f), {0.7f, 0.2f, 1});
+    const Bench bench(glassOf(1.5f), {0.7f, 0.2f, 1});
     for (const Lobe lobe : {Lobe::kReflection, Lobe::kRefraction})
         for (const bool eyesAbove : {true, false}) {
             SCOPED_TRACE(fmt::format("{} {}", lobe == Lobe::kReflection, eyesAbove));
@@ -291,7 +291,7 @@ TEST(Fresnel, SlabTransmittance) {
 
 TEST(Bsdf, TotalReflectionBeginsAtTheCriticalAngle) {  // analytic D5
     for (const auto& [ior, critical] : {std::pair{1.5f, 41.8103}, {1.33f, 48.7535}}) {
-        const Bench bench(glass(ior));
+        const Bench bench(glassOf(ior));
         const auto inside = [&](double degrees) { return -atAngle(degrees); };
         EXPECT_TRUE(bench.bsdf(inside(critical - 0.01)).has(Lobe::kRefraction));
         const Bsdf beyond = bench.bsdf(inside(critical + 0.01));
@@ -307,7 +307,7 @@ TEST(Bsdf, TotalReflectionBeginsAtTheCriticalAngle) {  // analytic D5
 // Snell's law both ways, weights (1-R) over its probability, eta^2 for radiance only.
 TEST(Bsdf, RefractionObeysSnell) {
     Random random(6);
-    const Bench bench(glass(1.5f));
+    const Bench bench(glassOf(1.5f));
     for (int i = 0; i < 2000; ++i) {
         Vec3f out = above(random);
         const bool fromInside = i % 2;

@@ -173,7 +173,7 @@ struct Spread {
     std::array<double, kMoments> mean{}, squaredError{};
 };
 
-Spread replicate(const Aimed& aimed, bool aim, int replicates, std::uint64_t photons) {
+Spread spreadOf(const Aimed& aimed, bool aim, int replicates, std::uint64_t photons) {
     std::vector<std::array<double, kMoments>> all;
     Spread spread;
     for (int i = 0; i < replicates; ++i)
@@ -193,8 +193,8 @@ TEST(AimedEmission, LandsTheFluxOfTheUnaimed) {
     for (const TestScene& test : testScenes()) {
         const Aimed aimed(build(test));
         ASSERT_FALSE(aimed.aim.empty()) << test.name;
-        const Spread want = replicate(aimed, false, kReplicates, 25'000);
-        const Spread got = replicate(aimed, true, kReplicates, 10'000);
+        const Spread want = spreadOf(aimed, false, kReplicates, 25'000);
+        const Spread got = spreadOf(aimed, true, kReplicates, 10'000);
         ASSERT_GT(want.mean[0], 0.0) << test.name;
         for (std::size_t k = 0; k < kMoments; ++k) {
             const double sigma = std::sqrt(want.squaredError[k] + got.squaredError[k]);
