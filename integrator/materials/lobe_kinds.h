@@ -16,6 +16,7 @@
 #include "integrator/materials/lobes/rough_glass.h"
 #include "integrator/materials/lobes/straight.h"
 #include "integrator/materials/lobes/undercoat.h"
+#include "integrator/materials/material_description.h"
 
 namespace pm {
 
@@ -32,6 +33,10 @@ using OneOfSmooth = std::variant<Models...>;
 using DiffuseLobe = OneOfDiffuse<Lambertian, Undercoat>;
 using GlossyLobe = OneOfScattering<Phong, GgxReflection, RoughGlass>;  // and broad ones
 using SmoothLobe = OneOfSmooth<NotSmooth, Mirror, Dielectric, Pane>;
+
+inline DiffuseLobe diffuseLobe(const MaterialDescription&) {
+    return Lambertian{};
+}
 
 // The lobes of a surface at a point, with what each reflects or transmits.
 struct Lobes {

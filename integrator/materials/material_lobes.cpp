@@ -71,6 +71,7 @@ void setCoat(const MaterialDescription& material, const Numbers& numbers, const 
 
 void setSurface(const MaterialDescription& material, const Numbers& numbers, const LobePoint& at,
                 Lobes& lobes) {
+    lobes.diffuse = diffuseLobe(material);
     lobes.of(Lobe::kDiffuse) =
         numbers.reflectance(material.diffuse, material.diffuseTexture) * at.opacity;
     if (isBlack(material.glossy)) return;
