@@ -17,6 +17,7 @@ struct LommelSeeliger {
         const float c = std::max(1e-4f, dot(at.out, at.ng));
         return reflectance * (0.5f * (1.0f - c * std::log((1.0f + c) / c)));
     }
+    static float arrival(const LobePoint&) { return 1.0f; }
     static Rgb evaluate(const LobePoint& at, const Rgb& reflectance, const Vec3f& in) {
         const float i = dot(in, at.ng), o = dot(at.out, at.ng);
         return i > 0.0f ? reflectance * (0.25f * kInvPi * i / (i + std::max(o, 1e-4f))) : Rgb();
