@@ -127,13 +127,13 @@ TEST(MtlDialect, BlendersMetalsKeepTheirColour) {
     const std::string gold = "Ka 1 1 1\nKd 1 0.77 0.34\nKs 0.5 0.5 0.5\nNi 1.45\nd 1\nillum 3\n";
     const Result rough = read(kBlender3, "Ns 640\n" + gold);
     EXPECT_EQ(rough.material.kind, MaterialKind::kMirror);
-    EXPECT_FALSE(rough.material.fresnel);
+    EXPECT_TRUE(rough.material.fresnel);
     expectNear(rough.material.glossy, {1, 0.77f, 0.34f});
-    EXPECT_NEAR(rough.material.glossyExponent, (2 / 0.0016 - 2) / 4, 0.1);
+    EXPECT_NEAR(rough.material.roughness, 0.2, 1e-6);
     EXPECT_TRUE(rough.heard.list.empty());
     const Result smooth = read(kBlender3, "Ns 1000\n" + gold);
     EXPECT_TRUE(smooth.material.fresnel);
-    EXPECT_EQ(smooth.material.glossyExponent, 0.0f);
+    EXPECT_EQ(smooth.material.roughness, 0.0f);
     expectNear(smooth.material.glossy, {1, 0.77f, 0.34f});
     // Half of it metal, and the same by the keys for physically based materials.
     const Colour half{0.5f + 0.02f, 0.385f + 0.02f, 0.17f + 0.02f};
@@ -169,11 +169,50 @@ TEST(MtlDialect, BlendersAlphaIsNoGlass) {
     expectNear(glass.material.transmission, {0.9f, 1, 1});
     expectNear(read(kBlender3, "Kd 0.81 1 1\nNi 1.4\nPr 0\nTf 1 1 1\n").material.transmission,
                {0.81f, 1, 1});
-    EXPECT_TRUE(read(kBlender3, "Kd 1 1 1\nNi 1.4\nPr 0.5\nTf 1 1 1\n")
-                    .heard.has(Warning::kMaterialPart, "rough glass is not rendered yet"));
+    const Result frosted = read(kBlender3, "Kd 1 1 1\nNi 1.4\nPr 0.5\nTf 1 1 1\n");
+    EXPECT_EQ(frosted.material.roughness, 0.5f);
+    EXPECT_TRUE(frosted.heard.list.empty());
     // Blender writes no such illum: a person did.
     EXPECT_EQ(read(kBlender3, "Ns 250\nNi 1.33\nillum 7\n").material.kind,
               MaterialKind::kDielectric);
+}
+
+// On metal and glass a picture of roughness is what it is.
+TEST(MtlDialect, PicturesOfRoughnessOnMetalAndGlass) {
+    const Result metal =
+        read(MtlDialect::kBlender4, "Kd 1 1 1\nPm 1\nmap_Pr rough.png\nillum 3\n");
+    EXPECT_EQ(metal.material.kind, MaterialKind::kMirror);
+    EXPECT_EQ(metal.material.roughness, 1.0f);
+    ASSERT_TRUE(metal.material.roughnessTexture);
+    EXPECT_EQ(metal.material.roughnessTexture->file, "folder/rough.png");
+    EXPECT_TRUE(metal.material.roughnessTexture->isData);
+    const Result glass =
+        read(MtlDialect::kBlender4, "Kd 1 1 1\nTf 1 1 1\nNi 1.5\nmap_Pr rough.png\n");
+    EXPECT_EQ(glass.material.kind, MaterialKind::kDielectric);
+    EXPECT_TRUE(glass.material.roughnessTexture);
+}
+
+// Files of no known program: with Pm they are translated, with an illum of their own they say
+// themselves what is rough.
+TEST(MtlDialect, KeysForPhysicallyBasedMaterialsInAnyFile) {
+    const auto generic = [](const std::string& text) {
+        return read(MtlDialect::kGeneric, text).material;
+    };
+    const MaterialData gold = generic("Kd 1 0.77 0.34\nPm 1\nPr 0.3\n");
+    EXPECT_EQ(gold.kind, MaterialKind::kMirror);
+    EXPECT_EQ(gold.roughness, 0.3f);
+    expectNear(gold.glossy, {1, 0.77f, 0.34f});
+    const MaterialData plastic = generic("Kd 0.5 0.1 0.1\nPr 0.3\nPm 0\n");
+    EXPECT_EQ(plastic.kind, MaterialKind::kSurface);
+    expectNear(plastic.glossy, {0.04f, 0.04f, 0.04f});
+    const MaterialData mirror = generic("Ks 0.9 0.9 0.9\nillum 3\nPr 0.25\n");
+    EXPECT_EQ(mirror.kind, MaterialKind::kMirror);
+    EXPECT_FALSE(mirror.fresnel);
+    EXPECT_EQ(mirror.roughness, 0.25f);
+    expectNear(mirror.glossy, {0.9f, 0.9f, 0.9f});
+    const MaterialData glass = generic("illum 7\nNi 1.33\nPr 0.25\n");
+    EXPECT_EQ(glass.kind, MaterialKind::kDielectric);
+    EXPECT_EQ(glass.roughness, 0.25f);
 }
 
 TEST(MtlDialect, PicturesOfRoughnessAndMetalAreTold) {

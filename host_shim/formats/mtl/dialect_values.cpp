@@ -269,8 +269,10 @@ Translation translateToGeneric(MtlDialect dialect, MtlSection& section) {
             keepDiffuse(section);
             break;
         case MtlDialect::kGeneric:
-            // The keys for physically based materials mean what Blender's do.
-            if (section.number("Pr") || section.number("Pm") || section.hasMap("map_Pr"))
+            // The keys for physically based materials mean what Blender's do; who says how a mirror
+            // or glass is rough needs no more than that.
+            if (section.number("Pm") || ((section.number("Pr") || section.hasMap("map_Pr")) &&
+                                         section.number("illum").value_or(2) <= 2))
                 return PrincipledSection(MtlDialect::kBlender4, section).translate();
             break;
         case MtlDialect::kMcGuire:

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Rough metal, rough glass and coats in whole renders: invisible in an even sky where they absorb
+// nothing, and the same by photons as by paths in a room.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/support/scene_maker.h"
+
+namespace pm::test {
+namespace {
+
+MaterialDescription metal(float roughness, Rgb colour = Rgb(1.0f)) {
+    MaterialDescription m;
+    m.kind = MaterialKind::kMirror;
+    m.glossy = colour;
+    m.roughness = roughness;
+    return m;
+}
+
+MaterialDescription glass(float roughness) {
+    MaterialDescription m;
+    m.kind = MaterialKind::kDielectric;
+    m.roughness = roughness;
+    return m;
+}
+
+MaterialDescription coated(float roughness, Rgb below = Rgb(1.0f)) {
+    MaterialDescription m;
+    m.diffuse = below;
+    m.glossy = Rgb(0.04f);
+    m.roughness = roughness;
+    return m;
+}
+
+void expectInvisible(const MaterialDescription& material, IntegratorKind integrator,
+                     double tolerance) {
+    SceneMaker maker;
+    maker.sphere({0, 0, 0}, 1, maker.material(material));
+    maker.sky(Rgb(1.0f));
+    maker.camera({0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 20);
+    RenderSettings settings = smallFrame(16, 16, integrator, 16, 4);
+    settings.photons = 20'000;
+    const MeasuredLayers found = measure(maker.build(), settings, {2, 2, 14, 14});
+    EXPECT_TRUE(agrees(found.beauty, Rgb(1.0f), tolerance));
+}
+
+TEST(RoughSurfaces, AreInvisibleInAnEvenSky) {
+    for (const IntegratorKind integrator : {IntegratorKind::kPath, IntegratorKind::kPhoton})
+        for (const float roughness : {0.1f, 0.4f, 0.8f}) {
+            SCOPED_TRACE(fmt::format("{} roughness {}",
+                                     integrator == IntegratorKind::kPath ? "path" : "photon",
+                                     roughness));
+            expectInvisible(metal(roughness), integrator, 0.005);
+            expectInvisible(glass(roughness), integrator, 0.01);
+            expectInvisible(coated(roughness), integrator, 0.005);
+        }
+}
+
+// A room with all of them, lit from its ceiling.
+std::shared_ptr<const Scene> room() {
+    SceneMaker maker;
+    const auto white = maker.diffuse(Rgb(0.7f));
+    const auto floor = maker.material(coated(0.3f, Rgb(0.5f, 0.4f, 0.3f)));
+    maker.quad({-1, -1, 1}, {2, 0, 0}, {0, 0, -2}, floor);
+    maker.quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, white);
+    maker.quad({-1, -1, -1}, {2, 0, 0}, {0, 2, 0}, white);
+    maker.quad({-1, -1, 1}, {0, 0, -2}, {0, 2, 0}, maker.diffuse({0.6f, 0.1f, 0.1f}));
+    maker.quad({1, -1, -1}, {0, 0, 2}, {0, 2, 0}, maker.diffuse({0.1f, 0.5f, 0.1f}));
+    maker.quad({-0.5, 0.95, -0.5}, {1, 0, 0}, {0, 0, 1}, maker.diffuse({}, Rgb(8.0f)));
+    maker.sphere({0.5, -0.6, -0.4}, 0.4, maker.material(metal(0.3f, {0.9f, 0.8f, 0.5f})));
+    maker.sphere({-0.5, -0.6, -0.3}, 0.4, maker.material(metal(0.7f, {0.9f, 0.9f, 0.9f})));
+    maker.sphere({0.1, -0.65, 0.4}, 0.35, maker.material(glass(0.35f)));
+    maker.camera({0, 0, 4.2}, {0, 0, 0}, {0, 1, 0}, 36);
+    return maker.build();
+}
+
+// Regions of the frame: bias allowed 2 % of the frame's mean, as estimates' discs reach round
+// corners and blur caustics.
+TEST(RoughSurfaces, PhotonsAndPathsAgree) {
+    const auto scene = room();
+    std::vector<Rect> regions;
+    for (int y = 0; y < 32; y += 8)
+        for (int x = 0; x < 32; x += 8) regions.push_back({x, y, x + 8, y + 8});
+    regions.push_back({0, 0, 32, 32});
+    const auto render = [&](IntegratorKind integrator, std::uint32_t level) {
+        RenderSettings settings = smallFrame(32, 32, integrator, 16, level);
+        settings.photons = 60'000;
+        return measureRegions(scene, settings, {0, 0, 32, 32}, regions);
+    };
+    const auto photon = render(IntegratorKind::kPhoton, 4), path = render(IntegratorKind::kPath, 6);
+    const double frame = path.back().beauty.mean[1];
+    double worst = 0;
+    for (std::size_t i = 0; i < regions.size(); ++i)
+        for (std::size_t c = 0; c < 3; ++c) {
+            const Measured &a = photon[i].beauty, &b = path[i].beauty;
+            const double error = std::hypot(a.standardError[c], b.standardError[c]);
+            const double off = std::abs(a.mean[c] - b.mean[c]) - 0.02 * frame;
+            worst = std::max(worst, off / error);
+            EXPECT_LT(off, 5 * error)
+                << "region " << i << " channel " << c << ": photon " << a.mean[c] << " +- "
+                << a.standardError[c] << ", path " << b.mean[c] << " +- " << b.standardError[c];
+        }
+    EXPECT_TRUE(agree(photon.back().beauty, path.back().beauty, 0.01));
+    fmt::print("    largest |z| beyond the bias {:.2f}; frame: photon {:.5f} path {:.5f}\n", worst,
+               photon.back().beauty.mean[1], frame);
+}
+
+}  // namespace
+}  // namespace pm::test
