@@ -20,7 +20,7 @@
 namespace pm::test {
 namespace {
 
-std::uint32_t glass(SceneMaker& maker) {
+std::uint32_t addGlass(SceneMaker& maker) {
     MaterialDescription m;
     m.kind = MaterialKind::kDielectric;
     m.ior = 1.5f;
@@ -28,7 +28,7 @@ std::uint32_t glass(SceneMaker& maker) {
     return maker.material(m);
 }
 
-std::uint32_t mirror(SceneMaker& maker) {
+std::uint32_t addMirror(SceneMaker& maker) {
     MaterialDescription m;
     m.kind = MaterialKind::kMirror;
     m.glossy = {0.9f, 0.8f, 0.7f};
@@ -58,7 +58,7 @@ struct TestScene {
 
 std::vector<TestScene> testScenes() {
     const auto ball = [](SceneMaker& m, Vec3d at, double radius) {
-        m.sphere(at, radius, glass(m));
+        m.sphere(at, radius, addGlass(m));
     };
     return {
         {"area light",
@@ -70,7 +70,7 @@ std::vector<TestScene> testScenes() {
          [=](SceneMaker& m) {
              m.sphere({-0.3, 0.5, 0.2}, 0.2, lamp(m));
              ball(m, {0.3, -0.5, 0.1}, 0.2);
-             m.sphere({0.4, 0.5, -0.3}, 0.15, mirror(m));
+             m.sphere({0.4, 0.5, -0.3}, 0.15, addMirror(m));
          }},
         {"sphere light smaller than its caster",
          [=](SceneMaker& m) {
@@ -110,7 +110,7 @@ std::vector<TestScene> testScenes() {
          [=](SceneMaker& m) {
              m.pointLight({0.05, 0.1, 0}, {1, 1, 2});
              m.sphere({-0.3, 0.2, 0.1}, 0.1, lamp(m));
-             m.meshSphere({-0.1, 0.1, 0}, 0.6, glass(m), false, 8);
+             m.meshSphere({-0.1, 0.1, 0}, 0.6, addGlass(m), false, 8);
          }},
         {"many lights, half of them hidden",
          [=](SceneMaker& m) {
@@ -137,8 +137,8 @@ std::vector<TestScene> testScenes() {
         {"mirrors as meshes",
          [=](SceneMaker& m) {
              ceilingLamp(m, 0.9, 0.2);
-             m.quad({-0.9, -0.5, -0.8}, {1.2, 0, 0}, {0, 0.3, -0.1}, mirror(m), 4);
-             m.box({0.3, -0.9, 0.1}, {0.6, -0.5, 0.5}, glass(m), false);
+             m.quad({-0.9, -0.5, -0.8}, {1.2, 0, 0}, {0, 0.3, -0.1}, addMirror(m), 4);
+             m.box({0.3, -0.9, 0.1}, {0.6, -0.5, 0.5}, addGlass(m), false);
          }},
     };
 }
@@ -258,9 +258,9 @@ TEST(AimedEmission, SmallGlassIsHit) {
                 }
                 const double h = radius * 0.77;  // as large a cross section on the average
                 if (asBox)
-                    maker.box(way * d - Vec3d(h), way * d + Vec3d(h), glass(maker), false);
+                    maker.box(way * d - Vec3d(h), way * d + Vec3d(h), addGlass(maker), false);
                 else
-                    maker.sphere(way * d, radius, glass(maker));
+                    maker.sphere(way * d, radius, addGlass(maker));
                 const double share = hitShare(maker);
                 EXPECT_GE(share, asBox ? 0.5 : 0.9)
                     << static_cast<int>(kind) << " " << way.x << " " << asBox;
@@ -320,8 +320,8 @@ TEST(AimedEmission, LearnsWhatIsHidden) {
     SceneMaker maker = room();
     ceilingLamp(maker, 0.9, 0.1, {0.5, 0, 0});
     ceilingLamp(maker, 0.9, 0.1, {-0.5, 0, 0});
-    maker.sphere({0.6, -0.7, 0.3}, 0.2, glass(maker));
-    maker.sphere({-0.6, -0.7, 0.3}, 0.2, glass(maker));
+    maker.sphere({0.6, -0.7, 0.3}, 0.2, addGlass(maker));
+    maker.sphere({-0.6, -0.7, 0.3}, 0.2, addGlass(maker));
     // A lid over the left lamp; the right one sees both balls but for the left one's cover.
     maker.quad({-0.9, 0.8, -0.5}, {0.8, 0, 0}, {0, 0, 1}, maker.diffuse(Rgb(0.2f)));
     maker.quad({-0.9, -0.4, -0.1}, {0.65, 0, 0}, {0, 0, 0.8}, maker.diffuse(Rgb(0.2f)));
@@ -355,7 +355,7 @@ TEST(AimedEmission, NothingToAimAt) {
                           with.photons.size() * sizeof(Photon)),
               0);
     SceneMaker dark = room();
-    dark.sphere({0, 0, 0}, 0.3, glass(dark));
+    dark.sphere({0, 0, 0}, 0.3, addGlass(dark));
     EXPECT_TRUE(Aimed(dark.build()).aim.empty());
 }
 
@@ -364,7 +364,7 @@ TEST(AimedEmission, ManyLightsCostLittle) {
     SceneMaker maker = room();
     const auto material = lamp(maker);
     maker.quad({-0.9, 0.9, -0.9}, {1.8, 0, 0}, {0, 0, 1.8}, material, 71);
-    const auto g = glass(maker);
+    const auto g = addGlass(maker);
     for (int i = 0; i < 100; ++i)
         maker.sphere({-0.9 + 0.2 * (i % 10), -0.5, -0.9 + 0.2 * (i / 10)}, 0.03, g);
     const Aimed aimed(maker.build());
