@@ -324,5 +324,24 @@ TEST(CommandLine, whatAScenesMaterialsAre) {
               "blender4, 3dsmax, maya, rhino, sketchup, zbrush, mcguire");
 }
 
+TEST(CommandLine, SkiesAndEnvironments) {
+    const Options sun = parseCommandLine({"a.obj", "--sun", "135,40", "--turbidity", "5"});
+    ASSERT_TRUE(sun.sky.sun);
+    EXPECT_EQ(*sun.sky.sun, (std::array<double, 2>{135, 40}));
+    EXPECT_EQ(sun.sky.turbidity, 5);
+    const Options picture =
+        parseCommandLine({"a.obj", "--environment", "sky.exr", "--environment-rotation", "90",
+                          "--environment-strength", "0.5"});
+    EXPECT_EQ(picture.sky.environment, "sky.exr");
+    EXPECT_EQ(picture.sky.rotation, 90);
+    EXPECT_EQ(picture.sky.strength, 0.5);
+    for (const char* wrong : {"135", "135,0", "135,91", "a,b", "400,40", "1,2,3"})
+        EXPECT_TRUE(refusal({"--sun", wrong}).starts_with("2 --sun")) << wrong;
+    EXPECT_EQ(refusal({"--turbidity", "3"}), "2 --turbidity needs --sun");
+    EXPECT_EQ(refusal({"--environment-rotation", "3"}),
+              "2 --environment-rotation needs --environment");
+    EXPECT_TRUE(refusal({"--sun", "1,2", "--environment", "a.exr"}).starts_with("2 --sun makes"));
+}
+
 }  // namespace
 }  // namespace pm::host::test

@@ -179,8 +179,7 @@ TEST(MtlDialect, BlendersAlphaIsNoGlass) {
 
 // On metal and glass a picture of roughness is what it is.
 TEST(MtlDialect, PicturesOfRoughnessOnMetalAndGlass) {
-    const Result metal =
-        read(MtlDialect::kBlender4, "Kd 1 1 1\nPm 1\nmap_Pr rough.png\nillum 3\n");
+    const Result metal = read(MtlDialect::kBlender4, "Kd 1 1 1\nPm 1\nmap_Pr rough.png\nillum 3\n");
     EXPECT_EQ(metal.material.kind, MaterialKind::kMirror);
     EXPECT_EQ(metal.material.roughness, 1.0f);
     ASSERT_TRUE(metal.material.roughnessTexture);

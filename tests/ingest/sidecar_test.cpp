@@ -174,7 +174,12 @@ TEST(Sidecar, RefusesWithPlaceValueAndWhatIsAllowed) {
         {R"("lights": 3)", "lights is 3; it must be a list"},
         {R"("lamps": [])",
          "it has a 'lamps'; allowed are $schema, schema, instances, spheres, lights, environment, "
-         "cameras"},
+         "sky, cameras"},
+        {R"("sky": {"azimuth": 0, "elevation": 0})",
+         "sky.elevation is 0; it must be in (0, 90] degrees"},
+        {R"("sky": {"elevation": 30})", "sky has no 'azimuth', which it must have"},
+        {R"("sky": {"azimuth": 0, "elevation": 9}, "environment": {"radiance": 1})",
+         "it has environment and sky; it is one of them"},
         {R"("instances": [{"matrix": [1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0]}])",
          "instances[0].matrix has no inverse; it must not flatten space"},
         {R"("instances": [{"scale": [1, 0, 1]}])",

@@ -133,7 +133,7 @@ Sidecar readSidecar(std::string_view text, const std::string& file, SceneFiles& 
     for (const JsonPlace& at : all.entriesOf("spheres")) sidecar.spheres.push_back(readSphere(at));
     for (const JsonPlace& at : all.entriesOf("lights")) sidecar.lights.push_back(readLight(at));
     if (all.has("environment") && all.has("sky"))
-        all.refuse("has environment and sky; it is one of them");
+        all.refuse(" has environment and sky; it is one of them");
     if (all.has("sky")) sidecar.sky = readSky(all.member("sky"));
     if (all.has("environment"))
         sidecar.environment = readEnvironment(all.member("environment"), files);
