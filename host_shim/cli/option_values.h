@@ -20,7 +20,7 @@ double numberValue(const std::string& option, std::string_view text, double low,
                    const std::string& orElse = {});
 std::int64_t integerValue(const std::string& option, std::string_view text, std::int64_t low,
                           std::int64_t high);
-std::array<double, 2> sunValue(const std::string& option, std::string_view text);  // AZ,EL
+std::array<double, 2> sunValue(const std::string& option, std::string_view text);          // AZ,EL
 std::array<double, 3> pointValue(const std::string& option, std::string_view text);        // x,y,z
 std::array<std::int32_t, 2> sizeValue(const std::string& option, std::string_view text);   // WxH
 std::array<std::int32_t, 2> pixelValue(const std::string& option, std::string_view text);  // X,Y

@@ -50,8 +50,8 @@ struct CheckOptions {
 
 // A light that is infinitely far, in place of what the scene has.
 struct SkyOptions {
-    std::filesystem::path environment;           // a picture; empty: none
-    std::optional<std::array<double, 2>> sun;    // azimuth, elevation; degrees
+    std::filesystem::path environment;         // a picture; empty: none
+    std::optional<std::array<double, 2>> sun;  // azimuth, elevation; degrees
     std::optional<double> rotation, strength, turbidity;
 };
 

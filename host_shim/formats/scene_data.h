@@ -43,8 +43,8 @@ struct MaterialData {
     std::array<float, 3> emission{};  // radiance, W m^-2 sr^-1
     bool emitsFromBothSides{};        // see addBackSides
     float transparency{};
-    std::optional<TextureUse> diffuseTexture, glossyTexture, glossyExponentTexture, roughnessTexture,
-        transmissionTexture, emissionTexture, opacityTexture;
+    std::optional<TextureUse> diffuseTexture, glossyTexture, glossyExponentTexture,
+        roughnessTexture, transmissionTexture, emissionTexture, opacityTexture;
 
     bool emits() const { return emission[0] > 0 || emission[1] > 0 || emission[2] > 0; }
 };

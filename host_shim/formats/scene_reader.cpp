@@ -11,7 +11,8 @@ std::vector<std::filesystem::path> filesOf(const SceneData& scene) {
     for (const MaterialData& material : scene.materials) {
         for (const auto* use :
              {&material.diffuseTexture, &material.glossyTexture, &material.glossyExponentTexture,
-              &material.roughnessTexture,              &material.transmissionTexture, &material.emissionTexture, &material.opacityTexture}) {
+              &material.roughnessTexture, &material.transmissionTexture, &material.emissionTexture,
+              &material.opacityTexture}) {
             if (*use) files.emplace_back((*use)->file);
         }
     }

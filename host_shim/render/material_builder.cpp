@@ -178,8 +178,7 @@ void MaterialBuilder::setRoughness(const MaterialData& material, PmrMaterial han
     m_context.check(m_context.api().setParameter(&number), of);
     picture.name = "roughnessTexture";
     picture.texture = texture(material.roughnessTexture, TextureKind::kData, of);
-    if (picture.texture != nullptr)
-        m_context.check(m_context.api().setParameter(&picture), of);
+    if (picture.texture != nullptr) m_context.check(m_context.api().setParameter(&picture), of);
 }
 
 }  // namespace pm::host

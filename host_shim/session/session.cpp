@@ -209,6 +209,7 @@ void Session::buildScene(const ColourPipeline& colour, MaterialBuilder& material
     m_camera = camera;
     m_bounds = data.bounds;
     m_hasLight = data.hasLight();
+    m_hasSky = data.sky.has_value();
     if (camera.upWasReplaced) {
         const bool isOfFile = !m_options.camera.up && !data.cameras.empty();
         warn(Warning::kCamera,

@@ -101,6 +101,7 @@ class Session {
     std::optional<CameraPose> m_camera;  // nothing before the scene is read, and of merges
     Bounds m_bounds;                     // of the scene
     bool m_hasLight{};                   // of its own
+    bool m_hasSky{};
     bool m_hasCameraLight{};
     // Statistics and report; not before it is known that they overwrite no input.
     bool m_mayWriteStatistics{};

@@ -125,11 +125,12 @@ const Picture& Session::pilot(const PluginScene& scene, const ColourPipeline& co
     return *m_pilot;
 }
 
-// Pictures through a view that was chosen, or that are to match others, keep one exposure.
+// Pictures through a view that was chosen, or that are to match others, keep one exposure; and
+// those of a sky, whose unit is such that they need none.
 bool Session::measuresExposure(const ColourPipeline& colour) const {
     if (m_options.exposure.kind != ExposureOption::Kind::kNotGiven)
         return m_options.exposure.kind == ExposureOption::Kind::kAuto;
-    return m_options.exposure.mayBeMeasured && m_options.colour.view.empty() &&
+    return m_options.exposure.mayBeMeasured && !m_hasSky && m_options.colour.view.empty() &&
            m_options.reference.empty() && colour.hasBuiltInConfig();
 }
 

@@ -60,7 +60,8 @@ class Bsdf {
 
     // By the diffuse lobe: radiance that leaves along `out` of a radiance of 1 from everywhere.
     Rgb diffuse() const;
-    // What light from `out` counts for in the irradiance of which that is, beside light of the mean.
+    // What light from `out` counts for in the irradiance of which that is, beside light of the
+    // mean.
     float arrival() const;
     // Whether that is the same from all sides.
     bool arrivesEvenly() const;

@@ -24,7 +24,7 @@ struct MaterialDescription {
     Rgb diffuse;
     Rgb glossy;
     float glossyExponent = 0.0f;
-    float roughness = 0.0f;  // of facets; 0: by the exponent, or smooth
+    float roughness = 0.0f;      // of facets; 0: by the exponent, or smooth
     Rgb conductorN, conductorK;  // of metal; k black: the colour is its reflectance at any angle
     float ior = 1.5f;
     Rgb transmission{1.0f};
@@ -43,7 +43,8 @@ struct MaterialDescription {
 inline bool hasTexture(const MaterialDescription& material) {
     for (const std::int32_t texture :
          {material.diffuseTexture, material.glossyTexture, material.glossyExponentTexture,
-          material.roughnessTexture, material.transmissionTexture, material.emissionTexture, material.opacityTexture})
+          material.roughnessTexture, material.transmissionTexture, material.emissionTexture,
+          material.opacityTexture})
         if (texture != kNoTexture) return true;
     return false;
 }
@@ -138,7 +139,7 @@ inline bool castsCaustics(const MaterialDescription& material) {
         material.glossyTexture == kNoTexture && !(maxChannel(material.glossy) > kCarriesNothing))
         return false;
     const bool mayBeBroad = material.kind == MaterialKind::kSurface ||
-                         (material.kind == MaterialKind::kMirror && isRough(material));
+                            (material.kind == MaterialKind::kMirror && isRough(material));
     return !(mayBeBroad && isBroad(material));
 }
 

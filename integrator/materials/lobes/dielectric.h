@@ -9,8 +9,8 @@ namespace pm {
 
 // A smooth boundary of glass or water.
 struct Dielectric {
-    Rgb tint;          // of what it lets through
-    float eta = 1.0f;  // index on the far side over the index on this side
+    Rgb tint;                             // of what it lets through
+    float eta = 1.0f;                     // index on the far side over the index on this side
     PhotonWays reflected{}, refracted{};  // of photons, which shares() finds
 
     // Keeps the photons' ways: they take as long to find as all else, and sample() wants them.

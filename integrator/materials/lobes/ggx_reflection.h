@@ -25,20 +25,20 @@ struct GgxReflection {
     // Of even light along a cosine.
     Rgb albedo(float cosine) const {
         const GgxShares shares = GgxAlbedo::table().at(cosine, ggx.alpha);
-        const Rgb once = fresnel.curve == Fresnel::Curve::kSchlick
-                             ? fresnel.tint * shares.normal +
-                                   (Rgb(1.0f) - fresnel.tint) * shares.grazing
-                             : fresnel.at(cosine) * shares.normal;
+        const Rgb once =
+            fresnel.curve == Fresnel::Curve::kSchlick
+                ? fresnel.tint * shares.normal + (Rgb(1.0f) - fresnel.tint) * shares.grazing
+                : fresnel.at(cosine) * shares.normal;
         return once + ofMore() * shares.missing();
     }
 
     // Its mean over directions, each by its cosine.
     Rgb mean() const {
         const GgxShares shares = GgxAlbedo::table().mean(ggx.alpha);
-        const Rgb once = fresnel.curve == Fresnel::Curve::kSchlick
-                             ? fresnel.tint * shares.normal +
-                                   (Rgb(1.0f) - fresnel.tint) * shares.grazing
-                             : fresnel.mean() * shares.normal;
+        const Rgb once =
+            fresnel.curve == Fresnel::Curve::kSchlick
+                ? fresnel.tint * shares.normal + (Rgb(1.0f) - fresnel.tint) * shares.grazing
+                : fresnel.mean() * shares.normal;
         return once + ofMore() * shares.missing();
     }
     // The cosine that counts: none is so small that nothing is reflected.

@@ -33,8 +33,8 @@ float integrate(float cosine, float alpha, float eta) {
         if (!(cos2 > 0.0f)) continue;
         const Vec3f beyond = h * (seen / eta - std::sqrt(cos2)) - out / eta;
         if (beyond.z < 0.0f)
-            sum += static_cast<double>((1.0f - reflected) * ggx.maskingOfBoth(out, beyond) /
-                                       masking);
+            sum +=
+                static_cast<double>((1.0f - reflected) * ggx.maskingOfBoth(out, beyond) / masking);
     }
     return static_cast<float>(sum / kNormals);
 }

@@ -41,7 +41,7 @@ concept DiffuseModel = ScatteringModel<T> &&
 // that the sample says, and finishes the weight; pdfSolidAngle is the probability of the choice.
 template <typename T>
 concept SmoothModel = requires(T& made, const T& lobe, const LobePoint& at, float u,
-                              BsdfSample& sample) {
+                               BsdfSample& sample) {
     { made.shares(at) } -> std::same_as<SmoothShares>;
     { lobe.sendsByWays(at) } -> std::same_as<bool>;
     { lobe.etaSquared() } -> std::same_as<float>;

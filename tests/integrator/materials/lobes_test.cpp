@@ -35,8 +35,8 @@ LobePoint seenAt(double degrees, const Vec3f& shadingNormal, Transport transport
 }
 
 // Weights are values over densities, to a per cent: by a facet that is seen at a flat angle, and
-// found again from the directions, no more is left of floats. Returns the mean of what is reflected, over that of a colour
-// of 1.
+// found again from the directions, no more is left of floats. Returns the mean of what is
+// reflected, over that of a colour of 1.
 template <typename Model>
 double reflectedBy(const Model& model, const LobePoint& at) {
     constexpr int kCount = 20'000;

@@ -63,11 +63,10 @@ TEST(RoughLobes, ClearGlassKeepsAll) {
         for (const bool isInside : {false, true})
             for (const float roughness : kRoughness)
                 for (const float cosine : kCosines) {
-                    SCOPED_TRACE(testing::Message() << "ior " << ior << (isInside ? " inside" : "")
-                                                    << " roughness " << roughness << " cosine "
-                                                    << cosine);
-                    const RoughGlass glass{
-                        {roughness * roughness}, Rgb(1.0f), &table, isInside};
+                    SCOPED_TRACE(testing::Message()
+                                 << "ior " << ior << (isInside ? " inside" : "") << " roughness "
+                                 << roughness << " cosine " << cosine);
+                    const RoughGlass glass{{roughness * roughness}, Rgb(1.0f), &table, isInside};
                     expectWhite(keptBy(glass, seenAt(cosine)), cosine);
                 }
     }
@@ -131,8 +130,8 @@ TEST(RoughLobes, WhiteUnderACoatReflectsAll) {
     for (const float f0 : {0.04f, 0.3f})
         for (const float roughness : {0.0f, 0.1f, 0.3f, 0.6f, 1.0f})
             for (const float cosine : kCosines) {
-                SCOPED_TRACE(testing::Message() << "f0 " << f0 << " roughness " << roughness
-                                                << " cosine " << cosine);
+                SCOPED_TRACE(testing::Message()
+                             << "f0 " << f0 << " roughness " << roughness << " cosine " << cosine);
                 const CoatAlbedo coat{f0, roughness * roughness};
                 const LobePoint at = seenAt(cosine);
                 Random random(6);
@@ -163,8 +162,7 @@ TEST(RoughLobes, ReflectionIsReciprocal) {
             const LobePoint at(out, {0, 0, 1}, {0, 0, 1}, Transport::kRadiance);
             return model.evaluate(at, model.albedo(model.cosine(at)), in).g / in.z;
         };
-        const GgxReflection metal{{roughness * roughness},
-                                  {Fresnel::Curve::kSchlick, Rgb(0.5f)}};
+        const GgxReflection metal{{roughness * roughness}, {Fresnel::Curve::kSchlick, Rgb(0.5f)}};
         const RoughGlass glass{{roughness * roughness}};
         EXPECT_NEAR(f(metal, a, b), f(metal, b, a), 2e-3f * f(metal, a, b) + 1e-6f);
         EXPECT_NEAR(f(glass, a, b), f(glass, b, a), 2e-3f * f(glass, a, b) + 1e-6f);
