@@ -25,6 +25,7 @@ struct TextureUse {
     std::array<float, 2> offset{};
     float base{0.0f};
     float gain{1.0f};
+    float strength{1.0f};  // of a normal map
 };
 
 enum class MaterialKind { kSurface, kMirror, kDielectric };
@@ -44,7 +45,8 @@ struct MaterialData {
     bool emitsFromBothSides{};        // see addBackSides
     float transparency{};
     std::optional<TextureUse> diffuseTexture, glossyTexture, glossyExponentTexture,
-        roughnessTexture, transmissionTexture, emissionTexture, opacityTexture;
+        roughnessTexture, transmissionTexture, emissionTexture, opacityTexture,
+        normalTexture;  // in tangent space
 
     bool emits() const { return emission[0] > 0 || emission[1] > 0 || emission[2] > 0; }
 };

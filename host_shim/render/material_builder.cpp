@@ -32,14 +32,15 @@ void store(const Rgb3& colour, float largest, float (&target)[3]) {
 
 using TextureOfKind = std::pair<const std::optional<TextureUse>*, TextureKind>;
 
-std::array<TextureOfKind, 7> usesOf(const MaterialData& material) {
+std::array<TextureOfKind, 8> usesOf(const MaterialData& material) {
     return {{{&material.diffuseTexture, TextureKind::kColour},
              {&material.glossyTexture, TextureKind::kColour},
              {&material.glossyExponentTexture, TextureKind::kData},
              {&material.roughnessTexture, TextureKind::kData},
              {&material.transmissionTexture, TextureKind::kColour},
              {&material.emissionTexture, TextureKind::kColour},
-             {&material.opacityTexture, TextureKind::kMask}}};
+             {&material.opacityTexture, TextureKind::kMask},
+             {&material.normalTexture, TextureKind::kData}}};
 }
 
 TextureRequest requestOf(const TextureUse& use, TextureKind kind) {
@@ -159,26 +160,37 @@ PmrMaterial MaterialBuilder::build(const MaterialData& material) {
     PmrMaterial handle = nullptr;
     m_context.check(m_context.api().createMaterial(m_context.handle(), &desc, &handle), of);
     m_materials.push_back(handle);
-    setRoughness(material, handle, of);
+    setByName(material, handle, of);
     return handle;
 }
 
 // What is in no struct is set by name.
-void MaterialBuilder::setRoughness(const MaterialData& material, PmrMaterial handle,
-                                   const std::string& of) {
-    if (!(material.roughness > 0)) return;
-    const double roughness = static_cast<double>(material.roughness);
-    auto number = PMR_INIT(PmrParameterDesc);
-    number.object = PMR_OBJECT_MATERIAL;
-    number.material = handle;
-    auto picture = number;
-    number.name = "roughness";
-    number.numbers = &roughness;
-    number.numberCount = 1;
-    m_context.check(m_context.api().setParameter(&number), of);
-    picture.name = "roughnessTexture";
-    picture.texture = texture(material.roughnessTexture, TextureKind::kData, of);
-    if (picture.texture != nullptr) m_context.check(m_context.api().setParameter(&picture), of);
+void MaterialBuilder::setByName(const MaterialData& material, PmrMaterial handle,
+                                const std::string& of) {
+    auto desc = PMR_INIT(PmrParameterDesc);
+    desc.object = PMR_OBJECT_MATERIAL;
+    desc.material = handle;
+    const auto setNumber = [&](const char* name, float number) {
+        const double value = static_cast<double>(number);
+        PmrParameterDesc own = desc;
+        own.name = name;
+        own.numbers = &value;
+        own.numberCount = 1;
+        m_context.check(m_context.api().setParameter(&own), of);
+    };
+    const auto setTexture = [&](const char* name, const std::optional<TextureUse>& use) {
+        PmrParameterDesc own = desc;
+        own.name = name;
+        own.texture = texture(use, TextureKind::kData, of);
+        if (own.texture != nullptr) m_context.check(m_context.api().setParameter(&own), of);
+        return own.texture != nullptr;
+    };
+    if (material.roughness > 0) {
+        setNumber("roughness", material.roughness);
+        setTexture("roughnessTexture", material.roughnessTexture);
+    }
+    if (setTexture("normalTexture", material.normalTexture))
+        setNumber("normalScale", material.normalTexture->strength);
 }
 
 }  // namespace pm::host

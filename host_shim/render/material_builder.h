@@ -41,7 +41,7 @@ class MaterialBuilder {
   private:
     void tell(const std::string& file, const BakedTexture& baked);
     TexturePreparer& preparer();
-    void setRoughness(const MaterialData& material, PmrMaterial handle, const std::string& of);
+    void setByName(const MaterialData& material, PmrMaterial handle, const std::string& of);
     void convertColours(const MaterialData& material, PmrMaterialDesc& desc) const;
 
     const PluginContext& m_context;

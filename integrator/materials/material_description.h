@@ -29,6 +29,8 @@ struct MaterialDescription {
     float ior = 1.5f;
     Rgb transmission{1.0f};
     Rgb emission;
+    Rgb attenuationColour{1.0f};       // of a dielectric: what is left of light after the distance
+    float attenuationDistance = 0.0f;  // scene units; 0: it absorbs nothing
     float transparency = 0.0f;
     std::int32_t diffuseTexture = kNoTexture;
     std::int32_t glossyTexture = kNoTexture;
@@ -37,14 +39,23 @@ struct MaterialDescription {
     std::int32_t transmissionTexture = kNoTexture;
     std::int32_t emissionTexture = kNoTexture;
     std::int32_t opacityTexture = kNoTexture;
+    std::int32_t normalTexture =
+        kNoTexture;            // in tangent space, its components as 8 bits have them
+    float normalScale = 1.0f;  // of the components along the surface
 };
+
+// Whether light loses on its way inside.
+inline bool absorbs(const MaterialDescription& material) {
+    return material.kind == MaterialKind::kDielectric && material.attenuationDistance > 0.0f &&
+           material.attenuationColour != Rgb(1.0f);
+}
 
 // Whether the material looks up a texture.
 inline bool hasTexture(const MaterialDescription& material) {
     for (const std::int32_t texture :
          {material.diffuseTexture, material.glossyTexture, material.glossyExponentTexture,
           material.roughnessTexture, material.transmissionTexture, material.emissionTexture,
-          material.opacityTexture})
+          material.opacityTexture, material.normalTexture})
         if (texture != kNoTexture) return true;
     return false;
 }

@@ -17,10 +17,12 @@
 #include "integrator/lights/lamp_texture.h"
 #include "integrator/lights/lamp_triangle.h"
 #include "integrator/lights/light.h"
+#include "integrator/materials/absorption.h"
 #include "integrator/materials/materials.h"
 #include "integrator/rays/ray_tracer.h"
 #include "integrator/scene/scene_core.h"
 #include "integrator/scene/scene_description.h"
+#include "integrator/shapes/normal_map.h"
 #include "integrator/shapes/surface.h"
 #include "integrator/values/notice.h"
 
@@ -84,6 +86,10 @@ class Scene {
 
     const SceneDescription& description() const { return m_description; }
     const Materials& materials() const { return m_materials; }
+    // What is left of light that came to a surface by a ray: less than 1 inside of what absorbs.
+    Rgb leftAlong(const Ray& ray, const Surface& surface) const {
+        return m_absorbs ? leftOnTheWay(m_materials[surface.material], surface, ray) : Rgb(1.0f);
+    }
     const MaterialDescription& material(std::uint32_t index) const {
         return m_description.materials[index];
     }
@@ -195,6 +201,8 @@ class Scene {
     bool areOne(const Ray& ray, const RayHit& crossing, const RayHit& next) const;
     void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, const Corner& corner,
                            double b1, double b2, Surface& surface) const;
+    void turnNormal(const MaterialDescription& material, const TexturedEdges& edges,
+                    Surface& surface) const;
     // Of a texture of lights; gives notice the first time.
     bool findBadTexels(std::int32_t texture, const CancelCheck& cancel);
     LampTexture lookAtLamp(const SurfaceLight& light, std::size_t mostLooks,
@@ -223,6 +231,8 @@ class Scene {
     double m_triangleArea = 0;  // of all
     bool m_isFlat = false, m_hasSheets = false;
     bool m_letsThrough = false;  // some material does
+    bool m_hasNormalMaps = false;
+    bool m_absorbs = false;  // some material does
     bool m_hasInstances = false, m_viewersDiffer = false;
     RayTracer m_tracer;  // last: it refers to the shapes' arrays and is destroyed before them
     std::unique_ptr<const CoincidentFaces> m_coincident;  // null where there are none

@@ -11,6 +11,7 @@
 #include "integrator/scene/coincident_faces.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/shape_record.h"
+#include "integrator/shapes/normal_map.h"
 #include "integrator/shapes/surface.h"
 
 namespace pm {
@@ -161,8 +162,21 @@ void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive
                     t2 = mesh.texcoords[at[2]];
         const float f0 = 1.0f - f1 - f2;
         surface.uv = {t0.x * f0 + t1.x * f1 + t2.x * f2, t0.y * f0 + t1.y * f1 + t2.y * f2};
+        if (m_hasNormalMaps)
+            turnNormal(m_materials[record.materialOf(primitive)],
+                       {e1, e2, {t1.x - t0.x, t1.y - t0.y}, {t2.x - t0.x, t2.y - t0.y}}, surface);
     }
     nameSurface(record, primitive, surface);
+}
+
+void Scene::turnNormal(const MaterialDescription& material, const TexturedEdges& edges,
+                       Surface& surface) const {
+    if (material.normalTexture == kNoTexture) return;
+    const Texel texel = m_materials.textures->lookUp(material.normalTexture, surface.uv, 0.0f);
+    const Vec3f mapped{decodedNormal(texel.r) * material.normalScale,
+                       decodedNormal(texel.g) * material.normalScale, decodedNormal(texel.b)};
+    surface.shadingNormal =
+        mappedNormal(surface.shadingNormal, surface.geometricNormal, edges, mapped);
 }
 
 void Scene::nameSurface(const ShapeRecord& record, std::uint32_t primitive, Surface& surface) {

@@ -191,6 +191,14 @@ TEST(MtlDialect, PicturesOfRoughnessOnMetalAndGlass) {
     EXPECT_TRUE(glass.material.roughnessTexture);
 }
 
+// Blender's exporters write the picture of a normal map as a bump map.
+TEST(MtlDialect, BlendersBumpIsANormalMap) {
+    const Result r = read(kBlender3, "Ns 250\nKd 1 1 1\nillum 2\nmap_Bump -bm 0.8 n.png\n");
+    ASSERT_TRUE(r.material.normalTexture);
+    EXPECT_EQ(r.material.normalTexture->strength, 0.8f);
+    EXPECT_TRUE(r.heard.list.empty());
+}
+
 // Files of no known program: with Pm they are translated, with an illum of their own they say
 // themselves what is rough.
 TEST(MtlDialect, KeysForPhysicallyBasedMaterialsInAnyFile) {

@@ -126,6 +126,19 @@ TEST(Material, noSurfaceReflectsMoreThanItGets) {
     EXPECT_TRUE(r.heard.has(Warning::kMaterialValue, "Kd + Ks"));
 }
 
+TEST(Material, normalMaps) {
+    const Result r = read("norm -bm 0.5 -s 2 2 n.png\n");
+    ASSERT_TRUE(r.material.normalTexture);
+    EXPECT_EQ(r.material.normalTexture->file, "folder/n.png");
+    EXPECT_TRUE(r.material.normalTexture->isData);
+    EXPECT_EQ(r.material.normalTexture->strength, 0.5f);
+    EXPECT_EQ(r.material.normalTexture->scale, (std::array<float, 2>{2, 2}));
+    EXPECT_EQ(read("map_Kn n.png\n").material.normalTexture->strength, 1.0f);
+    EXPECT_TRUE(read("norm -bm -2 n.png\n")
+                    .heard.has(Warning::kMaterialValue, "-bm -2 is outside [0, 100]"));
+    EXPECT_FALSE(read("map_bump b.png\n").material.normalTexture) << "that is a height";
+}
+
 TEST(Material, maps) {
     const Result r = read(
         "map_Kd -s 2 3 -o 0.5 -mm 0.1 0.5 -clamp on -colorspace sRGB my wood.png\n"

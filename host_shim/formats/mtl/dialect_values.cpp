@@ -24,10 +24,18 @@ double mean(const Colour& colour) {
 // Blender's Principled BSDF as its exporters write it.
 class PrincipledSection {
   public:
-    PrincipledSection(MtlDialect dialect, MtlSection& section)
-        : m_dialect(dialect), m_section(section) {}
+    // isBlenders: by its own exporter.
+    PrincipledSection(MtlDialect dialect, MtlSection& section, bool isBlenders = true)
+        : m_dialect(dialect), m_section(section), m_isBlenders(isBlenders) {}
 
     Translation translate() {
+        // What its exporters call a bump map is the picture of a normal map.
+        if (m_isBlenders && m_section.hasMap("map_bump") && !m_section.hasMap("norm")) {
+            m_section.maps["norm"] = m_section.maps["map_bump"];
+            if (m_section.lines.contains("map_bump"))
+                m_section.lines["norm"] = m_section.lines["map_bump"];
+            drop("map_bump");
+        }
         const double illum = m_section.number("illum").value_or(2);
         // Never written by Blender: somebody made glass or a mirror of it, and means what it says.
         if (illum == 4 || illum == 5 || illum == 7) return {};
@@ -185,6 +193,7 @@ class PrincipledSection {
 
     MtlDialect m_dialect;
     MtlSection& m_section;
+    bool m_isBlenders;
     Translation m_translation;
     bool m_isMetalOn{};
 };
@@ -273,7 +282,7 @@ Translation translateToGeneric(MtlDialect dialect, MtlSection& section) {
             // or glass is rough needs no more than that.
             if (section.number("Pm") || ((section.number("Pr") || section.hasMap("map_Pr")) &&
                                          section.number("illum").value_or(2) <= 2))
-                return PrincipledSection(MtlDialect::kBlender4, section).translate();
+                return PrincipledSection(MtlDialect::kBlender4, section, false).translate();
             break;
         case MtlDialect::kMcGuire:
             break;

@@ -40,6 +40,7 @@ bool asksForSomething(std::string_view option, const std::vector<double>& number
 void setNumbers(std::string_view option, const std::vector<double>& numbers, MapLine& line) {
     if (equalInAnyCase(option, "-s")) std::ranges::copy(numbers, line.scale.begin());
     if (equalInAnyCase(option, "-o")) std::ranges::copy(numbers, line.offset.begin());
+    if (equalInAnyCase(option, "-bm")) line.strength = numbers[0];
     if (!equalInAnyCase(option, "-mm")) return;
     line.base = numbers[0];
     line.gain = numbers[1];
@@ -58,7 +59,9 @@ bool takeOption(std::string_view& rest, MapLine& line) {
     else
         value = takeWord(ahead);
     if (option->isRendered && option->kind == MapOptionKind::kNumbers) {
-        if (numbers.empty()) numbers.push_back(option->option[1] == 's' ? 1 : 0);
+        if (numbers.empty())
+            numbers.push_back(option->option == std::string_view("-mm") ? 0
+                                                                        : option->missingNumber);
         numbers.resize(option->numbers, option->missingNumber);
         setNumbers(word, numbers, line);
     } else if (equalInAnyCase(word, "-clamp")) {

@@ -25,6 +25,7 @@ MaterialMap readMap(const std::string& text, const fs::path& folder, bool isData
     }
     use.base = static_cast<float>(map.line.base);
     use.gain = static_cast<float>(map.line.gain);
+    use.strength = static_cast<float>(map.line.strength);
     return map;
 }
 

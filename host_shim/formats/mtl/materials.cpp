@@ -107,7 +107,20 @@ class MaterialReader {
         m_material.roughnessTexture = map("map_Pr", true);
         m_material.opacityTexture = map("map_d", true);
         m_material.emissionTexture = map("map_Ke", false);
+        m_material.normalTexture = map("norm", true);
+        limitStrength();
         m_material.transmissionTexture = map("map_Tf", false);
+    }
+
+    void limitStrength() {
+        if (!m_material.normalTexture) return;
+        constexpr float kMost = 100.0f;
+        float& strength = m_material.normalTexture->strength;
+        const float allowed = strength >= 0 ? std::min(strength, kMost) : 1.0f;
+        if (allowed == strength) return;
+        note(Warning::kMaterialValue, "norm",
+             fmt::format("-bm {} is outside [0, {}]; {} is taken", strength, kMost, allowed));
+        strength = allowed;
     }
 
     void noteLeftOut() const {

@@ -150,6 +150,12 @@ class PhotonWalk {
                 if (events.isOver()) break;
                 continue;
             }
+            const Rgb left = m_scene.leftAlong(ray, surface);
+            if (left != Rgb(1.0f)) {
+                balance.fluxAbsorbed += channelSum(flux);
+                flux *= left;
+                balance.fluxAbsorbed -= channelSum(flux);
+            }
             const Vec3f out = -ray.direction;
             const Bsdf bsdf(m_scene.materials(), surface, out, Transport::kPhotons, flux);
             if (bsdf.has(Lobe::kDiffuse) && !way.pastMirrorless) {

@@ -79,6 +79,7 @@ Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray
         Surface surface;
         ++result.rays;
         const bool hit = scene.intersect(way.path.ray, surface);
+        if (hit) way.path.throughput *= scene.leftAlong(way.path.ray, surface);
         addLampsMet(scene, ends, way, hit ? &surface : nullptr, atOnce, result);
         if (!hit) return result;
         if (!result.hitAny) {

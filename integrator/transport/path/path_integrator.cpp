@@ -20,6 +20,7 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
                 path.throughput * weightedFarLight(m_scene, m_lights, last);
             return result;
         }
+        path.throughput *= m_scene.leftAlong(path.ray, surface);
         result.of(state.classify()) += path.throughput * weightedEmission(m_lights, surface, last);
         const Bsdf bsdf(m_scene.materials(), surface, -path.ray.direction, Transport::kRadiance,
                         path.throughput);

@@ -122,7 +122,7 @@ void PhotonIntegrator::addLampsAlong(Branch& branch, const Tree& tree) const {
 }
 
 void PhotonIntegrator::follow(Branch& branch, const Tree& tree) const {
-    const PathWalk& path = branch.path;
+    PathWalk& path = branch.path;
     SampleRadiance& result = tree.result;
     while (true) {
         Surface surface;
@@ -133,6 +133,7 @@ void PhotonIntegrator::follow(Branch& branch, const Tree& tree) const {
             return;
         }
         branch.way += length(surface.position - path.ray.origin);
+        path.throughput *= m_scene.leftAlong(path.ray, surface);
         if (tree.view.withSeenLamps || found != PathClass::kEmission)
             result.of(found) += path.throughput * weightedEmission(m_lights, surface, branch.last);
         Bsdf bsdf(m_scene.materials(), surface, -path.ray.direction, Transport::kRadiance,

@@ -162,6 +162,7 @@ Rgb SeenLamps::along(const Ray& ray, Sampler& sampler, std::uint32_t& rays,
 bool SeenLamps::step(Branch& branch, Waiting& waiting, Sampler& sampler, Rgb& found) const {
     Surface surface;
     if (!m_scene.intersect(branch.ray, surface)) return false;
+    branch.carried.throughput *= m_scene.leftAlong(branch.ray, surface);
     const Vec3f out = -branch.ray.direction;
     if (surface.light != kNoLight)
         found += branch.carried.throughput * m_lights.emittedRadiance(surface, out);
