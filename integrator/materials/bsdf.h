@@ -38,7 +38,10 @@ class Bsdf {
     // What the lobe reflects or transmits; at a refraction without its factor 1 / etaSquared().
     const Rgb& reflectance(Lobe lobe) const { return m_lobes.of(lobe); }
     // Whether light that comes from behind leaves by a lobe that is not delta.
-    bool goesThrough() const { return std::holds_alternative<RoughGlass>(m_lobes.glossy); }
+    bool goesThrough() const {
+        return std::holds_alternative<RoughGlass>(m_lobes.glossy) ||
+               std::holds_alternative<DiffuseTransmission>(m_lobes.glossy);
+    }
     // Nothing but a diffuse lobe, or less.
     bool isDiffuseOnly() const { return m_diffuseOnly; }
     // Mean over channels of what could be reflected or transmitted is 0.

@@ -7,12 +7,14 @@
 #include <variant>
 
 #include "integrator/materials/lobes/dielectric.h"
+#include "integrator/materials/lobes/diffuse_transmission.h"
 #include "integrator/materials/lobes/ggx_reflection.h"
 #include "integrator/materials/lobes/lambertian.h"
 #include "integrator/materials/lobes/lobe_models.h"
 #include "integrator/materials/lobes/mirror.h"
 #include "integrator/materials/lobes/pane.h"
 #include "integrator/materials/lobes/phong.h"
+#include "integrator/materials/lobes/rough_diffuse.h"
 #include "integrator/materials/lobes/rough_glass.h"
 #include "integrator/materials/lobes/straight.h"
 #include "integrator/materials/lobes/undercoat.h"
@@ -30,11 +32,14 @@ using OneOfSmooth = std::variant<Models...>;
 // The lists of all lobes there are; the first of each stands where a surface has no such lobe. A
 // new one is a file in lobes/, its name in one of these, and what makes it of a material's numbers:
 // here of diffuse ones, of others in material_lobes.cpp.
-using DiffuseLobe = OneOfDiffuse<Lambertian, Undercoat>;
-using GlossyLobe = OneOfScattering<Phong, GgxReflection, RoughGlass>;  // and broad ones
+using DiffuseLobe = OneOfDiffuse<Lambertian, Undercoat, RoughDiffuse>;
+using GlossyLobe =
+    OneOfScattering<Phong, GgxReflection, RoughGlass, DiffuseTransmission>;  // and broad ones
 using SmoothLobe = OneOfSmooth<NotSmooth, Mirror, Dielectric, Pane>;
 
-inline DiffuseLobe diffuseLobe(const MaterialDescription&) {
+// colour: of the material there, textures looked up.
+inline DiffuseLobe diffuseLobe(const MaterialDescription& material, const Rgb& colour) {
+    if (material.diffuseRoughness > 0.0f) return RoughDiffuse{material.diffuseRoughness, colour};
     return Lambertian{};
 }
 

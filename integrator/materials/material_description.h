@@ -22,6 +22,8 @@ struct MaterialDescription {
     MaterialKind kind = MaterialKind::kSurface;
     bool fresnelMirror = false;
     Rgb diffuse;
+    float diffuseRoughness = 0.0f;  // of plaster or clay, in [0, 1]
+    Rgb diffuseTransmission;        // where there is nothing glossy
     Rgb glossy;
     float glossyExponent = 0.0f;
     float roughness = 0.0f;      // of facets; 0: by the exponent, or smooth
@@ -63,7 +65,8 @@ inline bool hasTexture(const MaterialDescription& material) {
 // Whether light can leave the material in no other way than diffusely, whatever its textures.
 inline bool isDiffuseAtMost(const MaterialDescription& material) {
     return material.kind == MaterialKind::kSurface && isBlack(material.glossy) &&
-           material.transparency == 0.0f && material.opacityTexture == kNoTexture;
+           isBlack(material.diffuseTransmission) && material.transparency == 0.0f &&
+           material.opacityTexture == kNoTexture;
 }
 
 // Half of a Phong lobe's greatest value lies 10 degrees aside, or farther.
@@ -112,7 +115,8 @@ inline bool reflectsDiffusely(const MaterialDescription& material) {
 
 // Whether the material may have a lobe that is glossy or broad.
 inline bool mayBeGlossy(const MaterialDescription& material) {
-    return (material.kind == MaterialKind::kSurface && !isBlack(material.glossy)) ||
+    return (material.kind == MaterialKind::kSurface &&
+            !(isBlack(material.glossy) && isBlack(material.diffuseTransmission))) ||
            (material.kind == MaterialKind::kMirror && isRough(material)) ||
            (material.kind == MaterialKind::kDielectric && material.roughness > 0.0f);
 }

@@ -71,9 +71,14 @@ void setCoat(const MaterialDescription& material, const Numbers& numbers, const 
 
 void setSurface(const MaterialDescription& material, const Numbers& numbers, const LobePoint& at,
                 Lobes& lobes) {
-    lobes.diffuse = diffuseLobe(material);
-    lobes.of(Lobe::kDiffuse) =
-        numbers.reflectance(material.diffuse, material.diffuseTexture) * at.opacity;
+    const Rgb colour = numbers.reflectance(material.diffuse, material.diffuseTexture);
+    lobes.diffuse = diffuseLobe(material, colour);
+    lobes.of(Lobe::kDiffuse) = colour * at.opacity;
+    if (isBlack(material.glossy) && !isBlack(material.diffuseTransmission)) {
+        lobes.of(lobes.glossyRole) = material.diffuseTransmission * at.opacity;
+        lobes.glossy = DiffuseTransmission{};
+        return;
+    }
     if (isBlack(material.glossy)) return;
     if (material.roughness > 0.0f) return setCoat(material, numbers, at, lobes);
     lobes.of(lobes.glossyRole) =

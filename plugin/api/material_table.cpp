@@ -172,6 +172,20 @@ constexpr std::array kMaterialRows = {
                        .isLater = true},
                       {},
                       {memberPlace<&M::attenuationDistance>()}},
+    MaterialParameter{{.name = "diffuseRoughness",
+                       .help = "Surface: of its diffuse part, as plaster or clay; 0: Lambertian.",
+                       .defaultText = "0",
+                       .isLater = true},
+                      {},
+                      {memberPlace<&M::diffuseRoughness>()}},
+    MaterialParameter{{.name = "diffuseTransmission",
+                       .help = "Surface without a glossy part: what it lets through to all sides, "
+                               "as a leaf or a lampshade.",
+                       .count = 3,
+                       .defaultText = "0 0 0",
+                       .isLater = true},
+                      {},
+                      {memberPlace<&M::diffuseTransmission>()}},
 };
 
 }  // namespace

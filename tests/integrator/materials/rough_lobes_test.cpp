@@ -149,6 +149,29 @@ TEST(RoughLobes, WhiteUnderACoatReflectsAll) {
             }
 }
 
+// White plaster sends all of it back.
+TEST(RoughLobes, WhitePlasterReflectsAll) {
+    for (const float roughness : {0.1f, 0.5f, 1.0f})
+        for (const float cosine : kCosines) {
+            SCOPED_TRACE(testing::Message() << "roughness " << roughness << " cosine " << cosine);
+            const RoughDiffuse plaster{roughness, Rgb(1.0f)};
+            const LobePoint at = seenAt(cosine);
+            Random random(7);
+            constexpr int kCount = 50'000;
+            double sum = 0, squares = 0;
+            for (int i = 0; i < kCount; ++i) {
+                BsdfSample s;
+                s.weight = Rgb(1.0f);
+                if (!plaster.sample(at, random.next2D(), s)) continue;
+                const double w = static_cast<double>(s.weight.g);
+                sum += w / kCount;
+                squares += w * w / kCount;
+            }
+            expectWhite({sum, std::sqrt(std::max(0.0, squares - sum * sum) / kCount)}, cosine);
+            EXPECT_NEAR(plaster.albedo(at, Rgb(1.0f)).g, 1.0f, 1e-5f);
+        }
+}
+
 TEST(RoughLobes, ReflectionIsReciprocal) {
     Random random(4);
     for (int i = 0; i < 1000; ++i) {
@@ -166,6 +189,12 @@ TEST(RoughLobes, ReflectionIsReciprocal) {
         const RoughGlass glass{{roughness * roughness}};
         EXPECT_NEAR(f(metal, a, b), f(metal, b, a), 2e-3f * f(metal, a, b) + 1e-6f);
         EXPECT_NEAR(f(glass, a, b), f(glass, b, a), 2e-3f * f(glass, a, b) + 1e-6f);
+        const RoughDiffuse plaster{roughness, Rgb(0.5f)};
+        const auto of = [&](const Vec3f& out, const Vec3f& in) {
+            const LobePoint at(out, {0, 0, 1}, {0, 0, 1}, Transport::kRadiance);
+            return plaster.evaluate(at, Rgb(0.5f), in).g / in.z;
+        };
+        EXPECT_NEAR(of(a, b), of(b, a), 1e-4f * of(a, b));
     }
 }
 

@@ -36,6 +36,21 @@ MaterialDescription coated(float roughness, Rgb below = Rgb(1.0f)) {
     return m;
 }
 
+MaterialDescription plaster(float roughness, Rgb colour = Rgb(1.0f)) {
+    MaterialDescription m;
+    m.diffuse = colour;
+    m.diffuseRoughness = roughness;
+    return m;
+}
+
+// A leaf.
+MaterialDescription leaf(Rgb reflects, Rgb letsThrough) {
+    MaterialDescription m;
+    m.diffuse = reflects;
+    m.diffuseTransmission = letsThrough;
+    return m;
+}
+
 void expectInvisible(const MaterialDescription& material, IntegratorKind integrator,
                      double tolerance) {
     SceneMaker maker;
@@ -57,13 +72,36 @@ TEST(RoughSurfaces, AreInvisibleInAnEvenSky) {
             expectInvisible(metal(roughness), integrator, 0.005);
             expectInvisible(glass(roughness), integrator, 0.01);
             expectInvisible(coated(roughness), integrator, 0.005);
+            expectInvisible(plaster(roughness), integrator, 0.005);
         }
+}
+
+// A sheet under a parallel light from behind shows what it lets through; with light from all around
+// it is invisible where it absorbs nothing.
+TEST(RoughSurfaces, LeavesLetLightThrough) {
+    for (const IntegratorKind integrator : {IntegratorKind::kPath, IntegratorKind::kPhoton}) {
+        SceneMaker maker;
+        maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0},
+                   maker.material(leaf(Rgb(0.3f), {0.1f, 0.4f, 0.05f})));
+        maker.sun({0, 0, 1}, Rgb(2.0f), 0);
+        maker.camera({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 20);
+        RenderSettings settings = smallFrame(8, 8, integrator, 8, 3);
+        settings.photons = 20'000;
+        const float scale = 2.0f / 3.14159265f;
+        EXPECT_TRUE(agrees(measure(maker.build(), settings).beauty,
+                           {0.1f * scale, 0.4f * scale, 0.05f * scale}, 1e-3));
+        SceneMaker even;
+        even.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, even.material(leaf(Rgb(0.4f), Rgb(0.6f))));
+        even.sky(Rgb(1.0f));
+        even.camera({0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 20);
+        EXPECT_TRUE(agrees(measure(even.build(), settings).beauty, Rgb(1.0f), 0.005));
+    }
 }
 
 // A room with all of them, lit from its ceiling.
 std::shared_ptr<const Scene> room() {
     SceneMaker maker;
-    const auto white = maker.diffuse(Rgb(0.7f));
+    const auto white = maker.material(plaster(0.8f, Rgb(0.7f)));
     const auto floor = maker.material(coated(0.3f, Rgb(0.5f, 0.4f, 0.3f)));
     maker.quad({-1, -1, 1}, {2, 0, 0}, {0, 0, -2}, floor);
     maker.quad({-1, 1, -1}, {2, 0, 0}, {0, 0, 2}, white);
@@ -74,6 +112,8 @@ std::shared_ptr<const Scene> room() {
     maker.sphere({0.5, -0.6, -0.4}, 0.4, maker.material(metal(0.3f, {0.9f, 0.8f, 0.5f})));
     maker.sphere({-0.5, -0.6, -0.3}, 0.4, maker.material(metal(0.7f, {0.9f, 0.9f, 0.9f})));
     maker.sphere({0.1, -0.65, 0.4}, 0.35, maker.material(glass(0.35f)));
+    maker.quad({-0.9, 0.2, 0.2}, {0.7, 0, 0}, {0, 0.2, -0.6},
+               maker.material(leaf({0.2f, 0.4f, 0.1f}, {0.1f, 0.4f, 0.1f})));
     maker.camera({0, 0, 4.2}, {0, 0, 0}, {0, 1, 0}, 36);
     return maker.build();
 }
