@@ -198,6 +198,32 @@ TEST(RoughLobes, ReflectionIsReciprocal) {
     }
 }
 
+// Through glass as well, but for the squares of the indices: f(a from b) n^2 = f(b from a), b
+// inside.
+TEST(RoughLobes, GlassIsReciprocalFromSideToSide) {
+    const GlassAlbedo table(1.5f);
+    Random random(8);
+    for (int i = 0; i < 1000; ++i) {
+        Vec3f a = sampleUniformSphere(random.next2D()), b = sampleUniformSphere(random.next2D());
+        a.z = std::abs(a.z) + 0.05f;
+        b.z = -std::abs(b.z) - 0.05f;
+        a = normalize(a);
+        b = normalize(b);
+        const float roughness = 0.3f + 0.7f * random.next2D().x;
+        const auto f = [&](bool isInside, Vec3f out, Vec3f in) {
+            if (isInside) {
+                out.z = -out.z;
+                in.z = -in.z;
+            }
+            const RoughGlass glass{{roughness * roughness}, Rgb(1.0f), &table, isInside};
+            const LobePoint at(out, {0, 0, 1}, {0, 0, 1}, Transport::kRadiance);
+            return glass.evaluate(at, glass.albedo(glass.cosine(at)), in).g / std::abs(in.z);
+        };
+        const float fromInside = f(false, a, b) * 1.5f * 1.5f, fromOutside = f(true, b, a);
+        EXPECT_NEAR(fromInside, fromOutside, 5e-3f * fromOutside + 1e-6f);
+    }
+}
+
 // What radiance goes out by when it comes from behind is what photons go in by, but for the square
 // of the index.
 TEST(RoughLobes, PhotonsGoThroughGlassAsRadianceDoes) {
