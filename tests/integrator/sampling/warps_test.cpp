@@ -105,7 +105,9 @@ double lobePValue(const Bench& bench, const Bsdf& bsdf, Lobe lobe, double densit
     Random random(seed);
     DirectionTest test;
     const auto inside = [&](const Vec3f& d) {
-        return d.z > 0.0f && dot(d, bench.surface.shadingNormal) > 0.0f;
+        const bool isAbove = d.z > 0.0f;
+        return (isAbove || bsdf.goesThrough()) &&
+               isAbove == (dot(d, bench.surface.shadingNormal) > 0.0f);
     };
     return test.pValue(
         [&]() -> std::optional<Vec3f> {
@@ -143,6 +145,38 @@ TEST(Warps, BsdfSamplesItsDensity) {
                 if (!bsdf.has(lobe)) continue;
                 EXPECT_GT(lobePValue(bench, bsdf, lobe, 0.0, ++seed), kSignificance) << seed;
                 EXPECT_LT(lobePValue(bench, bsdf, lobe, 0.6, ++seed), kSignificance) << seed;
+            }
+        }
+}
+
+// Rough metal, rough glass from both sides, a coat, plaster and a leaf.
+TEST(Warps, RoughSurfacesSampleTheirDensity) {
+    std::vector<MaterialDescription> materials(7);
+    materials[0].kind = materials[1].kind = MaterialKind::kMirror;
+    materials[0].glossy = materials[1].glossy = {0.9f, 0.8f, 0.5f};
+    materials[0].roughness = 0.8f;
+    materials[1].roughness = 0.6f;
+    materials[2].kind = materials[3].kind = MaterialKind::kDielectric;
+    materials[2].roughness = materials[3].roughness = 0.8f;
+    materials[4].diffuse = Rgb(0.5f);
+    materials[4].glossy = Rgb(0.3f);
+    materials[4].roughness = 0.7f;
+    materials[5].diffuse = Rgb(0.6f);
+    materials[5].diffuseRoughness = 0.9f;
+    materials[6].diffuse = Rgb(0.2f);
+    materials[6].diffuseTransmission = Rgb(0.5f);
+    std::uint64_t seed = 300;
+    for (std::size_t i = 0; i < materials.size(); ++i)
+        for (const Transport transport : {Transport::kRadiance, Transport::kPhotons}) {
+            const Bench bench(materials[i], {0, 0, 1});
+            const Vec3f out = normalize(Vec3f{0.6f, 0.3f, i == 3 ? -0.5f : 0.5f});
+            const Bsdf bsdf(bench.scene->materials(), bench.surface, out, transport,
+                            Rgb(0.7f, 1.0f, 0.4f));
+            for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kBroad, Lobe::kGlossy}) {
+                if (!bsdf.has(lobe)) continue;
+                SCOPED_TRACE(testing::Message() << "material " << i);
+                EXPECT_GT(lobePValue(bench, bsdf, lobe, 0.0, ++seed), kSignificance) << seed;
+                EXPECT_LT(lobePValue(bench, bsdf, lobe, 0.9, ++seed), kSignificance) << seed;
             }
         }
 }
