@@ -71,7 +71,7 @@ class Body {
 
     static bool isOpaque(const MaterialDescription& material) {
         return material.kind != MaterialKind::kDielectric && material.transparency == 0.0f &&
-               material.opacityTexture == kNoTexture;
+               material.opacityTexture == kNoTexture && isBlack(material.diffuseTransmission);
     }
 
     bool addBall(std::uint32_t index) {
