@@ -11,6 +11,17 @@
 
 namespace pm {
 
+namespace {
+
+// Nearly all surfaces have the first of the list, which is then called without a table.
+template <typename OneOf, typename Call>
+decltype(auto) visitMostly(const OneOf& lobe, const Call& call) {
+    if (const auto* first = std::get_if<0>(&lobe)) return call(*first);
+    return std::visit(call, lobe);
+}
+
+}  // namespace
+
 Bsdf::Bsdf(const Materials& materials, const Surface& surface, const Vec3f& out,
            Transport transport, const Rgb& carried)
     : m_at(out, surface.geometricNormal, surface.shadingNormal, transport) {
@@ -32,7 +43,7 @@ Bsdf::Bsdf(const Materials& materials, const Surface& surface, const Vec3f& out,
 
 // What smooth lobes send by several ways is as much as the camera gets by each of them.
 bool Bsdf::isSentByWays() const {
-    return std::visit([&](const auto& model) { return model.sendsByWays(m_at); }, m_lobes.smooth);
+    return visitMostly(m_lobes.smooth, [&](const auto& model) { return model.sendsByWays(m_at); });
 }
 
 // What goes straight on is the share of the surface that is not there: none of it is taken.
@@ -78,12 +89,12 @@ Rgb Bsdf::albedo() const {
 
 Rgb Bsdf::diffuse() const {
     const Rgb& ofLobe = reflectance(Lobe::kDiffuse);
-    return std::visit([&](const auto& model) { return model.albedo(m_at, ofLobe); },
-                      m_lobes.diffuse);
+    return visitMostly(m_lobes.diffuse,
+                       [&](const auto& model) { return model.albedo(m_at, ofLobe); });
 }
 
 float Bsdf::arrival() const {
-    return std::visit([&](const auto& model) { return model.arrival(m_at); }, m_lobes.diffuse);
+    return visitMostly(m_lobes.diffuse, [&](const auto& model) { return model.arrival(m_at); });
 }
 
 bool Bsdf::arrivesEvenly() const {
@@ -95,12 +106,12 @@ Rgb Bsdf::reflectedOf(const Rgb& irradiance) const {
 }
 
 float Bsdf::etaSquared() const {
-    return std::visit([](const auto& model) { return model.etaSquared(); }, m_lobes.smooth);
+    return visitMostly(m_lobes.smooth, [](const auto& model) { return model.etaSquared(); });
 }
 
 Rgb Bsdf::evaluate(Lobe lobe, const Vec3f& in) const {
     const auto by = [&](const auto& model) { return model.evaluate(m_at, reflectance(lobe), in); };
-    if (lobe == Lobe::kDiffuse) return std::visit(by, m_lobes.diffuse);
+    if (lobe == Lobe::kDiffuse) return visitMostly(m_lobes.diffuse, by);
     return std::visit(by, m_lobes.glossy);
 }
 
@@ -108,7 +119,7 @@ float Bsdf::pdfSolidAngle(Lobe lobe, const Vec3f& in) const {
     if (!has(lobe)) return 0.0f;
     const float choice = m_followsAll ? 1.0f : m_probability[index(lobe)];
     const auto by = [&](const auto& model) { return model.pdfSolidAngle(m_at, in, choice); };
-    if (lobe == Lobe::kDiffuse) return std::visit(by, m_lobes.diffuse);
+    if (lobe == Lobe::kDiffuse) return visitMostly(m_lobes.diffuse, by);
     return std::visit(by, m_lobes.glossy);
 }
 
@@ -152,7 +163,7 @@ bool Bsdf::take(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const
 template <typename OneOfModels>
 bool Bsdf::takeBy(const OneOfModels& lobe, Vec2f u, BsdfSample& sample) const {
     const bool hasValue =
-        std::visit([&](const auto& model) { return model.sample(m_at, u, sample); }, lobe);
+        visitMostly(lobe, [&](const auto& model) { return model.sample(m_at, u, sample); });
     if (!hasValue) return false;
     sample.pdfSolidAngle = pdfSolidAngle(sample.lobe, sample.direction);
     return sample.pdfSolidAngle > 0.0f;

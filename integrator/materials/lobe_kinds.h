@@ -37,10 +37,10 @@ using GlossyLobe =
     OneOfScattering<Phong, GgxReflection, RoughGlass, DiffuseTransmission>;  // and broad ones
 using SmoothLobe = OneOfSmooth<NotSmooth, Mirror, Dielectric, Pane>;
 
-// colour: of the material there, textures looked up.
-inline DiffuseLobe diffuseLobe(const MaterialDescription& material, const Rgb& colour) {
-    if (material.diffuseRoughness > 0.0f) return RoughDiffuse{material.diffuseRoughness, colour};
-    return Lambertian{};
+// lobe: as made, the first of its list. colour: of the material there, textures looked up.
+inline void setDiffuseLobe(const MaterialDescription& material, const Rgb& colour,
+                           DiffuseLobe& lobe) {
+    if (material.diffuseRoughness > 0.0f) lobe = RoughDiffuse{material.diffuseRoughness, colour};
 }
 
 // The lobes of a surface at a point, with what each reflects or transmits.

@@ -72,7 +72,7 @@ void setCoat(const MaterialDescription& material, const Numbers& numbers, const 
 void setSurface(const MaterialDescription& material, const Numbers& numbers, const LobePoint& at,
                 Lobes& lobes) {
     const Rgb colour = numbers.reflectance(material.diffuse, material.diffuseTexture);
-    lobes.diffuse = diffuseLobe(material, colour);
+    setDiffuseLobe(material, colour, lobes.diffuse);
     lobes.of(Lobe::kDiffuse) = colour * at.opacity;
     if (isBlack(material.glossy) && !isBlack(material.diffuseTransmission)) {
         lobes.of(lobes.glossyRole) = material.diffuseTransmission * at.opacity;
