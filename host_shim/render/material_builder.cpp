@@ -40,7 +40,7 @@ std::array<TextureOfKind, 8> usesOf(const MaterialData& material) {
              {&material.transmissionTexture, TextureKind::kColour},
              {&material.emissionTexture, TextureKind::kColour},
              {&material.opacityTexture, TextureKind::kMask},
-             {&material.normalTexture, TextureKind::kData}}};
+             {&material.normalTexture, TextureKind::kVector}}};
 }
 
 TextureRequest requestOf(const TextureUse& use, TextureKind kind) {
@@ -178,18 +178,19 @@ void MaterialBuilder::setByName(const MaterialData& material, PmrMaterial handle
         own.numberCount = 1;
         m_context.check(m_context.api().setParameter(&own), of);
     };
-    const auto setTexture = [&](const char* name, const std::optional<TextureUse>& use) {
+    const auto setTexture = [&](const char* name, const std::optional<TextureUse>& use,
+                                TextureKind kind) {
         PmrParameterDesc own = desc;
         own.name = name;
-        own.texture = texture(use, TextureKind::kData, of);
+        own.texture = texture(use, kind, of);
         if (own.texture != nullptr) m_context.check(m_context.api().setParameter(&own), of);
         return own.texture != nullptr;
     };
     if (material.roughness > 0) {
         setNumber("roughness", material.roughness);
-        setTexture("roughnessTexture", material.roughnessTexture);
+        setTexture("roughnessTexture", material.roughnessTexture, TextureKind::kData);
     }
-    if (setTexture("normalTexture", material.normalTexture))
+    if (setTexture("normalTexture", material.normalTexture, TextureKind::kVector))
         setNumber("normalScale", material.normalTexture->strength);
 }
 

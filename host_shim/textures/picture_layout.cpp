@@ -199,7 +199,7 @@ PictureLayout choosePictureLayout(const std::vector<OIIO::ImageSpec>& parts, Tex
     }
     PictureLayout layout;
     layout.part = best->part;
-    if (kind == TextureKind::kColour)
+    if (kind == TextureKind::kColour || kind == TextureKind::kVector)
         takeColour(*best, layout);
     else
         takeNumber(*best, kind, channel, layout);

@@ -15,6 +15,7 @@ enum class TextureKind {
     kColour,  // converted to the rendering space: Kd, Ks, Ke, Tf, environment
     kData,    // a number, never converted: Ns, Pr, Pm, Ps, bump, disp
     kMask,    // the same of d: the alpha of a picture that has one
+    kVector,  // three numbers, never converted: normal maps
 };
 
 // Which of a picture's channels are taken, and how.

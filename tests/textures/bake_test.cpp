@@ -111,6 +111,17 @@ TEST_F(Bake, DataIsNeverConverted) {
     EXPECT_NE(raw.file, number.file);
 }
 
+// Of a normal map all three channels are numbers: of 8 bits 128 stays 128 / 255.
+TEST_F(Bake, VectorsKeepTheirThreeNumbers) {
+    const std::vector<float> values{128.0f / 255, 64.0f / 255, 1.0f, 0.0f, 200.0f / 255, 0.5f};
+    writeTexture(file("normal.png"), 2, 1, 3, OIIO::TypeDesc::UINT8, values);
+    const BakedTexture normal = baked({file("normal.png"), TextureKind::kVector, "sRGB"});
+    EXPECT_TRUE(normal.space.isData);
+    EXPECT_EQ(normal.facts.channels, 3);
+    const auto levels = readLevels(normal.file);
+    for (std::size_t i = 0; i < 5; ++i) EXPECT_FLOAT_EQ(levels[0].values[i], values[i]);
+}
+
 // Codes of 16 bits, with the curve and a matrix, against the conversion itself.
 TEST_F(Bake, TablesAreTheConversion) {
     m_colour = ColourPipeline({.renderingSpace = "ACEScg"});
