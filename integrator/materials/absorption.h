@@ -3,9 +3,9 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 
 #include "integrator/materials/materials.h"
+#include "integrator/sampling/pinned_math.h"
 #include "integrator/shapes/surface.h"
 #include "integrator/values/ray.h"
 
@@ -20,7 +20,7 @@ inline Rgb leftOnTheWay(const MaterialDescription& material, const Surface& to, 
     const float ways = length(to.position - ray.origin) / material.attenuationDistance;
     const auto left = [&](float colour) {
         constexpr float kDarkest = 1e-12f;
-        return std::exp(std::log(std::max(colour, kDarkest)) * ways);
+        return pinnedPow(std::max(colour, kDarkest), ways);
     };
     const Rgb& c = material.attenuationColour;
     return {left(c.r), left(c.g), left(c.b)};

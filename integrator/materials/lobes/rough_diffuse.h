@@ -51,7 +51,8 @@ struct RoughDiffuse {
     }
     // Of even white light along a cosine, in one scattering.
     float reflects(float mu) const {
-        const float s = std::sqrt(std::max(0.0f, 1.0f - mu * mu)), theta = std::acos(mu);
+        const float s = std::sqrt(std::max(0.0f, 1.0f - mu * mu));
+        const auto theta = static_cast<float>(2.0 * std::numbers::pi * pinnedAtan2Turns(s, mu));
         const float g = s * (theta - s * mu) + (2.0f / 3.0f) * ((s / mu) * (1.0f - s * s * s) - s);
         return scale() * (1.0f + roughness * g * kInvPi);
     }
