@@ -29,6 +29,9 @@ struct Frame {
         bitangent = {b, sign + n.y * n.y * a, -n.y};
     }
     Vec3f toWorld(const Vec3f& v) const { return tangent * v.x + bitangent * v.y + normal * v.z; }
+    Vec3f toLocal(const Vec3f& v) const {
+        return {dot(v, tangent), dot(v, bitangent), dot(v, normal)};
+    }
 };
 
 // Directions around +z with density cos(theta)/pi.

@@ -47,21 +47,21 @@ struct GgxReflection {
     Rgb evaluate(const LobePoint& at, const Rgb& reflectance, const Vec3f& in) const {
         if (!at.isReflection(in)) return {};
         const Frame frame(at.ns);
-        const Vec3f out = toLocal(frame, at.out), local = toLocal(frame, in);
+        const Vec3f out = frame.toLocal(at.out), local = frame.toLocal(in);
         if (!(out.z > 0.0f && local.z > 0.0f)) return {};
         return scaled(at, reflectance, value(out, local)) * at.adjointCorrection(in);
     }
 
     float pdfSolidAngle(const LobePoint& at, const Vec3f& in, float choice) const {
         const Frame frame(at.ns);
-        const Vec3f out = toLocal(frame, at.out), local = toLocal(frame, in);
+        const Vec3f out = frame.toLocal(at.out), local = frame.toLocal(in);
         if (!(out.z > 0.0f && local.z > 0.0f)) return 0.0f;
         return choice * density(out, local);
     }
 
     bool sample(const LobePoint& at, Vec2f u, BsdfSample& sample) const {
         const Frame frame(at.ns);
-        const Vec3f out = toLocal(frame, at.out);
+        const Vec3f out = frame.toLocal(at.out);
         if (!(out.z > 0.0f)) return false;
         const float more = shareOfMore(out);
         Vec3f in;
@@ -76,10 +76,6 @@ struct GgxReflection {
         sample.weight = scaled(at, sample.weight, value(out, in)) *
                         (at.adjointCorrection(sample.direction) / density(out, in));
         return at.isReflection(sample.direction);
-    }
-
-    static Vec3f toLocal(const Frame& frame, const Vec3f& w) {
-        return {dot(w, frame.tangent), dot(w, frame.bitangent), dot(w, frame.normal)};
     }
 
   private:
@@ -114,10 +110,7 @@ struct GgxReflection {
 
     // A value of which the reflectance is not all yet: textures and opacity.
     Rgb scaled(const LobePoint& at, const Rgb& reflectance, const Rgb& value) const {
-        const Rgb whole = albedo(cosine(at));
-        const auto channel = [](float r, float w, float v) { return w > 0.0f ? r / w * v : 0.0f; };
-        return {channel(reflectance.r, whole.r, value.r), channel(reflectance.g, whole.g, value.g),
-                channel(reflectance.b, whole.b, value.b)};
+        return inProportion(reflectance, albedo(cosine(at)), value);
     }
 };
 

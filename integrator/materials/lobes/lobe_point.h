@@ -23,6 +23,14 @@ inline float meanChannel(const Rgb& c) {
     return (c.r + c.g + c.b) * (1.0f / 3.0f);
 }
 
+// A value of a lobe that reflects `whole` of even light, where its reflectance is to be another, as
+// with the opacity.
+inline Rgb inProportion(const Rgb& reflectance, const Rgb& whole, const Rgb& value) {
+    const auto channel = [](float r, float w, float v) { return w > 0.0f ? r / w * v : 0.0f; };
+    return {channel(reflectance.r, whole.r, value.r), channel(reflectance.g, whole.g, value.g),
+            channel(reflectance.b, whole.b, value.b)};
+}
+
 // The mirror direction of `out`; all unit.
 inline Vec3f reflect(const Vec3f& out, const Vec3f& normal) {
     return normalize(normal * (2.0f * dot(out, normal)) - out);

@@ -35,7 +35,7 @@ struct RoughGlass {
     // For light from both sides.
     Rgb evaluate(const LobePoint& at, const Rgb& reflectance, const Vec3f& in) const {
         const Frame frame(at.ns);
-        const Vec3f out = toLocal(frame, at.out), local = toLocal(frame, in);
+        const Vec3f out = frame.toLocal(at.out), local = frame.toLocal(in);
         if (!isEither(at, out, local, in)) return {};
         const Rgb value =
             local.z > 0.0f ? Rgb(reflectedValue(out, local)) : tint * throughValue(at, out, local);
@@ -44,7 +44,7 @@ struct RoughGlass {
 
     float pdfSolidAngle(const LobePoint& at, const Vec3f& in, float choice) const {
         const Frame frame(at.ns);
-        const Vec3f out = toLocal(frame, at.out), local = toLocal(frame, in);
+        const Vec3f out = frame.toLocal(at.out), local = frame.toLocal(in);
         if (!isEither(at, out, local, in)) return 0.0f;
         return choice *
                (local.z > 0.0f ? reflectedDensity(out, local) : throughDensity(out, local));
@@ -52,7 +52,7 @@ struct RoughGlass {
 
     bool sample(const LobePoint& at, Vec2f u, BsdfSample& sample) const {
         const Frame frame(at.ns);
-        const Vec3f out = toLocal(frame, at.out);
+        const Vec3f out = frame.toLocal(at.out);
         if (!(out.z > 0.0f)) return false;
         const bool goesThrough = !take(u.x, reflects(out));
         const bool byMore = take(u.x, missing(out));
@@ -83,9 +83,6 @@ struct RoughGlass {
     static bool isEither(const LobePoint& at, const Vec3f& out, const Vec3f& local,
                          const Vec3f& in) {
         return out.z > 0.0f && local.z != 0.0f && (local.z > 0.0f) == (dot(in, at.ng) > 0.0f);
-    }
-    static Vec3f toLocal(const Frame& frame, const Vec3f& w) {
-        return {dot(w, frame.tangent), dot(w, frame.bitangent), dot(w, frame.normal)};
     }
     // Whether u falls to a share; u is then even over [0, 1) again.
     static bool take(float& u, float share) {
@@ -159,10 +156,7 @@ struct RoughGlass {
         return (1.0f - reflects(out)) * (more * -in.z * kInvPi + (1.0f - more) * facets);
     }
     Rgb scaled(const LobePoint& at, const Rgb& reflectance, const Rgb& value) const {
-        const Rgb whole = albedo(cosine(at));
-        const auto channel = [](float r, float w, float v) { return w > 0.0f ? r / w * v : 0.0f; };
-        return {channel(reflectance.r, whole.r, value.r), channel(reflectance.g, whole.g, value.g),
-                channel(reflectance.b, whole.b, value.b)};
+        return inProportion(reflectance, albedo(cosine(at)), value);
     }
 };
 
