@@ -34,6 +34,16 @@ struct MaterialDescription {
     Rgb attenuationColour{1.0f};       // of a dielectric: what is left of light after the distance
     float attenuationDistance = 0.0f;  // scene units; 0: it absorbs nothing
     float transparency = 0.0f;
+    float coat = 0.0f;  // clear, over all else: the share that it covers, in [0, 1]
+    float coatRoughness = 0.0f;
+    float coatIor = 1.5f;
+    Rgb sheen;  // of cloth, over a surface
+    float sheenRoughness = 0.3f;
+    Rgb edgeTint;                     // of metal; black: none is given
+    float anisotropy = 0.0f;          // of roughness, in [0, 1]: along the tangent it is more
+    float anisotropyRotation = 0.0f;  // of that, in turns from the tangent towards the bitangent
+    std::int32_t priority = 0;        // of a dielectric where several are: the highest is there
+    bool thinWalled = false;          // a dielectric: its surface is all there is of it
     std::int32_t diffuseTexture = kNoTexture;
     std::int32_t glossyTexture = kNoTexture;
     std::int32_t glossyExponentTexture = kNoTexture;
@@ -42,8 +52,10 @@ struct MaterialDescription {
     std::int32_t emissionTexture = kNoTexture;
     std::int32_t opacityTexture = kNoTexture;
     std::int32_t normalTexture =
-        kNoTexture;            // in tangent space, its components as 8 bits have them
-    float normalScale = 1.0f;  // of the components along the surface
+        kNoTexture;                         // in tangent space, its components as 8 bits have them
+    float normalScale = 1.0f;               // of the components along the surface
+    std::int32_t bumpTexture = kNoTexture;  // heights
+    float bumpScale = 1.0f;                 // scene units of a height of 1
 };
 
 // Whether light loses on its way inside.
@@ -57,7 +69,7 @@ inline bool hasTexture(const MaterialDescription& material) {
     for (const std::int32_t texture :
          {material.diffuseTexture, material.glossyTexture, material.glossyExponentTexture,
           material.roughnessTexture, material.transmissionTexture, material.emissionTexture,
-          material.opacityTexture, material.normalTexture})
+          material.opacityTexture, material.normalTexture, material.bumpTexture})
         if (texture != kNoTexture) return true;
     return false;
 }
