@@ -10,12 +10,14 @@
 #include "integrator/materials/lobes/diffuse_transmission.h"
 #include "integrator/materials/lobes/ggx_reflection.h"
 #include "integrator/materials/lobes/lambertian.h"
+#include "integrator/materials/lobes/layered.h"
 #include "integrator/materials/lobes/lobe_models.h"
 #include "integrator/materials/lobes/mirror.h"
 #include "integrator/materials/lobes/pane.h"
 #include "integrator/materials/lobes/phong.h"
 #include "integrator/materials/lobes/rough_diffuse.h"
 #include "integrator/materials/lobes/rough_glass.h"
+#include "integrator/materials/lobes/sheen.h"
 #include "integrator/materials/lobes/straight.h"
 #include "integrator/materials/lobes/undercoat.h"
 #include "integrator/materials/material_description.h"
@@ -33,8 +35,8 @@ using OneOfSmooth = std::variant<Models...>;
 // new one is a file in lobes/, its name in one of these, and what makes it of a material's numbers:
 // here of diffuse ones, of others in material_lobes.cpp.
 using DiffuseLobe = OneOfDiffuse<Lambertian, Undercoat, RoughDiffuse>;
-using GlossyLobe =
-    OneOfScattering<Phong, GgxReflection, RoughGlass, DiffuseTransmission>;  // and broad ones
+using GlossyLobe = OneOfScattering<Phong, GgxReflection, RoughGlass, DiffuseTransmission, Sheen,
+                                   Layered<GgxReflection>, Layered<Sheen>>;  // and broad ones
 using SmoothLobe = OneOfSmooth<NotSmooth, Mirror, Dielectric, Pane>;
 
 // lobe: as made, the first of its list. colour: of the material there, textures looked up.

@@ -74,11 +74,44 @@ inline bool hasTexture(const MaterialDescription& material) {
     return false;
 }
 
+// Whether there is a clear coat on it, or fibres: the layer on top, one at most.
+inline bool hasCoat(const MaterialDescription& material) {
+    return material.coat > 0.0f && material.kind != MaterialKind::kDielectric;
+}
+inline bool hasSheen(const MaterialDescription& material) {
+    return material.kind == MaterialKind::kSurface && !isBlack(material.sheen) &&
+           !hasCoat(material);
+}
+
+// Whether what lies below that layer reflects like a mirror, or as the boundary of plastic.
+inline bool isShinyBelow(const MaterialDescription& material) {
+    return material.kind == MaterialKind::kMirror ||
+           (material.kind == MaterialKind::kSurface && !isBlack(material.glossy));
+}
+
+// Whether a rough lobe lies below a layer.
+inline bool isLayered(const MaterialDescription& material) {
+    return (hasCoat(material) || hasSheen(material)) && isShinyBelow(material);
+}
+
+// Of glass: its own, and that of a coat on it.
+inline float glassRoughness(const MaterialDescription& material) {
+    if (material.thinWalled) return 0.0f;
+    if (!(material.coat > 0.0f && material.coatRoughness > 0.0f)) return material.roughness;
+    const float own = material.roughness * material.roughness;
+    const float coat = material.coatRoughness * material.coatRoughness;
+    return std::sqrt(std::sqrt(own * own + material.coat * coat * coat));
+}
+
+inline bool isRoughGlass(const MaterialDescription& material) {
+    return material.kind == MaterialKind::kDielectric && glassRoughness(material) > 0.0f;
+}
+
 // Whether light can leave the material in no other way than diffusely, whatever its textures.
 inline bool isDiffuseAtMost(const MaterialDescription& material) {
     return material.kind == MaterialKind::kSurface && isBlack(material.glossy) &&
-           isBlack(material.diffuseTransmission) && material.transparency == 0.0f &&
-           material.opacityTexture == kNoTexture;
+           isBlack(material.diffuseTransmission) && !hasCoat(material) && !hasSheen(material) &&
+           material.transparency == 0.0f && material.opacityTexture == kNoTexture;
 }
 
 // Half of a Phong lobe's greatest value lies 10 degrees aside, or farther.
@@ -92,13 +125,19 @@ inline constexpr float kLeastBroadRoughness = 0.454f;
 // Glass is never: what goes through it is none of the surface's.
 inline bool isBroad(const MaterialDescription& material) {
     if (material.kind == MaterialKind::kDielectric) return false;
+    if (hasCoat(material) && material.coatRoughness < kLeastBroadRoughness) return false;
+    if ((hasCoat(material) || hasSheen(material)) && !isShinyBelow(material)) return true;
+    // Below a layer a mirror is the least rough that there is.
+    if (hasCoat(material) && material.kind == MaterialKind::kMirror && material.roughness == 0.0f &&
+        material.glossyExponent == 0.0f)
+        return false;
     return material.roughness > 0.0f ? material.roughness >= kLeastBroadRoughness
                                      : material.glossyExponent <= kMostBroadExponent;
 }
 
 // Whether light that a mirror or glass sends on is spread.
 inline bool isRough(const MaterialDescription& material) {
-    return material.roughness > 0.0f || material.glossyExponent > 0.0f;
+    return material.roughness > 0.0f || material.glossyExponent > 0.0f || hasCoat(material);
 }
 
 // Whether light can leave the material in one direction, or two, like from a mirror or glass.
@@ -128,16 +167,16 @@ inline bool reflectsDiffusely(const MaterialDescription& material) {
 // Whether the material may have a lobe that is glossy or broad.
 inline bool mayBeGlossy(const MaterialDescription& material) {
     return (material.kind == MaterialKind::kSurface &&
-            !(isBlack(material.glossy) && isBlack(material.diffuseTransmission))) ||
-           (material.kind == MaterialKind::kMirror && isRough(material)) ||
-           (material.kind == MaterialKind::kDielectric && material.roughness > 0.0f);
+            !(isBlack(material.glossy) && isBlack(material.diffuseTransmission) &&
+              !hasCoat(material) && !hasSheen(material))) ||
+           (material.kind == MaterialKind::kMirror && isRough(material)) || isRoughGlass(material);
 }
 
 // Whether the numbers are those of a broad lobe. So may glass have them, to no effect on what it
 // does; times that the plan expects count it.
 inline bool hasBroadNumbers(const MaterialDescription& material) {
-    return !isBlack(material.glossy) && isBroad(material) &&
-           (material.kind == MaterialKind::kSurface || isRough(material));
+    return (!isBlack(material.glossy) || hasCoat(material) || hasSheen(material)) &&
+           isBroad(material) && (material.kind == MaterialKind::kSurface || isRough(material));
 }
 
 // Whether light that meets the material goes nowhere from there, whatever its textures.
@@ -163,7 +202,8 @@ inline constexpr float kCarriesNothing = 1e-6f;
 inline bool castsCaustics(const MaterialDescription& material) {
     if (isDiffuseAtMost(material) || isInvisible(material)) return false;
     if (material.kind != MaterialKind::kDielectric && !material.fresnelMirror &&
-        material.glossyTexture == kNoTexture && !(maxChannel(material.glossy) > kCarriesNothing))
+        !hasCoat(material) && material.glossyTexture == kNoTexture &&
+        !(maxChannel(material.glossy) > kCarriesNothing))
         return false;
     const bool mayBeBroad = material.kind == MaterialKind::kSurface ||
                             (material.kind == MaterialKind::kMirror && isRough(material));

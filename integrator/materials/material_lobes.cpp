@@ -3,6 +3,9 @@
 #include "integrator/materials/material_lobes.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include "integrator/materials/layers.h"
 
 namespace pm {
 
@@ -34,16 +37,20 @@ class Numbers {
     Vec2f m_uv;
 };
 
-// Of what is smoother, slopes can't be told from none in floats.
-constexpr float kLeastRoughness = 1e-2f;
-
 float roughnessOf(const MaterialDescription& material, const Numbers& numbers) {
     return std::min(1.0f, material.roughness * numbers.factor(material.roughnessTexture));
 }
 // Of mirrors and glass; 0: smooth.
-float alphaOf(const MaterialDescription& material, const Numbers& numbers) {
-    const float roughness = roughnessOf(material, numbers);
+float alphaOf(float roughness) {
     return roughness >= kLeastRoughness ? roughness * roughness : 0.0f;
+}
+// Of what is never smooth; a Phong lobe that stands for it is as wide.
+float leastAlphaOf(const MaterialDescription& material, const Numbers& numbers) {
+    float roughness = roughnessOf(material, numbers);
+    if (!(roughness > 0.0f) && material.glossyExponent > 0.0f)
+        roughness = std::sqrt(std::sqrt(2.0f / (material.glossyExponent + 2.0f)));
+    roughness = std::max(kLeastRoughness, roughness);
+    return roughness * roughness;
 }
 
 template <typename Model>
@@ -54,33 +61,91 @@ void setSmooth(Model model, const LobePoint& at, Lobes& lobes) {
     lobes.smooth = model;
 }
 
-// A boundary whose colour is what it reflects at normal incidence, over the diffuse lobe.
-void setCoat(const MaterialDescription& material, const Numbers& numbers, const LobePoint& at,
-             Lobes& lobes) {
-    const Rgb f0 = numbers.reflectance(material.glossy, material.glossyTexture);
-    const float roughness = std::max(kLeastRoughness, roughnessOf(material, numbers));
-    const float alpha = roughness * roughness;
-    const Fresnel fresnel{Fresnel::Curve::kSchlick, f0};
-    const Undercoat below{{std::min(0.99f, maxChannel(f0)), alpha}};
-    lobes.of(Lobe::kDiffuse) *= below.passesOut(at);
-    lobes.diffuse = below;
-    const GgxReflection lobe{{alpha}, fresnel};
+template <typename Model>
+void setGlossy(const Model& lobe, const LobePoint& at, Lobes& lobes) {
     lobes.of(lobes.glossyRole) = lobe.albedo(lobe.cosine(at)) * at.opacity;
     lobes.glossy = lobe;
 }
 
-void setSurface(const MaterialDescription& material, const Numbers& numbers, const LobePoint& at,
-                Lobes& lobes) {
+// Rough facets, longer along the tangent where they are to be.
+GgxReflection facets(const MaterialDescription& material, const Surface& surface,
+                     const StretchedAlbedo* stretched, float alpha, const Fresnel& fresnel) {
+    GgxReflection lobe{{alpha}, fresnel};
+    if (!stretched || !(lengthSquared(surface.tangent) > 0.0f)) return lobe;
+    lobe.stretched = stretched;
+    lobe.ggx.stretch = stretchOf(material);
+    const SinCos turn = sinCosTurns(material.anisotropyRotation);
+    const Frame frame(surface.shadingNormal, surface.tangent);
+    lobe.tangent = frame.tangent * turn.cos + frame.bitangent * turn.sin;
+    return lobe;
+}
+
+// A rough lobe, and the layer on top where there is one.
+void setFacets(const MaterialDescription& material, const GgxReflection& base,
+               const LayerPass* pass, const LobePoint& at, Lobes& lobes) {
+    if (hasCoat(material))
+        setGlossy(Layered<GgxReflection>{coatOf(material), material.coat, base, pass}, at, lobes);
+    else if (hasSheen(material))
+        setGlossy(Layered<Sheen>{sheenOf(material), 1.0f, base, pass}, at, lobes);
+    else
+        setGlossy(base, at, lobes);
+}
+
+void setTopAlone(const MaterialDescription& material, const LobePoint& at, Lobes& lobes) {
+    if (hasSheen(material)) return setGlossy(sheenOf(material), at, lobes);
+    setGlossy(coatOf(material), at, lobes);
+    lobes.of(lobes.glossyRole) *= material.coat;
+}
+
+// What the diffuse lobe lies below: a boundary that reflects f0 at normal incidence, and layers.
+void setUndercoat(const MaterialDescription& material, const Rgb& f0, float alpha,
+                  const LayerPass* pass, const LobePoint& at, Lobes& lobes) {
+    Cover cover;
+    cover.pass = pass;
+    cover.boundary = {std::min(0.99f, maxChannel(f0)), alpha};
+    if (hasCoat(material)) {
+        cover.coat = {normalReflectance(material.coatIor), coatAlpha(material)};
+        cover.coatShare = material.coat;
+    } else if (hasSheen(material)) {
+        const Sheen sheen = sheenOf(material);
+        cover.sheen = maxChannel(sheen.tint);
+        cover.sheenRoughness = sheen.roughness;
+    }
+    const Undercoat below(cover);
+    lobes.of(Lobe::kDiffuse) *= below.passesOut(at);
+    lobes.diffuse = below;
+}
+
+// A boundary whose colour is what it reflects at normal incidence, over the diffuse lobe, and what
+// is on top of it.
+void setCoated(const MaterialDescription& material, const Numbers& numbers, const Surface& surface,
+               const TablesOf& tables, const LobePoint& at, Lobes& lobes) {
+    if (!isShinyBelow(material)) {
+        setUndercoat(material, Rgb(), 0.0f, nullptr, at, lobes);
+        return setTopAlone(material, at, lobes);
+    }
+    const Rgb f0 = numbers.reflectance(material.glossy, material.glossyTexture);
+    const float alpha = leastAlphaOf(material, numbers);
+    setUndercoat(material, f0, alpha, tables.pass, at, lobes);
+    setFacets(material,
+              facets(material, surface, tables.stretched, alpha, {Fresnel::Curve::kSchlick, f0}),
+              tables.pass, at, lobes);
+}
+
+void setSurface(const MaterialDescription& material, const Numbers& numbers, const Surface& surface,
+                const TablesOf& tables, const LobePoint& at, Lobes& lobes) {
     const Rgb colour = numbers.reflectance(material.diffuse, material.diffuseTexture);
     setDiffuseLobe(material, colour, lobes.diffuse);
     lobes.of(Lobe::kDiffuse) = colour * at.opacity;
+    if (hasCoat(material) || hasSheen(material) ||
+        (material.roughness > 0.0f && !isBlack(material.glossy)))
+        return setCoated(material, numbers, surface, tables, at, lobes);
     if (isBlack(material.glossy) && !isBlack(material.diffuseTransmission)) {
         lobes.of(lobes.glossyRole) = material.diffuseTransmission * at.opacity;
         lobes.glossy = DiffuseTransmission{};
         return;
     }
     if (isBlack(material.glossy)) return;
-    if (material.roughness > 0.0f) return setCoat(material, numbers, at, lobes);
     lobes.of(lobes.glossyRole) =
         numbers.reflectance(material.glossy, material.glossyTexture) * at.opacity;
     lobes.glossy = Phong{
@@ -90,25 +155,29 @@ void setSurface(const MaterialDescription& material, const Numbers& numbers, con
 Fresnel metalCurve(const MaterialDescription& material, const Rgb& tint) {
     if (!isBlack(material.conductorK))
         return {Fresnel::Curve::kConductor, tint, material.conductorN, material.conductorK};
-    return {material.fresnelMirror ? Fresnel::Curve::kSchlick : Fresnel::Curve::kEven, tint};
+    if (isBlack(material.edgeTint))
+        return {material.fresnelMirror ? Fresnel::Curve::kSchlick : Fresnel::Curve::kEven, tint};
+    const MetalIndex r = metalOfEdge(tint.r, material.edgeTint.r),
+                     g = metalOfEdge(tint.g, material.edgeTint.g),
+                     b = metalOfEdge(tint.b, material.edgeTint.b);
+    return {Fresnel::Curve::kConductor, Rgb(1.0f), {r.n, g.n, b.n}, {r.k, g.k, b.k}};
 }
 
-void setMetal(const MaterialDescription& material, const Numbers& numbers, const Rgb& tint,
-              const LobePoint& at, Lobes& lobes) {
-    const float alpha = alphaOf(material, numbers);
-    const Fresnel fresnel = metalCurve(material, tint);
-    if (alpha == 0.0f) return setSmooth(Mirror{fresnel}, at, lobes);
-    const GgxReflection lobe{{alpha}, fresnel};
-    lobes.of(lobes.glossyRole) = lobe.albedo(lobe.cosine(at)) * at.opacity;
-    lobes.glossy = lobe;
-}
-
-void setMirror(const MaterialDescription& material, const Numbers& numbers, const LobePoint& at,
-               Lobes& lobes) {
+void setMirror(const MaterialDescription& material, const Numbers& numbers, const Surface& surface,
+               const TablesOf& tables, const LobePoint& at, Lobes& lobes) {
     const Rgb tint = numbers.reflectance(material.glossy, material.glossyTexture);
-    if (material.roughness > 0.0f) return setMetal(material, numbers, tint, at, lobes);
-    if (!(material.glossyExponent > 0.0f))
-        return setSmooth(Mirror{metalCurve(material, tint)}, at, lobes);
+    const Fresnel fresnel = metalCurve(material, tint);
+    if (hasCoat(material))
+        return setFacets(
+            material,
+            facets(material, surface, tables.stretched, leastAlphaOf(material, numbers), fresnel),
+            tables.pass, at, lobes);
+    if (material.roughness > 0.0f) {
+        const float alpha = alphaOf(roughnessOf(material, numbers));
+        if (alpha == 0.0f) return setSmooth(Mirror{fresnel}, at, lobes);
+        return setGlossy(facets(material, surface, tables.stretched, alpha, fresnel), at, lobes);
+    }
+    if (!(material.glossyExponent > 0.0f)) return setSmooth(Mirror{fresnel}, at, lobes);
     lobes.of(lobes.glossyRole) = tint * at.opacity;
     lobes.glossy = Phong{material.glossyExponent};
 }
@@ -116,18 +185,14 @@ void setMirror(const MaterialDescription& material, const Numbers& numbers, cons
 void setDielectric(const MaterialDescription& material, const Numbers& numbers, const LobePoint& at,
                    bool isPane, const GlassAlbedo* glass, Lobes& lobes) {
     const Rgb tint = numbers.reflectance(material.transmission, material.transmissionTexture);
-    const float alpha = isPane ? 0.0f : alphaOf(material, numbers);
-    if (alpha > 0.0f) {
-        const RoughGlass lobe{{alpha}, tint, glass, !at.isFront};
-        lobes.of(lobes.glossyRole) = lobe.albedo(lobe.cosine(at)) * at.opacity;
-        lobes.glossy = lobe;
-        return;
+    if (isPane) {
+        const bool isOfGlass = at.isFront || material.thinWalled;
+        return setSmooth(Pane{tint, isOfGlass ? material.ior : 1.0f / material.ior}, at, lobes);
     }
-    const float eta = at.isFront ? material.ior : 1.0f / material.ior;
-    if (isPane)
-        setSmooth(Pane{tint, eta}, at, lobes);
-    else
-        setSmooth(Dielectric{tint, eta}, at, lobes);
+    const float alpha = alphaOf(
+        std::min(1.0f, glassRoughness(material) * numbers.factor(material.roughnessTexture)));
+    if (alpha > 0.0f) return setGlossy(RoughGlass{{alpha}, tint, glass, !at.isFront}, at, lobes);
+    setSmooth(Dielectric{tint, at.isFront ? material.ior : 1.0f / material.ior}, at, lobes);
 }
 
 }  // namespace
@@ -139,12 +204,14 @@ void setLobes(const Materials& materials, const Surface& surface, const LobePoin
     lobes.glossyRole = isBroad(material) ? Lobe::kBroad : Lobe::kGlossy;
     switch (material.kind) {
         case MaterialKind::kSurface:
-            return setSurface(material, numbers, at, lobes);
+            return setSurface(material, numbers, surface, materials.tablesOf(surface.material), at,
+                              lobes);
         case MaterialKind::kMirror:
-            return setMirror(material, numbers, at, lobes);
+            return setMirror(material, numbers, surface, materials.tablesOf(surface.material), at,
+                             lobes);
         case MaterialKind::kDielectric:
             return setDielectric(material, numbers, at, surface.isPane,
-                                 materials.glassOf(surface.material), lobes);
+                                 materials.tablesOf(surface.material).glass, lobes);
     }
 }
 

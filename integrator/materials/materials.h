@@ -3,11 +3,10 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <span>
 
-#include "integrator/materials/lobes/glass_albedo.h"
 #include "integrator/materials/material_description.h"
+#include "integrator/materials/material_tables.h"
 #include "integrator/materials/texture_source.h"
 
 namespace pm {
@@ -17,11 +16,10 @@ namespace pm {
 struct Materials {
     std::span<const MaterialDescription> all;
     const TextureSource* textures = nullptr;
-    // Of those that are rough glass, by their numbers; null of all others. Empty: there are none.
-    std::span<const std::shared_ptr<const GlassAlbedo>> glass{};
+    const MaterialTables* tables = nullptr;  // null: no material needs one
 
-    const GlassAlbedo* glassOf(std::uint32_t index) const {
-        return glass.empty() ? nullptr : glass[index].get();
+    TablesOf tablesOf(std::uint32_t index) const {
+        return tables && !tables->all.empty() ? tables->all[index] : TablesOf{};
     }
     const MaterialDescription& operator[](std::uint32_t index) const { return all[index]; }
 };

@@ -28,6 +28,14 @@ struct Frame {
         tangent = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};
         bitangent = {b, sign + n.y * n.y * a, -n.y};
     }
+    // The tangent as near as can be to a direction; any, where that is along the normal or none.
+    Frame(const Vec3f& n, const Vec3f& along) : Frame(n) {
+        const Vec3f flat = along - n * dot(along, n);
+        const float l2 = lengthSquared(flat);
+        if (!(l2 > 1e-12f)) return;
+        tangent = flat / std::sqrt(l2);
+        bitangent = cross(n, tangent);
+    }
     Vec3f toWorld(const Vec3f& v) const { return tangent * v.x + bitangent * v.y + normal * v.z; }
     Vec3f toLocal(const Vec3f& v) const {
         return {dot(v, tangent), dot(v, bitangent), dot(v, normal)};

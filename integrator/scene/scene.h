@@ -213,8 +213,8 @@ class Scene {
     static void nameSurface(const ShapeRecord& shape, std::uint32_t primitive, Surface& surface);
 
     SceneDescription m_description;
-    std::vector<std::shared_ptr<const GlassAlbedo>> m_glass;  // see Materials
-    Materials m_materials{m_description.materials, m_description.textures.get()};
+    MaterialTables m_tables;
+    Materials m_materials{m_description.materials, m_description.textures.get(), &m_tables};
     std::vector<ShapeRecord> m_shapes;
     std::vector<Light> m_lights;
     std::vector<LampTriangle> m_lampTriangles;  // of the lights
@@ -232,6 +232,7 @@ class Scene {
     bool m_isFlat = false, m_hasSheets = false;
     bool m_letsThrough = false;  // some material does
     bool m_hasNormalMaps = false;
+    bool m_hasThinWalls = false;
     bool m_absorbs = false;  // some material does
     bool m_hasInstances = false, m_viewersDiffer = false;
     RayTracer m_tracer;  // last: it refers to the shapes' arrays and is destroyed before them

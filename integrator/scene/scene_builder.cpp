@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <optional>
 #include <unordered_map>
 
@@ -50,7 +49,10 @@ class Scene::Builder {
             std::ranges::any_of(m_scene.m_description.materials, pm::letsThrough);
         m_scene.m_hasNormalMaps = findNormalMaps();
         m_scene.m_absorbs = std::ranges::any_of(m_scene.m_description.materials, absorbs);
-        makeGlass();
+        m_scene.m_hasThinWalls = std::ranges::any_of(m_scene.m_description.materials,
+                                                     [](const auto& m) { return m.thinWalled; });
+        noteHiddenSheen();
+        m_scene.m_tables = makeMaterialTables(m_scene.m_description.materials, m_cancel);
         addToTracer();
         for (std::uint32_t i = 0; i < m_scene.m_shapes.size(); ++i) findLights(i);
         m_scene.lookAtTextures(m_cancel);
@@ -93,25 +95,13 @@ class Scene::Builder {
                                    [](const auto& m) { return m.normalTexture != kNoTexture; });
     }
 
-    // The tables of materials that are rough glass, one for each index of refraction.
-    void makeGlass() {
-        const auto& materials = m_scene.m_description.materials;
-        const auto isRoughGlass = [](const MaterialDescription& material) {
-            return material.kind == MaterialKind::kDielectric && material.roughness > 0.0f;
-        };
-        if (std::ranges::none_of(materials, isRoughGlass)) return;
-        std::map<float, std::shared_ptr<const GlassAlbedo>> tables;
-        for (const MaterialDescription& material : materials) {
-            std::shared_ptr<const GlassAlbedo> table;
-            if (isRoughGlass(material)) {
-                m_cancel.throwIfSet("building the scene");
-                auto& made = tables[material.ior];
-                if (!made) made = std::make_shared<const GlassAlbedo>(material.ior);
-                table = made;
-            }
-            m_scene.m_glass.push_back(std::move(table));
-        }
-        m_scene.m_materials.glass = m_scene.m_glass;
+    void noteHiddenSheen() {
+        for (const MaterialDescription& material : m_scene.m_description.materials)
+            if (hasCoat(material) && !isBlack(material.sheen))
+                m_scene.m_notices.push_back(
+                    {NoticeCode::kNotCovered,
+                     fmt::format("material '{}' has a coat, so its sheen is left out",
+                                 material.name)});
     }
 
     void checkInstances() const {

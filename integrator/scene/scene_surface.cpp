@@ -116,11 +116,9 @@ bool Scene::intersect(const Ray& ray, Surface& surface) const {
     if (!m_tracer.intersect(ray, hit)) return false;
     if (m_coincident) hit = m_coincident->chosen(ray, hit);
     surfaceAt(ray, hit, surface);
-    surface.isPane = hit.isPane;
-    if (hit.isPane) {
-        surface.shadingNormal = surface.geometricNormal;
-        surface.offset *= CoincidentFaces::kBeyondPane;
-    }
+    surface.isPane = hit.isPane || (m_hasThinWalls && m_materials[surface.material].thinWalled);
+    if (surface.isPane) surface.shadingNormal = surface.geometricNormal;
+    if (hit.isPane) surface.offset *= CoincidentFaces::kBeyondPane;
     return true;
 }
 

@@ -20,6 +20,7 @@ struct Surface {
     float offset = 0.0f;
     Vec3f geometricNormal;  // unit, out of the front
     Vec3f shadingNormal;    // unit, in the hemisphere of the geometric normal
+    Vec3f tangent;          // where the material asks for one; zero: none is known
     Vec2f uv;
     std::uint32_t material = 0;
     std::uint32_t shape = 0;

@@ -35,6 +35,21 @@ inline float fresnelConductor(float cosine, float n, float k) {
     return 0.5f * (parallel + perpendicular);
 }
 
+// The index of a metal that reflects r in (0, 1) at normal incidence, and whose edge has the tint g
+// in [0, 1]: n lies between its least and its greatest by g. Source: Gulbrandsen, "Artist Friendly
+// Metallic Fresnel", JCGT 3(4), 2014, eqs. 12 to 14.
+struct MetalIndex {
+    float n, k;
+};
+inline MetalIndex metalOfEdge(float r, float g) {
+    constexpr float kLeast = 1e-3f, kMost = 0.999f;
+    r = std::fmin(std::fmax(r, kLeast), kMost);
+    const float root = std::sqrt(r);
+    const float n = g * (1.0f - r) / (1.0f + r) + (1.0f - g) * (1.0f + root) / (1.0f - root);
+    const float k2 = (r * (n + 1.0f) * (n + 1.0f) - (n - 1.0f) * (n - 1.0f)) / (1.0f - r);
+    return {n, std::sqrt(std::fmax(0.0f, k2))};
+}
+
 // Schlick 1994: from a reflectance at normal incidence to 1 at grazing angles.
 inline float schlickWeight(float cosine) {
     const float m = 1.0f - cosine;

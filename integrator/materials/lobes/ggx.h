@@ -15,19 +15,20 @@ namespace pm {
 // through Rough Surfaces", 2007, have it. All directions are unit, in a frame whose z is the
 // surface's normal.
 struct Ggx {
-    float alpha = 0.5f;  // > 0: slopes' width, of which a roughness is the root
+    float alpha = 0.5f;    // > 0: slopes' width, of which a roughness is the root
+    float stretch = 1.0f;  // >= 1: that is wider along x by it, and as much narrower along y
 
     // Density of microfacets with a normal, D; sr^-1.
     float density(const Vec3f& h) const {
         const float a2 = alpha * alpha;
-        const float s = (h.x * h.x + h.y * h.y) / a2 + h.z * h.z;
+        const float s = spread2(h) / a2 + h.z * h.z;
         return 1.0f / (kPi * a2 * s * s);
     }
     // Smith's function: masking is 1 / (1 + lambda). Either side of the surface.
     float lambda(const Vec3f& w) const {
         const float z2 = w.z * w.z;
         if (!(z2 > 0.0f)) return std::numeric_limits<float>::max();
-        const float slope2 = alpha * alpha * (w.x * w.x + w.y * w.y) / z2;
+        const float slope2 = alpha * alpha * (square(w.x * stretch) + square(w.y / stretch)) / z2;
         // Without cancellation: sqrt(1 + s) - 1 = s / (sqrt(1 + s) + 1).
         return 0.5f * slope2 / (std::sqrt(1.0f + slope2) + 1.0f);
     }
@@ -44,13 +45,19 @@ struct Ggx {
     }
     // Source: Dupuy & Benyoub, "Sampling Visible GGX Normals with Spherical Caps", HPG 2023.
     Vec3f sampleVisible(const Vec3f& out, Vec2f u) const {
-        const Vec3f o = normalize(Vec3f{alpha * out.x, alpha * out.y, out.z});
+        const float x = alpha * stretch, y = alpha / stretch;
+        const Vec3f o = normalize(Vec3f{x * out.x, y * out.y, out.z});
         const float z = 1.0f - u.x * (1.0f + o.z);
         const float radius = std::sqrt(std::max(0.0f, 1.0f - z * z));
         const SinCos phi = sinCosTurns(u.y);
         const Vec3f h = Vec3f{radius * phi.cos, radius * phi.sin, z} + o;
-        return normalize(Vec3f{alpha * h.x, alpha * h.y, std::max(1e-9f, h.z)});
+        return normalize(Vec3f{x * h.x, y * h.y, std::max(1e-9f, h.z)});
     }
+
+  private:
+    static float square(float v) { return v * v; }
+    // How far a normal leans, squared, where the stretch is taken back.
+    float spread2(const Vec3f& h) const { return square(h.x / stretch) + square(h.y * stretch); }
 };
 
 }  // namespace pm

@@ -14,7 +14,6 @@ namespace pm {
 namespace {
 
 constexpr std::uint32_t kNormals = 1024;
-constexpr float kLeastCosine = 1e-4f, kLeastAlpha = 1e-5f;
 
 GgxShares integrate(float cosine, float alpha) {
     const Ggx ggx{alpha};
@@ -40,23 +39,16 @@ GgxShares mix(const GgxShares& a, const GgxShares& b, float t) {
 
 GgxAlbedo::GgxAlbedo() {
     for (std::size_t r = 0; r < kSize; ++r) {
-        const float roughness = static_cast<float>(r) / (kSize - 1);
-        const float alpha = std::max(kLeastAlpha, roughness * roughness);
-        double normal = 0, grazing = 0;
-        for (std::size_t c = 0; c < kSize; ++c) {
-            const float root = static_cast<float>(c) / (kSize - 1);
-            m_shares[r][c] = integrate(std::max(kLeastCosine, root * root), alpha);
-        }
-        constexpr int kSteps = 1024;  // of 2 mu d mu = d mu^2, which is even
-        for (int i = 0; i < kSteps; ++i) {
-            const float root = std::sqrt(std::sqrt((static_cast<float>(i) + 0.5f) / kSteps));
-            const TableCell cell(root, kSize);
-            const GgxShares shares =
-                mix(m_shares[r][cell.low], m_shares[r][cell.low + 1], cell.part);
-            normal += static_cast<double>(shares.normal);
-            grazing += static_cast<double>(shares.grazing);
-        }
-        m_means[r] = {static_cast<float>(normal / kSteps), static_cast<float>(grazing / kSteps)};
+        for (std::size_t c = 0; c < kSize; ++c)
+            m_shares[r][c] = integrate(tableCosine(c), tableAlpha(r));
+        const auto part = [&](float GgxShares::*which) {
+            return static_cast<float>(meanOverCosines([&](float cosine) {
+                const TableCell cell = cellOfCosine(cosine);
+                return static_cast<double>(
+                    mix(m_shares[r][cell.low], m_shares[r][cell.low + 1], cell.part).*which);
+            }));
+        };
+        m_means[r] = {part(&GgxShares::normal), part(&GgxShares::grazing)};
     }
 }
 
@@ -66,7 +58,7 @@ const GgxAlbedo& GgxAlbedo::table() {
 }
 
 GgxShares GgxAlbedo::at(float cosine, float alpha) const {
-    const TableCell r(std::sqrt(alpha), kSize), c(std::sqrt(cosine), kSize);
+    const TableCell r = cellOfAlpha(alpha), c = cellOfCosine(cosine);
     const auto along = [&](std::size_t row) {
         return mix(m_shares[row][c.low], m_shares[row][c.low + 1], c.part);
     };
@@ -74,7 +66,7 @@ GgxShares GgxAlbedo::at(float cosine, float alpha) const {
 }
 
 GgxShares GgxAlbedo::mean(float alpha) const {
-    const TableCell r(std::sqrt(alpha), kSize);
+    const TableCell r = cellOfAlpha(alpha);
     return mix(m_means[r.low], m_means[r.low + 1], r.part);
 }
 

@@ -5,6 +5,8 @@
 #include <array>
 #include <cstddef>
 
+#include "integrator/materials/lobes/table_cell.h"
+
 namespace pm {
 
 // Of a rough surface: what it reflects of even light in one scattering, without what its facets
@@ -28,7 +30,7 @@ class GgxAlbedo {
     GgxShares mean(float alpha) const;
 
   private:
-    static constexpr std::size_t kSize = 32;
+    static constexpr std::size_t kSize = kLobeTableSize;
 
     GgxAlbedo();
 

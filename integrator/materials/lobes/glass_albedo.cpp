@@ -14,7 +14,6 @@ namespace pm {
 namespace {
 
 constexpr std::uint32_t kNormals = 512;
-constexpr float kLeastCosine = 1e-4f, kLeastAlpha = 1e-5f;
 
 // eta: index beyond over that on this side.
 float integrate(float cosine, float alpha, float eta) {
@@ -45,12 +44,10 @@ GlassAlbedo::GlassAlbedo(float ior) : m_ior(ior) {
     for (int side = 0; side < 2; ++side) {
         for (std::size_t r = 0; r < kSize; ++r) fill(side, r);
         const float eta = side == 0 ? ior : 1.0f / ior;
-        constexpr int kSteps = 1024;
-        double through = 0;
-        for (int i = 0; i < kSteps; ++i)
-            through += static_cast<double>(
-                1.0f - fresnelDielectric(std::sqrt((static_cast<float>(i) + 0.5f) / kSteps), eta));
-        m_letsThrough[static_cast<std::size_t>(side)] = static_cast<float>(through / kSteps);
+        m_letsThrough[static_cast<std::size_t>(side)] =
+            static_cast<float>(meanOverCosines([&](float cosine) {
+                return static_cast<double>(1.0f - fresnelDielectric(cosine, eta));
+            }));
     }
 }
 
@@ -61,25 +58,17 @@ const GlassAlbedo& GlassAlbedo::usual() {
 
 void GlassAlbedo::fill(int side, std::size_t r) {
     Row& row = m_rows[static_cast<std::size_t>(side)][r];
-    const float roughness = static_cast<float>(r) / (kSize - 1);
-    const float alpha = std::max(kLeastAlpha, roughness * roughness);
     const float eta = side == 0 ? m_ior : 1.0f / m_ior;
-    for (std::size_t c = 0; c < kSize; ++c) {
-        const float root = static_cast<float>(c) / (kSize - 1);
-        row.missing[c] =
-            std::max(0.0f, 1.0f - integrate(std::max(kLeastCosine, root * root), alpha, eta));
-    }
-    constexpr int kSteps = 1024;
-    double sum = 0;
-    for (int i = 0; i < kSteps; ++i) {
-        const TableCell c(std::sqrt(std::sqrt((static_cast<float>(i) + 0.5f) / kSteps)), kSize);
-        sum += static_cast<double>(std::lerp(row.missing[c.low], row.missing[c.low + 1], c.part));
-    }
-    row.mean = static_cast<float>(sum / kSteps);
+    for (std::size_t c = 0; c < kSize; ++c)
+        row.missing[c] = std::max(0.0f, 1.0f - integrate(tableCosine(c), tableAlpha(r), eta));
+    row.mean = static_cast<float>(meanOverCosines([&](float cosine) {
+        const TableCell c = cellOfCosine(cosine);
+        return static_cast<double>(std::lerp(row.missing[c.low], row.missing[c.low + 1], c.part));
+    }));
 }
 
 float GlassAlbedo::missing(int side, float cosine, float alpha) const {
-    const TableCell r(std::sqrt(alpha), kSize), c(std::sqrt(cosine), kSize);
+    const TableCell r = cellOfAlpha(alpha), c = cellOfCosine(cosine);
     const auto& rows = m_rows[static_cast<std::size_t>(side)];
     const auto along = [&](const Row& row) {
         return std::lerp(row.missing[c.low], row.missing[c.low + 1], c.part);
@@ -88,7 +77,7 @@ float GlassAlbedo::missing(int side, float cosine, float alpha) const {
 }
 
 float GlassAlbedo::meanMissing(int side, float alpha) const {
-    const TableCell r(std::sqrt(alpha), kSize);
+    const TableCell r = cellOfAlpha(alpha);
     const auto& rows = m_rows[static_cast<std::size_t>(side)];
     return std::lerp(rows[r.low].mean, rows[r.low + 1].mean, r.part);
 }

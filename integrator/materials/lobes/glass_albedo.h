@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "integrator/materials/lobes/ggx.h"
+#include "integrator/materials/lobes/table_cell.h"
 
 namespace pm {
 
@@ -28,7 +29,7 @@ class GlassAlbedo {
     float crossing(int side, float alpha) const;
 
   private:
-    static constexpr std::size_t kSize = 32;
+    static constexpr std::size_t kSize = kLobeTableSize;
     struct Row {  // of a roughness
         std::array<float, kSize> missing;
         float mean = 0;

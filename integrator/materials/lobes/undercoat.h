@@ -4,8 +4,9 @@
 
 #include <algorithm>
 
-#include "integrator/materials/lobes/ggx_reflection.h"
 #include "integrator/materials/lobes/lambertian.h"
+#include "integrator/materials/lobes/layered.h"
+#include "integrator/materials/lobes/sheen_albedo.h"
 
 namespace pm {
 
@@ -19,18 +20,46 @@ struct CoatAlbedo {
         return lobe().albedo(std::max(1e-4f, cosine)).g;
     }
     float mean() const { return alpha == 0.0f ? f0 + (1.0f - f0) / 21.0f : lobe().mean().g; }
-
-  private:
     GgxReflection lobe() const { return {{alpha}, {Fresnel::Curve::kSchlick, Rgb(f0)}}; }
 };
 
-// Diffuse below a coat that takes what it reflects on the way in and on the way out: with
-// w(mu) = 1 - what the coat reflects along mu, W its mean and rho the colour below,
-// f = rho w(in) w(out) / (pi W). Of white all that the coat leaves comes back, and the lobe is
+// What lies over a diffuse lobe: the boundary of plastic, and a layer on top.
+struct Cover {
+    CoatAlbedo boundary;  // f0 0: there is none
+    CoatAlbedo coat;      // a clear one
+    float coatShare = 0.0f;
+    float sheen = 0.0f;  // of fibres, in place of a coat: the largest channel
+    float sheenRoughness = 1.0f;
+    const LayerPass* pass = nullptr;  // of the layer, where both are
+
+    // Share of even light along a cosine that gets through all.
+    float passes(float cosine) const {
+        if (coatShare == 0.0f && sheen == 0.0f) return 1.0f - boundary.at(cosine);
+        cosine = std::max(1e-4f, cosine);
+        const float top = coatShare > 0.0f
+                              ? coatShare * coat.at(cosine)
+                              : sheen * SheenAlbedo::table().at(cosine, sheenRoughness);
+        const float below = pass ? albedoBelow(boundary.lobe(), *pass, cosine).g : 0.0f;
+        return std::max(0.0f, 1.0f - top - below);
+    }
+    // Its mean over directions, each by its cosine.
+    float mean() const {
+        if (coatShare == 0.0f && sheen == 0.0f) return 1.0f - boundary.mean();
+        constexpr int kSteps = 24;
+        return meanOverCosines([&](float cosine) { return passes(cosine); }, kSteps);
+    }
+};
+
+// Diffuse below layers that take what they reflect on the way in and on the way out: with
+// w(mu) = 1 - what they reflect along mu, W its mean and rho the colour below,
+// f = rho w(in) w(out) / (pi W). Of white all that they leave comes back, and the lobe is
 // reciprocal. Its reflectance is rho w(out). Source: Kelemen & Szirmay-Kalos, "A Microfacet Based
 // Coupled Specular-Matte BRDF Model", Eurographics 2001.
 struct Undercoat {
-    CoatAlbedo coat;
+    explicit Undercoat(const Cover& over) : cover(over), mean(over.mean()) {}
+
+    Cover cover;
+    float mean;  // of what gets through it
 
     // What gets through it along `out`.
     float passesOut(const LobePoint& at) const { return passes(at, at.out); }
@@ -51,11 +80,9 @@ struct Undercoat {
 
   private:
     float passes(const LobePoint& at, const Vec3f& w) const {
-        return 1.0f - coat.at(std::clamp(dot(w, at.nd), 0.0f, 1.0f));
+        return cover.passes(std::clamp(dot(w, at.nd), 0.0f, 1.0f));
     }
-    float fromEven(const LobePoint& at, const Vec3f& w) const {
-        return passes(at, w) / (1.0f - coat.mean());
-    }
+    float fromEven(const LobePoint& at, const Vec3f& w) const { return passes(at, w) / mean; }
 };
 
 }  // namespace pm

@@ -132,20 +132,22 @@ TEST(RoughLobes, WhiteUnderACoatReflectsAll) {
             for (const float cosine : kCosines) {
                 SCOPED_TRACE(testing::Message()
                              << "f0 " << f0 << " roughness " << roughness << " cosine " << cosine);
-                const CoatAlbedo coat{f0, roughness * roughness};
+                Cover under;
+                under.boundary = {f0, roughness * roughness};
                 const LobePoint at = seenAt(cosine);
                 Random random(6);
                 double below = 0, squares = 0;
                 constexpr int kCount = 20'000;
                 for (int i = 0; i < kCount; ++i) {
                     BsdfSample s;
-                    s.weight = Rgb(Undercoat{coat}.passesOut(at));
-                    if (!Undercoat{coat}.sample(at, random.next2D(), s)) continue;
+                    s.weight = Rgb(Undercoat(under).passesOut(at));
+                    if (!Undercoat(under).sample(at, random.next2D(), s)) continue;
                     below += static_cast<double>(s.weight.g) / kCount;
                     squares += static_cast<double>(s.weight.g * s.weight.g) / kCount;
                 }
                 const double error = std::sqrt(std::max(0.0, squares - below * below) / kCount);
-                expectWhite({below + static_cast<double>(coat.at(cosine)), error}, cosine);
+                expectWhite({below + static_cast<double>(under.boundary.at(cosine)), error},
+                            cosine);
             }
 }
 
