@@ -11,19 +11,25 @@
 
 namespace pm {
 
-// What is left of light on its way to a surface that it meets from inside, by the law of Beer and
-// Lambert: colour^(way / distance). Glass so thin that both its sides are met as one absorbs
-// nothing. from: where the way began; direction: unit.
-inline Rgb leftOnTheWay(const MaterialDescription& material, const Surface& to, const Ray& ray) {
-    if (!absorbs(material) || to.isPane || !(dot(ray.direction, to.geometricNormal) > 0.0f))
-        return Rgb(1.0f);
-    const float ways = length(to.position - ray.origin) / material.attenuationDistance;
+// What is left of light on a way through a medium, scene units, by the law of Beer and Lambert:
+// colour^(way / distance).
+inline Rgb leftAfter(const MaterialDescription& material, float way) {
+    if (!absorbs(material)) return Rgb(1.0f);
+    constexpr float kMost = 1e30f;  // of ways to infinity
+    const float ways = std::min(kMost, way / material.attenuationDistance);
     const auto left = [&](float colour) {
         constexpr float kDarkest = 1e-12f;
         return pinnedPow(std::max(colour, kDarkest), ways);
     };
     const Rgb& c = material.attenuationColour;
     return {left(c.r), left(c.g), left(c.b)};
+}
+
+// The same on the way to a surface that it meets from inside. Glass so thin that both its sides are
+// met as one absorbs nothing. ray: that led there.
+inline Rgb leftOnTheWay(const MaterialDescription& material, const Surface& to, const Ray& ray) {
+    if (to.isPane || !(dot(ray.direction, to.geometricNormal) > 0.0f)) return Rgb(1.0f);
+    return leftAfter(material, length(to.position - ray.origin));
 }
 
 }  // namespace pm

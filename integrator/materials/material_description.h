@@ -184,13 +184,19 @@ inline bool isBlackBody(const MaterialDescription& material) {
     return isDiffuseAtMost(material) && isBlack(material.diffuse);
 }
 
-// Whether light passes as if nothing were there: clear glass of index 1. What has such a material
-// is met by no ray.
+// Whether light passes as if nothing were there: clear glass of index 1 that no priority puts in
+// place of other glass. What has such a material is met by no ray.
 inline bool isInvisible(const MaterialDescription& material) {
     constexpr float kRounding = 1e-6f;
-    return material.kind == MaterialKind::kDielectric &&
+    return material.kind == MaterialKind::kDielectric && material.priority == 0 &&
            std::abs(material.ior - 1.0f) <= kRounding && material.transmission == Rgb(1.0f) &&
            material.transmissionTexture == kNoTexture && isBlack(material.emission);
+}
+
+// Whether a medium fills what its faces enclose.
+inline bool fillsItsInside(const MaterialDescription& material) {
+    return material.kind == MaterialKind::kDielectric && !material.thinWalled &&
+           !isInvisible(material);
 }
 
 // What a lobe may reflect and still count as carrying nothing: far less than one photon a pass

@@ -182,17 +182,23 @@ void setMirror(const MaterialDescription& material, const Numbers& numbers, cons
     lobes.glossy = Phong{material.glossyExponent};
 }
 
-void setDielectric(const MaterialDescription& material, const Numbers& numbers, const LobePoint& at,
-                   bool isPane, const GlassAlbedo* glass, Lobes& lobes) {
+void setDielectric(const MaterialDescription& material, const Numbers& numbers,
+                   const Materials& materials, const Surface& surface, const LobePoint& at,
+                   Lobes& lobes) {
     const Rgb tint = numbers.reflectance(material.transmission, material.transmissionTexture);
-    if (isPane) {
+    if (surface.isPane) {
         const bool isOfGlass = at.isFront || material.thinWalled;
         return setSmooth(Pane{tint, isOfGlass ? material.ior : 1.0f / material.ior}, at, lobes);
     }
+    const float own = at.isFront ? material.ior : 1.0f / material.ior;
+    const float eta = surface.eta > 0.0f ? surface.eta : own;
     const float alpha = alphaOf(
         std::min(1.0f, glassRoughness(material) * numbers.factor(material.roughnessTexture)));
-    if (alpha > 0.0f) return setGlossy(RoughGlass{{alpha}, tint, glass, !at.isFront}, at, lobes);
-    setSmooth(Dielectric{tint, at.isFront ? material.ior : 1.0f / material.ior}, at, lobes);
+    if (!(alpha > 0.0f)) return setSmooth(Dielectric{tint, eta}, at, lobes);
+    const GlassAlbedo* const table = surface.eta > 0.0f
+                                         ? materials.tables->glassOf(at.isFront ? eta : 1.0f / eta)
+                                         : materials.tablesOf(surface.material).glass;
+    setGlossy(RoughGlass{{alpha}, tint, table, !at.isFront}, at, lobes);
 }
 
 }  // namespace
@@ -210,8 +216,7 @@ void setLobes(const Materials& materials, const Surface& surface, const LobePoin
             return setMirror(material, numbers, surface, materials.tablesOf(surface.material), at,
                              lobes);
         case MaterialKind::kDielectric:
-            return setDielectric(material, numbers, at, surface.isPane,
-                                 materials.tablesOf(surface.material).glass, lobes);
+            return setDielectric(material, numbers, materials, surface, at, lobes);
     }
 }
 

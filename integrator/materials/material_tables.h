@@ -25,10 +25,15 @@ struct TablesOf {
 struct MaterialTables {
     std::vector<TablesOf> all;
     std::vector<std::shared_ptr<const void>> made;
+    std::vector<std::shared_ptr<const GlassAlbedo>> glass;  // all, by growing index
+
+    // Of the index that is nearest; null where there is no rough glass.
+    const GlassAlbedo* glassOf(float ior) const;
 };
 
-// Materials of the same numbers share them. Throws Error(kCancelled) soon after cancel is set.
-MaterialTables makeMaterialTables(std::span<const MaterialDescription> materials,
+// Materials of the same numbers share them. mayTouch: rough glass may have other glass on its other
+// side. Throws Error(kCancelled) soon after cancel is set.
+MaterialTables makeMaterialTables(std::span<const MaterialDescription> materials, bool mayTouch,
                                   const CancelCheck& cancel);
 
 }  // namespace pm

@@ -124,7 +124,8 @@ bool Scene::CoincidentFaces::hidesOther(const Scene& scene, const Face& face, co
     if (rank == Rank::kSheet && ofOther > rank) return true;
     if (ofOther != rank) return false;
     if (areNeighbours(scene, face, other)) return false;
-    if (rank == Rank::kGlass) return !areOfPane(scene, face, other);
+    // Media decide what is on both sides of all together.
+    if (rank == Rank::kGlass) return !scene.m_media && !areOfPane(scene, face, other);
     if (rank == Rank::kSheet) return !areCutAlike(scene, face, other);
     return rank != Rank::kShining ||
            dot(scene.m_shapes[face.shape].facet(face.primitive).normal,

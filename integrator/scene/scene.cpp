@@ -10,6 +10,7 @@
 
 #include "integrator/materials/material_description.h"
 #include "integrator/scene/coincident_faces.h"
+#include "integrator/scene/media.h"
 #include "integrator/scene/shape_record.h"
 
 namespace pm {
@@ -141,6 +142,7 @@ std::uint64_t Scene::memoryBytes() const {
     if (m_environment) bytes += m_environment->memoryBytes();
     for (const LampTexture& texture : m_lampTextures) bytes += texture.memoryBytes();
     if (m_coincident) bytes += m_coincident->memoryBytes();
+    if (m_media) bytes += m_media->memoryBytes();
     return bytes + m_lights.size() * (sizeof(Light) + sizeof(LampTriangle));
 }
 

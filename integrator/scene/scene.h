@@ -28,9 +28,6 @@
 
 namespace pm {
 
-class Medium;
-class Sampler;
-
 // A scene as it is rendered: immutable, moved to its own centre, ray-tracing structure built. Its
 // own coordinates are world coordinates minus centre(), in float. The centre is the middle of all
 // shapes, or of its core, where a few lie far away from that (see findCore). Threads: all const
@@ -51,11 +48,9 @@ class Scene {
     }
     // Share of light that goes straight along a ray from its origin to tMax, in [0, 1] a channel:
     // what the cut-outs and half-transparent sheets on it let through. All that the ray crosses
-    // counts once, faces that rays can't tell apart as one. What bends light lets none through.
-    // medium: in which the ray starts; null: vacuum, the only one that there is. sampler: for what
-    // is estimated by chance; nothing is.
-    Rgb transmittance(const Ray& ray, const Medium* medium = nullptr,
-                      Sampler* sampler = nullptr) const;
+    // counts once, faces that rays can't tell apart as one. What bends light lets none through; the
+    // medium that the ray starts in absorbs.
+    Rgb transmittance(const Ray& ray) const;
 
     // The same as a ray that starts at `origin`, any distance away, along the unit direction; but
     // it starts where it comes near the core, where nothing is in between: a float far away has no
@@ -88,7 +83,9 @@ class Scene {
     const Materials& materials() const { return m_materials; }
     // What is left of light that came to a surface by a ray: less than 1 inside of what absorbs.
     Rgb leftAlong(const Ray& ray, const Surface& surface) const {
-        return m_absorbs ? leftOnTheWay(m_materials[surface.material], surface, ray) : Rgb(1.0f);
+        if (!m_absorbs) return Rgb(1.0f);
+        if (m_media) return leftIn(surface.medium, length(surface.position - ray.origin));
+        return leftOnTheWay(m_materials[surface.material], surface, ray);
     }
     const MaterialDescription& material(std::uint32_t index) const {
         return m_description.materials[index];
@@ -185,6 +182,7 @@ class Scene {
     struct ShapeRecord;
     class Builder;
     class CoincidentFaces;
+    class Media;
     Scene(SceneDescription description, const std::string& isa, const CancelCheck& cancel);
 
     // A triangle's first vertex and the edges from it.
@@ -195,9 +193,19 @@ class Scene {
     // Sets centre and bounds.
     void place(const Box3d& whole, const std::optional<Box3d>& core);
     bool findFlat(const CancelCheck& cancel) const;
+    // The face that a ray meets first, whatever is on its sides.
+    bool meetFace(const Ray& ray, Surface& surface) const;
+    // What is left of light on a way through a medium.
+    Rgb leftIn(std::int32_t medium, float way) const {
+        return medium == kNoMedium
+                   ? Rgb(1.0f)
+                   : leftAfter(m_materials[static_cast<std::uint32_t>(medium)], way);
+    }
     // Of what a ray meets; shape and all else but isPane.
     void surfaceAt(const Ray& ray, const RayHit& hit, Surface& surface) const;
     float straightShare(const Ray& ray, const RayHit& hit) const;
+    // Whether the hit is on glass that has the same medium on both sides.
+    bool isNone(const Ray& ray, const RayHit& hit) const;
     bool areOne(const Ray& ray, const RayHit& crossing, const RayHit& next) const;
     void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, const Corner& corner,
                            double b1, double b2, Surface& surface) const;
@@ -237,6 +245,7 @@ class Scene {
     bool m_hasInstances = false, m_viewersDiffer = false;
     RayTracer m_tracer;  // last: it refers to the shapes' arrays and is destroyed before them
     std::unique_ptr<const CoincidentFaces> m_coincident;  // null where there are none
+    std::unique_ptr<const Media> m_media;                 // null where faces say all
 };
 
 }  // namespace pm

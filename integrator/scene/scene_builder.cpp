@@ -12,6 +12,7 @@
 
 #include "integrator/materials/opacity.h"
 #include "integrator/scene/coincident_faces.h"
+#include "integrator/scene/media.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/scene_core.h"
 #include "integrator/scene/shape_record.h"
@@ -52,10 +53,12 @@ class Scene::Builder {
         m_scene.m_hasThinWalls = std::ranges::any_of(m_scene.m_description.materials,
                                                      [](const auto& m) { return m.thinWalled; });
         noteHiddenSheen();
-        m_scene.m_tables = makeMaterialTables(m_scene.m_description.materials, m_cancel);
         addToTracer();
         for (std::uint32_t i = 0; i < m_scene.m_shapes.size(); ++i) findLights(i);
         m_scene.lookAtTextures(m_cancel);
+        m_scene.m_media = Media::find(m_scene, m_scene.m_notices, m_cancel);
+        m_scene.m_tables = makeMaterialTables(m_scene.m_description.materials,
+                                              m_scene.m_media != nullptr, m_cancel);
         m_scene.m_coincident = CoincidentFaces::find(m_scene, m_scene.m_notices, m_cancel);
         lookForCloseSpheres();
         const SceneDescription& d = m_scene.m_description;

@@ -9,6 +9,7 @@
 
 #include "integrator/sampling/warps.h"
 #include "integrator/scene/coincident_faces.h"
+#include "integrator/scene/media.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/shape_record.h"
 #include "integrator/shapes/normal_map.h"
@@ -111,7 +112,23 @@ Scene::Facet::Facet(const Corner& corner, bool mirrored, bool exact) {
                                          : byEdges);
 }
 
-bool Scene::intersect(const Ray& ray, Surface& surface) const {
+bool Scene::intersect(const Ray& asked, Surface& surface) const {
+    if (!m_media) return meetFace(asked, surface);
+    Ray ray = asked;
+    // Faces that are none are few; one that rays can't leave ends the search.
+    constexpr int kMostFaces = 256;
+    for (int i = 0; i < kMostFaces; ++i) {
+        if (!meetFace(ray, surface)) return false;
+        if (m_media->resolve(ray.direction, surface)) return true;
+        const Vec3f onwards = rayOrigin(surface, ray.direction);
+        ray.tMax -= std::sqrt(lengthSquared(onwards - ray.origin) / lengthSquared(ray.direction));
+        ray.origin = onwards;
+        if (!(ray.tMax > 0.0f)) return false;
+    }
+    return false;
+}
+
+bool Scene::meetFace(const Ray& ray, Surface& surface) const {
     RayHit hit;
     if (!m_tracer.intersect(ray, hit)) return false;
     if (m_coincident) hit = m_coincident->chosen(ray, hit);

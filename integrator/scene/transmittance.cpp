@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "integrator/materials/opacity.h"
+#include "integrator/scene/media.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/shape_record.h"
 
@@ -20,6 +21,9 @@ struct Crossing {
     RayHit hit;
     float share;  // of light that goes straight on
 };
+
+// In place of a share: of a face of glass that may be none.
+constexpr float kMayBeNone = 2.0f;
 
 // What a ray crosses; most rays cross few.
 class Crossings {
@@ -76,13 +80,21 @@ bool Scene::areOne(const Ray& ray, const RayHit& crossing, const RayHit& next) c
     return (next.t - crossing.t) * slope <= offset + offsetNext;
 }
 
-Rgb Scene::transmittance(const Ray& asked, const Medium* /*medium*/, Sampler* /*sampler*/) const {
+bool Scene::isNone(const Ray& ray, const RayHit& hit) const {
+    Surface surface;
+    surfaceAt(ray, hit, surface);
+    return !m_media->resolve(ray.direction, surface);
+}
+
+Rgb Scene::transmittance(const Ray& asked) const {
     Ray ray = asked;
     ray.viewer = kShadowRays;
-    if (!m_letsThrough) return m_tracer.occluded(ray) ? Rgb{} : Rgb(1.0f);
+    if (!m_letsThrough && !m_media) return m_tracer.occluded(ray) ? Rgb{} : Rgb(1.0f);
     Crossings crossings;
     const bool isStopped = m_tracer.stopped(ray, [&](const RayHit& hit) {
-        const float share = straightShare(ray, hit);
+        // Whether a face of a body is none is asked afterwards: that takes rays of its own.
+        const bool mayBeNone = m_media && m_media->isOfBody(hit);
+        const float share = mayBeNone ? kMayBeNone : straightShare(ray, hit);
         if (share > 0.0f) crossings.add({hit, share});
         return !(share > 0.0f);
     });
@@ -90,11 +102,16 @@ Rgb Scene::transmittance(const Ray& asked, const Medium* /*medium*/, Sampler* /*
     float product = 1.0f;
     const RayHit* last = nullptr;
     for (const Crossing& crossing : crossings.sorted()) {
+        if (crossing.share == kMayBeNone) {
+            if (!isNone(ray, crossing.hit)) return {};
+            continue;
+        }
         if (last && areOne(ray, *last, crossing.hit)) continue;
         product *= crossing.share;
         last = &crossing.hit;
     }
-    return Rgb(product);
+    if (!m_absorbs || !m_media) return Rgb(product);
+    return leftIn(m_media->at(ray.origin), ray.tMax * length(ray.direction)) * product;
 }
 
 }  // namespace pm

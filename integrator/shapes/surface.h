@@ -11,6 +11,7 @@
 namespace pm {
 
 inline constexpr std::int32_t kNoLight = -1;
+inline constexpr std::int32_t kNoMedium = -1;
 
 // A point on a surface of the scene, in the scene's own coordinates.
 struct Surface {
@@ -30,6 +31,11 @@ struct Surface {
     // Of glass: the far side of the same body is so close behind that no ray could start between.
     // Both are met as one.
     bool isPane = false;
+    // Where it is looked for what is inside of what, see Scene::Media: the material of the medium
+    // on the side that the ray came from, and of glass the index beyond over the one there (0: as
+    // its own material and front say).
+    std::int32_t medium = kNoMedium;
+    float eta = 0.0f;
 };
 
 // Bound on the distance between a computed point on a triangle and where Embree's robust

@@ -244,7 +244,8 @@ constexpr std::array kMaterialRows = {
                       {memberPlace<&M::anisotropyRotation>()}},
     MaterialParameter{{.name = "priority",
                        .help = "Dielectric: where bodies overlap, the one of the highest priority "
-                               "is there; of equal ones the later.",
+                               "is there; of equal ones that with the smaller box. Air in glass "
+                               "is a body of index 1 with a priority.",
                        .type = Type::kInteger,
                        .minimum = -1000,
                        .maximum = 1000,

@@ -21,7 +21,7 @@ constexpr float kCosines[] = {0.02f, 0.05f, 0.1f, 0.3f, 0.6f, 1.0f};
 class Board {
   public:
     explicit Board(const MaterialDescription& material)
-        : m_all{material}, m_tables(makeMaterialTables(m_all, {})) {
+        : m_all{material}, m_tables(makeMaterialTables(m_all, false, {})) {
         m_surface.geometricNormal = m_surface.shadingNormal = {0, 0, 1};
         m_surface.tangent = {1, 0, 0};
         m_surface.isPane = material.thinWalled;
