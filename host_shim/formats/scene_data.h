@@ -28,6 +28,14 @@ struct TextureUse {
     float strength{1.0f};  // of a normal map
 };
 
+// A parameter of a material by its name, as docs/parameters.md lists them: numbers, or a text.
+struct NamedValue {
+    std::string name;
+    std::vector<double> numbers;
+    std::string text;
+    std::string place;  // for messages
+};
+
 enum class MaterialKind { kSurface, kMirror, kDielectric };
 
 // A material in the numbers of the file: reflectances in [0,1] in the material space, checked.
@@ -47,6 +55,8 @@ struct MaterialData {
     std::optional<TextureUse> diffuseTexture, glossyTexture, glossyExponentTexture,
         roughnessTexture, transmissionTexture, emissionTexture, opacityTexture,
         normalTexture;  // in tangent space
+
+    std::vector<NamedValue> byName;  // in place of what else is here
 
     bool emits() const { return emission[0] > 0 || emission[1] > 0 || emission[2] > 0; }
 };

@@ -161,6 +161,7 @@ PmrMaterial MaterialBuilder::build(const MaterialData& material) {
     m_context.check(m_context.api().createMaterial(m_context.handle(), &desc, &handle), of);
     m_materials.push_back(handle);
     setByName(material, handle, of);
+    for (const NamedValue& value : material.byName) setNamed(value, handle);
     return handle;
 }
 
@@ -192,6 +193,33 @@ void MaterialBuilder::setByName(const MaterialData& material, PmrMaterial handle
     }
     if (setTexture("normalTexture", material.normalTexture, TextureKind::kVector))
         setNumber("normalScale", material.normalTexture->strength);
+}
+
+void MaterialBuilder::setNamed(const NamedValue& value, PmrMaterial handle) {
+    constexpr std::array kColours = {
+        "diffuse", "glossy",   "transmission",     "emission", "diffuseTransmission",
+        "sheen",   "edgeTint", "attenuationColour"};
+    std::vector<double> numbers = value.numbers;
+    if (numbers.size() == 3 && std::ranges::find(kColours, value.name) != kColours.end()) {
+        const Rgb3 colour = m_colour.materialToRendering({static_cast<float>(numbers[0]),
+                                                          static_cast<float>(numbers[1]),
+                                                          static_cast<float>(numbers[2])});
+        // Saturated colours may leave the range by the conversion; what was outside is refused.
+        for (std::size_t i = 0; i < 3; ++i)
+            if (numbers[i] >= 0)
+                numbers[i] = std::clamp(static_cast<double>(colour[i]), 0.0,
+                                        numbers[i] <= 1 && value.name != "emission"
+                                            ? 1.0
+                                            : std::numeric_limits<double>::max());
+    }
+    auto desc = PMR_INIT(PmrParameterDesc);
+    desc.object = PMR_OBJECT_MATERIAL;
+    desc.material = handle;
+    desc.name = value.name.c_str();
+    desc.numbers = numbers.data();
+    desc.numberCount = numbers.size();
+    if (!value.text.empty()) desc.text = value.text.c_str();
+    m_context.check(m_context.api().setParameter(&desc), value.place);
 }
 
 }  // namespace pm::host

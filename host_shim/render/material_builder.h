@@ -42,6 +42,8 @@ class MaterialBuilder {
     void tell(const std::string& file, const BakedTexture& baked);
     TexturePreparer& preparer();
     void setByName(const MaterialData& material, PmrMaterial handle, const std::string& of);
+    // One that a sidecar gives. Errors: HostError, with its place.
+    void setNamed(const NamedValue& value, PmrMaterial handle);
     void convertColours(const MaterialData& material, PmrMaterialDesc& desc) const;
 
     const PluginContext& m_context;

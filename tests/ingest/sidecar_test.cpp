@@ -253,6 +253,21 @@ TEST(Sidecar, TakesMaterialsThatNoFaceUses) {
     EXPECT_TRUE(heard.list.empty());
 }
 
+TEST(Sidecar, MaterialsHaveParametersByName) {
+    const SceneData data = sceneWith(
+        R"("materials": {"n": {"attenuationColour": [0.1, 0.2, 0.3], "priority": 2,
+                               "kind": "dielectric"}})");
+    ASSERT_EQ(data.materials[1].name, "n");
+    EXPECT_TRUE(data.materials[0].byName.empty());
+    const std::vector<NamedValue>& values = data.materials[1].byName;
+    ASSERT_EQ(values.size(), 3u);
+    EXPECT_EQ(values[0].name, "attenuationColour");
+    EXPECT_EQ(values[0].numbers, (std::vector<double>{0.1, 0.2, 0.3}));
+    EXPECT_EQ(values[1].numbers, std::vector<double>{2});
+    EXPECT_EQ(values[2].text, "dielectric");
+    EXPECT_EQ(values[1].place, "s.pm.json: materials.n.priority");
+}
+
 TEST(Sidecar, WrittenGuessesAreReadAgain) {
     SidecarGuess guess;
     guess.camera.emplace();

@@ -31,6 +31,12 @@ struct SidecarInstance {
     std::uint32_t hiddenFrom{};
 };
 
+struct SidecarMaterial {
+    std::string place;
+    std::string name;  // of one that the scene's material libraries have
+    std::vector<NamedValue> values;
+};
+
 struct SidecarSphere {
     std::string place;
     SphereData sphere;
@@ -44,6 +50,7 @@ struct Sidecar {
     std::string file;
     std::vector<SidecarInstance> instances;
     std::vector<SidecarSphere> spheres;
+    std::vector<SidecarMaterial> materials;
     std::vector<LightData> lights;
     std::optional<EnvironmentData> environment;
     std::optional<SkyData> sky;

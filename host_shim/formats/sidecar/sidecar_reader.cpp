@@ -63,6 +63,24 @@ SidecarSphere readSphere(const JsonPlace& at) {
     return sphere;
 }
 
+SidecarMaterial readMaterial(const std::string& name, const JsonPlace& at) {
+    SidecarMaterial material;
+    material.place = at.path();
+    material.name = name;
+    for (const auto& [key, value] : at.members()) {
+        NamedValue& named = material.values.emplace_back();
+        named.name = key;
+        named.place = fmt::format("{}: {}", value.file(), value.path());
+        if (value.isText())
+            named.text = value.text();
+        else if (value.isNumber())
+            named.numbers = {value.number()};
+        else
+            for (const JsonPlace& entry : value.entries()) named.numbers.push_back(entry.number());
+    }
+    return material;
+}
+
 TextureUse readPicture(const JsonPlace& at, SceneFiles& files) {
     const std::string name = at.text();
     const auto file = files.find(files.folder(), name);
@@ -115,6 +133,7 @@ std::vector<std::string> Sidecar::materialNames() const {
         for (const auto& [old, name] : instance.materials) names.push_back(name);
     }
     for (const SidecarSphere& sphere : spheres) names.push_back(sphere.material);
+    for (const SidecarMaterial& material : materials) names.push_back(material.name);
     std::ranges::sort(names);
     names.erase(std::unique(names.begin(), names.end()), names.end());
     return names;
@@ -123,14 +142,17 @@ std::vector<std::string> Sidecar::materialNames() const {
 Sidecar readSidecar(std::string_view text, const std::string& file, SceneFiles& files) {
     const nlohmann::ordered_json json = parseJson(text, file);
     const JsonPlace all(json, file);
-    all.allowKeys(
-        {"$schema", "schema", "instances", "spheres", "lights", "environment", "sky", "cameras"});
+    all.allowKeys({"$schema", "schema", "instances", "spheres", "materials", "lights",
+                   "environment", "sky", "cameras"});
     all.member("schema").choice({kSidecarSchema});
     Sidecar sidecar;
     sidecar.file = file;
     for (const JsonPlace& at : all.entriesOf("instances"))
         sidecar.instances.push_back(readInstance(at));
     for (const JsonPlace& at : all.entriesOf("spheres")) sidecar.spheres.push_back(readSphere(at));
+    if (all.has("materials"))
+        for (const auto& [name, at] : all.member("materials").members())
+            sidecar.materials.push_back(readMaterial(name, at));
     for (const JsonPlace& at : all.entriesOf("lights")) sidecar.lights.push_back(readLight(at));
     if (all.has("environment") && all.has("sky"))
         all.refuse(" has environment and sky; it is one of them");

@@ -67,6 +67,10 @@ class Addition {
         if (!m_sidecar.instances.empty() || !m_sidecar.spheres.empty()) measure();
         m_scene.lights.insert(m_scene.lights.end(), m_sidecar.lights.begin(),
                               m_sidecar.lights.end());
+        for (const SidecarMaterial& given : m_sidecar.materials) {
+            MaterialData& known = m_scene.materials[material(given.name, given.place)];
+            known.byName = given.values;
+        }
         if (m_sidecar.environment) m_scene.environment = m_sidecar.environment;
         if (m_sidecar.sky) m_scene.sky = m_sidecar.sky;
         m_scene.cameras.insert(m_scene.cameras.end(), m_sidecar.cameras.begin(),
