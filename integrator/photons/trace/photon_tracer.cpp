@@ -33,6 +33,7 @@ struct Batch {
     std::vector<Photon> photons;
     PhotonBalance balance;
     std::vector<Photon> descended;
+    std::vector<ReceivedPhoton> received;
     std::vector<EmissionRecord> records;
     std::uint64_t metCaster = 0;
 };
@@ -96,6 +97,9 @@ class PhotonWalk {
         // It has passed, on its way from the light, what shadow rays pass and others do not, or the
         // other way round; see passesHidden().
         bool pastShadowless = false, pastMirrorless = false;
+        // Whether the first lobe was narrow; and that all were delta, from a light that no ray
+        // meets.
+        bool beganNarrow = false, isUnmet = false;
 
         bool isVoid() const { return pastShadowless && pastMirrorless; }
         bool mayGoOnBy(Lobe lobe) const {
@@ -124,6 +128,7 @@ class PhotonWalk {
         Waiting waiting;
         Part& first = waiting.parts[waiting.count++];
         first = {photon.ray, photon.flux, {.index = index}};
+        first.way.isUnmet = !photon.isMet;
         if (m_scene.viewersDiffer()) first.ray.viewer = kShadowRays | kReflectionRays;
         double landed = 0;
         while (waiting.count > 0) {
@@ -163,6 +168,7 @@ class PhotonWalk {
                     m_scene.pointUnderRay(surface.position, ray, bsdf.facingGeometricNormal());
                 landed += land(part, surface, bsdf, sampler, batch);
             }
+            if (m_request.received) landed += receive(part, surface, bsdf, batch);
             BsdfSample sample;
             float uLobe = sampler.next1D();
             const Vec2f u = sampler.next2D();
@@ -185,6 +191,9 @@ class PhotonWalk {
                 return landed;
             }
             Rgb scattered = flux * sample.weight * (keeps ? survival : 1.0f);
+            if (sample.lobe != Lobe::kStraight)
+                noteLobe(way, sample.lobe != Lobe::kDiffuse && !bsdf.isWide(sample.lobe),
+                         isDelta(sample.lobe));
             if (!advance(part, sample.lobe, sampler, scattered)) {
                 balance.fluxAbsorbed += channelSum(flux);
                 return landed;
@@ -288,6 +297,7 @@ class PhotonWalk {
                 return false;
             next.ray = rayFrom(surface, sample.direction);
             next.flux *= sample.weight * (1.0f / survival);
+            noteLobe(next.way, true, true);
             next.way.stage = Stage::kSpecular;
             next.events.add(survival);
             balance.fluxAbsorbed -= channelSum(next.flux);
@@ -297,6 +307,12 @@ class PhotonWalk {
         Part reflection = part;
         if (goesOn(Lobe::kReflection, u.x, reflection)) waiting.parts[waiting.count++] = reflection;
         return goesOn(Lobe::kRefraction, u.y, part);
+    }
+
+    // Of the lobe that leads on from where the photon is, before its stage changes.
+    static void noteLobe(Way& way, bool isNarrow, bool isDelta) {
+        if (way.stage == Stage::kStraight) way.beganNarrow = isNarrow;
+        way.isUnmet = way.isUnmet && isDelta;
     }
 
     // By a lobe, with the flux that it carries on. False: the photon is not of the share that is
@@ -358,6 +374,22 @@ class PhotonWalk {
         if (way.stage == Stage::kSpecular && m_request.withoutCaustics) return 0;
         storeOfChain(part, surface, bsdf, sampler, batch, batch.photons);
         return channelSum(flux);
+    }
+
+    // Stores a photon where a lobe that is neither diffuse nor delta receives it as a caustic.
+    // Returns its flux if so.
+    static double receive(const Part& part, const Surface& surface, const Bsdf& bsdf,
+                          Batch& batch) {
+        const Way& way = part.way;
+        const Lobe lobe = bsdf.glossyLobe();
+        if (way.stage != Stage::kSpecular || !way.beganNarrow || !bsdf.has(lobe)) return 0;
+        if (!bsdf.isWide(lobe) && !way.isUnmet) return 0;
+        batch.received.push_back(
+            {{surface.position, part.flux, PackedNormal(bsdf.facingGeometricNormal())},
+             PackedDirection(-part.ray.direction)});
+        if (way.isUnmet) batch.received.back().photon.normal.mark();
+        ++batch.balance.stored;
+        return bsdf.has(Lobe::kDiffuse) ? 0 : channelSum(part.flux);
     }
 
     // What caustics send straight to a surface, or by broad lobes, is even: the share that is
@@ -454,6 +486,7 @@ PhotonTraceResult tracePhotons(const Scene& scene, const LightSampler& lights,
     check.throwIfSet("tracing photons");
     join(batches, &Batch::photons, result.photons, check);
     join(batches, &Batch::descended, result.descended, check);
+    join(batches, &Batch::received, result.received, check);
     join(batches, &Batch::records, result.records, check);
     for (const Batch& batch : batches) {
         result.balance += batch.balance;
