@@ -96,13 +96,12 @@ inline bool isBroad(const MaterialDescription& material) {
                                      : material.glossyExponent <= kMostBroadExponent;
 }
 
-// From this roughness of facets on, or up to the exponent of a lobe as wide, lamps that a lobe
-// reflects are found well by samples of the lamps.
+// From this roughness of facets on, or up to the exponent of a Phong lobe as wide, a ray along a
+// lobe seldom finds a lamp's image: photons do it better.
 inline constexpr float kLeastWideRoughness = 0.25f, kMostWideExponent = 510.0f;
 
 // Whether the material's glossy lobe, where it has one, is so wide that it receives caustics as a
-// diffuse one does: photons find them, whatever sent them there but for another such lobe. By the
-// number alone, whatever its texture. Broad ones are, too.
+// diffuse one does. Broad ones are, too. By the number alone, whatever its texture.
 inline bool isWide(const MaterialDescription& material) {
     return material.roughness > 0.0f ? material.roughness >= kLeastWideRoughness
                                      : material.glossyExponent <= kMostWideExponent;
@@ -180,14 +179,6 @@ inline bool castsCaustics(const MaterialDescription& material) {
     const bool mayBeBroad = material.kind == MaterialKind::kSurface ||
                             (material.kind == MaterialKind::kMirror && isRough(material));
     return !(mayBeBroad && isBroad(material));
-}
-
-// Whether that may be light that wide lobes receive: sent there by a narrow lobe. Glass may be
-// smooth where it is a pane.
-inline bool castsNarrowCaustics(const MaterialDescription& material) {
-    return castsCaustics(material) &&
-           (material.kind == MaterialKind::kDielectric || material.roughnessTexture != kNoTexture ||
-            (material.kind == MaterialKind::kMirror && !isRough(material)) || !isWide(material));
 }
 
 }  // namespace pm

@@ -97,9 +97,7 @@ class PhotonWalk {
         // It has passed, on its way from the light, what shadow rays pass and others do not, or the
         // other way round; see passesHidden().
         bool pastShadowless = false, pastMirrorless = false;
-        // Whether the first lobe was narrow; and that all were delta, from a light that no ray
-        // meets.
-        bool beganNarrow = false, isUnmet = false;
+        bool isUnmet = false;  // by delta lobes alone, from a light that no ray meets
 
         bool isVoid() const { return pastShadowless && pastMirrorless; }
         bool mayGoOnBy(Lobe lobe) const {
@@ -191,9 +189,7 @@ class PhotonWalk {
                 return landed;
             }
             Rgb scattered = flux * sample.weight * (keeps ? survival : 1.0f);
-            if (sample.lobe != Lobe::kStraight)
-                noteLobe(way, sample.lobe != Lobe::kDiffuse && !bsdf.isWide(sample.lobe),
-                         isDelta(sample.lobe));
+            way.isUnmet = way.isUnmet && isDelta(sample.lobe);
             if (!advance(part, sample.lobe, sampler, scattered)) {
                 balance.fluxAbsorbed += channelSum(flux);
                 return landed;
@@ -297,7 +293,6 @@ class PhotonWalk {
                 return false;
             next.ray = rayFrom(surface, sample.direction);
             next.flux *= sample.weight * (1.0f / survival);
-            noteLobe(next.way, true, true);
             next.way.stage = Stage::kSpecular;
             next.events.add(survival);
             balance.fluxAbsorbed -= channelSum(next.flux);
@@ -307,12 +302,6 @@ class PhotonWalk {
         Part reflection = part;
         if (goesOn(Lobe::kReflection, u.x, reflection)) waiting.parts[waiting.count++] = reflection;
         return goesOn(Lobe::kRefraction, u.y, part);
-    }
-
-    // Of the lobe that leads on from where the photon is, before its stage changes.
-    static void noteLobe(Way& way, bool isNarrow, bool isDelta) {
-        if (way.stage == Stage::kStraight) way.beganNarrow = isNarrow;
-        way.isUnmet = way.isUnmet && isDelta;
     }
 
     // By a lobe, with the flux that it carries on. False: the photon is not of the share that is
@@ -382,7 +371,7 @@ class PhotonWalk {
                           Batch& batch) {
         const Way& way = part.way;
         const Lobe lobe = bsdf.glossyLobe();
-        if (way.stage != Stage::kSpecular || !way.beganNarrow || !bsdf.has(lobe)) return 0;
+        if (way.stage != Stage::kSpecular || !bsdf.has(lobe)) return 0;
         if (!bsdf.isWide(lobe) && !way.isUnmet) return 0;
         batch.received.push_back(
             {{surface.position, part.flux, PackedNormal(bsdf.facingGeometricNormal())},

@@ -15,12 +15,11 @@ struct GatherWay {
     PathWalk path;
     LastScatter last;
     bool byBroadOnly = true;
-    bool lastIsWide = false;
 
     // Whether light of lamps that the last lobe leads to, or reflects, is the ray's business.
-    static bool isAsked(const GatherEnds& ends, Lobe lobe, bool isWide) {
+    static bool isAsked(const GatherEnds& ends, Lobe lobe) {
         return ends.lights &&
-               (lobe == Lobe::kBroad || (ends.findsAll && (isWide || !ends.withoutNarrow)));
+               (lobe == Lobe::kBroad || (ends.findsAll && !ends.withoutCaustics));
     }
 };
 
@@ -34,7 +33,7 @@ void addLampsMet(const Scene& scene, const GatherEnds& ends, const GatherWay& wa
                                        : weightedFarLight(scene, *ends.lights, *ends.from));
         return;
     }
-    if (!GatherWay::isAsked(ends, way.last.lobe, way.lastIsWide)) return;
+    if (!GatherWay::isAsked(ends, way.last.lobe)) return;
     const Rgb light = way.path.throughput * (met ? weightedEmission(*ends.lights, *met, way.last)
                                                  : weightedFarLight(scene, *ends.lights, way.last));
     result.radiance += {light, light};
@@ -43,8 +42,7 @@ void addLampsMet(const Scene& scene, const GatherEnds& ends, const GatherWay& wa
 // By a sample of lamps, whether or not the lobe will be followed: else few rays would bring much.
 void addLampsSampled(const Scene& scene, const GatherEnds& ends, const GatherWay& way,
                      const Surface& surface, const Bsdf& bsdf, Sampler& sampler, Gathered& result) {
-    const Lobe lobe = bsdf.glossyLobe();
-    if (!bsdf.has(lobe) || !GatherWay::isAsked(ends, lobe, bsdf.isWide(lobe))) return;
+    if (!bsdf.has(bsdf.glossyLobe()) || !GatherWay::isAsked(ends, bsdf.glossyLobe())) return;
     const DirectRadiance direct = estimateDirect(scene, *ends.lights, surface, bsdf,
                                                  LampStrategy::kNone, 1, sampler, result.rays);
     const Rgb light = way.path.throughput * direct.glossy;
@@ -107,9 +105,8 @@ Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray
         if (sample.lobe == Lobe::kStraight) continue;
         atOnce = false;
         way.last = lastScatter(surface, sample);
-        way.lastIsWide = bsdf.isWide(sample.lobe);
         if (scene.viewersDiffer() && !isDelta(sample.lobe) &&
-            GatherWay::isAsked(ends, sample.lobe, way.lastIsWide)) {
+            GatherWay::isAsked(ends, sample.lobe)) {
             const Rgb light = way.path.throughput *
                               lightAlong(scene, *ends.lights, way.path.ray, way.last, result.rays);
             result.radiance += {light, light};

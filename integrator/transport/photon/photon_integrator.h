@@ -100,7 +100,7 @@ class PhotonIntegrator {
                      const Tree& tree) const;
     // Whether a map has the light that a path in this state finds at a lamp.
     bool isOfMap(const PathState& state) const {
-        return m_maps.received && state.isCausticOnWide();
+        return m_maps.received && state.isCausticOnWide;
     }
     void addRefocused(const GatherPoints::Place& place, float clearance, float share,
                       const Rgb& reflected, const Tree& tree) const;

@@ -55,8 +55,7 @@ struct SceneTraits {
     bool specular = false;  // some surface has another lobe that may cast caustics
     bool glossy = false;    // or a glossy lobe, broad or not
     bool wide = false;      // that may be wide
-    bool narrow = false;    // some surface may cast caustics that wide lobes receive
-    bool delta = false;     // or those of lights that no ray meets
+    bool delta = false;     // some surface may cast caustics by a delta lobe
     bool lights = false;
     bool pointLights = false;  // of those that no ray meets: point lights, spots, parallel light
     bool farLights = false;    // of those that rays meet
@@ -71,7 +70,6 @@ SceneTraits findTraits(const Scene& scene) {
             traits.glossy |= mayBeGlossy(m);
             traits.wide |= mayBeGlossy(m) && isWide(m);
             traits.specular |= castsCaustics(m);
-            traits.narrow |= castsNarrowCaustics(m);
             traits.delta |= castsCaustics(m) && mayHaveDelta(m);
         }
     traits.lights = !scene.lights().empty();
@@ -217,12 +215,12 @@ void planCausticMap(const SceneTraits& traits, Plan& plan) {
 
 // Whether glossy and broad lobes receive caustics that nothing but photons finds well, or at all.
 bool needsReceivedMap(const SceneTraits& traits) {
-    return (traits.wide && traits.narrow) ||
+    return (traits.wide && traits.specular) ||
            (traits.glossy && traits.delta && traits.pointLights);
 }
 
 void explainReceivedMap(const SceneTraits& traits, Plan& plan) {
-    if (traits.wide && traits.narrow)
+    if (traits.wide && traits.specular)
         plan.reasons.push_back(
             fmt::format("caustics on glossy surfaces of roughness {:.2f} or more: by photons, which "
                         "keep where they came from, as a ray along so wide a lobe seldom finds a "
@@ -232,7 +230,7 @@ void explainReceivedMap(const SceneTraits& traits, Plan& plan) {
         plan.reasons.push_back(
             "caustics of lights that no ray meets, on glossy surfaces of any roughness: by photons "
             "alone");
-    if (traits.glossy && !traits.wide && traits.narrow && !(traits.pointLights && traits.delta))
+    if (traits.glossy && !traits.wide && traits.specular && !(traits.pointLights && traits.delta))
         plan.reasons.push_back(
             fmt::format("caustics on glossy surfaces of roughness below {:.2f}: by rays along their "
                         "lobes, which find lamps well",

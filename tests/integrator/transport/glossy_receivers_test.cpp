@@ -58,6 +58,7 @@ Against compare(const std::shared_ptr<const Scene>& scene, std::uint32_t pathPas
     const auto path =
         measureRegions(scene, smallFrame(kWidth, kHeight, IntegratorKind::kPath, pathPasses, 5),
                        {0, 0, kWidth, kHeight}, regions);
+    if (std::getenv("PM_LAYERS")) for (const auto* m : {&photon.back(), &path.back()}) fmt::print("direct {:.5f}+-{:.5f} caustic {:.5f}+-{:.5f} indirect {:.5f}+-{:.5f} emission {:.5f}\n", m->direct.mean[1], m->direct.standardError[1], m->caustic.mean[1], m->caustic.standardError[1], m->indirect.mean[1], m->indirect.standardError[1], m->emission.mean[1]);
     Against found;
     const Measured &a = photon.back().beauty, &b = path.back().beauty;
     found.photon = a.mean[1];
@@ -79,11 +80,11 @@ TEST(GlossyReceivers, Sweep) {
     const int step = std::getenv("PM_STEP") ? std::atoi(std::getenv("PM_STEP")) : 1;
     const int path = std::getenv("PM_PATHS") ? std::atoi(std::getenv("PM_PATHS")) : 16;
     const bool plain = std::getenv("PM_BALL") != nullptr;
-    for (int i = 20; i >= 0; i -= step) {
+    for (int i = std::getenv("PM_FROM") ? std::atoi(std::getenv("PM_FROM")) : 20; i >= 0; i -= step) {
         const float r = static_cast<float>(i) / 20;
         MaterialDescription lam; lam.diffuse = Rgb(0.8f);
         const auto scene = std::getenv("PM_LAM") ? ballOver(lam, glass()) : plain ? ballOver(metal(0.5f), metal(r)) : ballOver(metal(r), glass());
-        const Against a = compare(scene, static_cast<std::uint32_t>(path), 8);
+        const Against a = compare(scene, static_cast<std::uint32_t>(path), std::getenv("PM_PASSES") ? std::atoi(std::getenv("PM_PASSES")) : 8);
         fmt::print("{:.2f}: photon {:.4f} path {:.4f} ratio {:.3f} z {:.2f} relMSE {:.5f} ref {:.5f}\n",
                    static_cast<double>(r), a.photon, a.path, a.photon / a.path, a.z, a.relMse,
                    a.noise);
