@@ -35,7 +35,11 @@ std::shared_ptr<const Scene> ballOver(const MaterialDescription& floor,
     SceneMaker maker;
     maker.quad({-1.2, 0, 1.2}, {2.4, 0, 0}, {0, 0, -2.4}, maker.material(floor));
     maker.sphere({-0.2, 0.55, 0}, 0.4, maker.material(ball));
-    maker.quad({-0.8, 2.2, -0.3}, {0.6, 0, 0}, {0, 0, 0.6}, maker.diffuse({}, Rgb(12.0f)));
+    if (std::getenv("PM_POINT"))
+        maker.pointLight({-0.5, 2.2, 0}, Rgb(4.0f));
+    else if (std::getenv("PM_SPH"))
+        maker.sphere({-0.5, 2.2, 0}, 0.1, maker.diffuse({}, Rgb(4.0f / (3.14159265f * 0.01f))));
+    else maker.quad({-0.8, 2.2, -0.3}, {0.6, 0, 0}, {0, 0, 0.6}, maker.diffuse({}, Rgb(12.0f)));
     maker.camera({0.6, 2.0, 3.0}, {0, 0.2, 0}, {0, 1, 0}, 40);
     return maker.build();
 }
