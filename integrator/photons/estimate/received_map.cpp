@@ -48,8 +48,7 @@ class ReceivedMap::Weights final : public PhotonWeights {
     Weights(const ReceivedMap& map, const Place& place, const Value& value, NearestPhotons& nearby)
         : PhotonWeights(nearby), m_map(map), m_place(place), m_value(value) {}
     Rgb of(std::uint32_t index) const override {
-        const ReceivedPhoton& received =
-            m_map.m_photons[numberOf(m_map.m_map.photon(index).flux)];
+        const ReceivedPhoton& received = m_map.m_photons[numberOf(m_map.m_map.photon(index).flux)];
         if (m_place.unmetOnly && !received.photon.normal.isMarked()) return {};
         return received.photon.flux * m_value(received.from.unpack());
     }

@@ -33,9 +33,13 @@ bool isPossible(const PhotonBalance& balance) {
 }  // namespace
 
 TracedHead tracedHead(PhotonKind kind, std::uint32_t pass, const PhotonTraceResult& traced) {
-    return {
-        static_cast<std::uint32_t>(kind), pass, traced.focus, traced.balance, traced.photons.size(),
-        traced.descended.size(), traced.received.size()};
+    return {static_cast<std::uint32_t>(kind),
+            pass,
+            traced.focus,
+            traced.balance,
+            traced.photons.size(),
+            traced.descended.size(),
+            traced.received.size()};
 }
 
 std::array<std::span<const std::byte>, 4> tracedBytes(const TracedHead& head,

@@ -16,8 +16,8 @@ namespace pm {
 // the room plan, which knows all that a plan decides on.
 struct Plan {
     bool tracePhotons = false;
-    bool globalMap = false;            // the scene has indirect diffuse light to gather
-    bool causticMap = false;           // light can reach a diffuse surface by way of a specular one
+    bool globalMap = false;   // the scene has indirect diffuse light to gather
+    bool causticMap = false;  // light can reach a diffuse surface by way of a specular one
     // Caustic photons are kept where glossy and broad lobes receive them, too: see ReceivedMap.
     bool receivedMap = false;
     std::uint64_t globalPhotons = 0;   // emitted a pass for the global map

@@ -328,8 +328,12 @@ void PhotonIntegrator::followBroad(const Surface& surface, const Bsdf& bsdf, con
                            branch.lampSamples};
     const Ray ray = rayFrom(surface, sample.direction);
     const bool findsLamps = !m_scene.viewersDiffer();
-    const GatherEnds ends{*m_maps.global, m_maps.lamps, 1,
-                          &m_lights,      true,         findsLamps ? &last : nullptr,
+    const GatherEnds ends{*m_maps.global,
+                          m_maps.lamps,
+                          1,
+                          &m_lights,
+                          true,
+                          findsLamps ? &last : nullptr,
                           m_maps.received != nullptr};
     Gathered found = finalGather(m_scene, ends, ray, 1.0f, tree.sampler);
     if (!findsLamps) found.lampsStraight = lightAlong(m_scene, m_lights, ray, last, found.rays);

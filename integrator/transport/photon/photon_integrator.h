@@ -99,9 +99,7 @@ class PhotonIntegrator {
     void addReceived(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
                      const Tree& tree) const;
     // Whether a map has the light that a path in this state finds at a lamp.
-    bool isOfMap(const PathState& state) const {
-        return m_maps.received && state.isCausticOnWide;
-    }
+    bool isOfMap(const PathState& state) const { return m_maps.received && state.isCausticOnWide; }
     void addRefocused(const GatherPoints::Place& place, float clearance, float share,
                       const Rgb& reflected, const Tree& tree) const;
     void followDiffuse(const Surface& surface, const Bsdf& bsdf, const Branch& branch,

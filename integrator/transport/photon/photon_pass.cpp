@@ -80,7 +80,8 @@ void PhotonPass::noteBuilding(const PassMaps& maps, std::size_t photons) {
 // Patches and gather points grow as a pass is rendered.
 std::uint64_t PhotonPass::heldMapBytes() const {
     std::uint64_t held = m_patches->memoryBytes();
-    for (const auto* const radius : {m_causticRadius.get(), m_refocusedRadius.get(), m_receivedRadius.get()})
+    for (const auto* const radius :
+         {m_causticRadius.get(), m_refocusedRadius.get(), m_receivedRadius.get()})
         if (radius) held += radius->memoryBytes();
     for (const PassMaps& maps : m_held) held += maps.memoryBytes();
     return held;
@@ -145,8 +146,8 @@ BigVector<Photon> PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
     noteBuilding(maps, landed);
     if (m_plan.receivedMap) {
         maps.received = std::make_unique<ReceivedMap>(
-            m_scene, std::vector(traced.received.begin(), traced.received.end()),
-            *m_receivedRadius, factor, check);
+            m_scene, std::vector(traced.received.begin(), traced.received.end()), *m_receivedRadius,
+            factor, check);
         BigVector<ReceivedPhoton>().swap(traced.received);
         noteBuilding(maps, maps.received->size());
     }

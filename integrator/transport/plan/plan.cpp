@@ -221,20 +221,20 @@ bool needsReceivedMap(const SceneTraits& traits) {
 
 void explainReceivedMap(const SceneTraits& traits, Plan& plan) {
     if (traits.wide && traits.specular)
-        plan.reasons.push_back(
-            fmt::format("caustics on glossy surfaces of roughness {:.2f} or more: by photons, which "
-                        "keep where they came from, as a ray along so wide a lobe seldom finds a "
-                        "lamp in a mirror or lens",
-                        kLeastWideRoughness));
+        plan.reasons.push_back(fmt::format(
+            "caustics on glossy surfaces of roughness {:.2f} or more: by photons, which "
+            "keep where they came from, as a ray along so wide a lobe seldom finds a "
+            "lamp in a mirror or lens",
+            kLeastWideRoughness));
     if (traits.glossy && traits.delta && traits.pointLights)
         plan.reasons.push_back(
             "caustics of lights that no ray meets, on glossy surfaces of any roughness: by photons "
             "alone");
     if (traits.glossy && !traits.wide && traits.specular && !(traits.pointLights && traits.delta))
-        plan.reasons.push_back(
-            fmt::format("caustics on glossy surfaces of roughness below {:.2f}: by rays along their "
-                        "lobes, which find lamps well",
-                        kLeastWideRoughness));
+        plan.reasons.push_back(fmt::format(
+            "caustics on glossy surfaces of roughness below {:.2f}: by rays along their "
+            "lobes, which find lamps well",
+            kLeastWideRoughness));
 }
 
 // Why light goes from no surface to another; empty where it may.

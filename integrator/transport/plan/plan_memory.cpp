@@ -129,8 +129,7 @@ std::uint64_t Plan::buildingMapBytes(std::uint32_t pass) const {
                                 received * sizeof(ReceivedPhoton),
                             receivedHeld + lamps + refocused * kHeld + global),
                      beyond(received * (ReceivedMap::kBytesPerPhoton -
-                                        ReceivedMap::kHeldBytesPerPhoton +
-                                        sizeof(ReceivedPhoton)) +
+                                        ReceivedMap::kHeldBytesPerPhoton + sizeof(ReceivedPhoton)) +
                                 descended * sizeof(Photon),
                             lamps + refocused * kHeld + global),
                      beyond(refocused * kEach + descended * sizeof(Photon), global),

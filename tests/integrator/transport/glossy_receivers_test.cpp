@@ -1,97 +1,159 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
-// Caustics on glossy surfaces of every roughness, by photons as by paths.
+// Caustics on glossy surfaces of every roughness, and of glossy surfaces: by photons as by paths,
+// wherever the plan goes from one estimator to the other.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <string>
+#include <vector>
 
 #include "integrator/transport/plan/plan.h"
+#include "tests/support/rooms.h"
 #include "tests/support/scene_maker.h"
 
 namespace pm::test {
 namespace {
 
-MaterialDescription metal(float roughness, Rgb colour = Rgb(0.8f)) {
-    MaterialDescription m;
-    m.kind = MaterialKind::kMirror;
-    m.glossy = colour;
+constexpr int kWidth = 20, kHeight = 14;
+
+MaterialDescription metal(float roughness) {
+    MaterialDescription m = mirror(0.8f);
     m.roughness = roughness;
     return m;
 }
 
-MaterialDescription glass(float roughness = 0.0f) {
-    MaterialDescription m;
-    m.kind = MaterialKind::kDielectric;
-    m.roughness = roughness;
-    return m;
-}
+enum class Lamp { kSquare, kBall, kPoint };
 
-// A ball over a floor, lamp above.
+// A ball over a floor below a lamp.
 std::shared_ptr<const Scene> ballOver(const MaterialDescription& floor,
-                                      const MaterialDescription& ball) {
+                                      const MaterialDescription& ball, Lamp lamp = Lamp::kSquare) {
+    constexpr double kRadius = 0.2;
+    constexpr float kIntensity = 4.0f;
     SceneMaker maker;
     maker.quad({-1.2, 0, 1.2}, {2.4, 0, 0}, {0, 0, -2.4}, maker.material(floor));
     maker.sphere({-0.2, 0.55, 0}, 0.4, maker.material(ball));
-    if (std::getenv("PM_POINT"))
-        maker.pointLight({-0.5, 2.2, 0}, Rgb(4.0f));
-    else if (std::getenv("PM_SPH"))
-        maker.sphere({-0.5, 2.2, 0}, 0.1, maker.diffuse({}, Rgb(4.0f / (3.14159265f * 0.01f))));
-    else maker.quad({-0.8, 2.2, -0.3}, {0.6, 0, 0}, {0, 0, 0.6}, maker.diffuse({}, Rgb(12.0f)));
+    if (lamp == Lamp::kSquare)
+        maker.quad({-0.8, 2.2, -0.3}, {0.6, 0, 0}, {0, 0, 0.6}, maker.diffuse({}, Rgb(12.0f)));
+    else if (lamp == Lamp::kPoint)
+        maker.pointLight({-0.5, 2.2, 0}, Rgb(kIntensity));
+    else
+        maker.sphere({-0.5, 2.2, 0}, kRadius,
+                     maker.diffuse(
+                         {}, Rgb(kIntensity / static_cast<float>(3.14159265 * kRadius * kRadius))));
     maker.camera({0.6, 2.0, 3.0}, {0, 0.2, 0}, {0, 1, 0}, 40);
     return maker.build();
 }
 
-struct Against {
-    double photon = 0, path = 0, z = 0, relMse = 0, noise = 0;
-};
-
-Against compare(const std::shared_ptr<const Scene>& scene, std::uint32_t pathPasses,
-                std::uint32_t photonPasses) {
-    constexpr int kWidth = 24, kHeight = 16;
+std::vector<MeasuredLayers> rendered(const std::shared_ptr<const Scene>& scene,
+                                     IntegratorKind integrator, std::uint32_t passes,
+                                     std::uint32_t level) {
     std::vector<Rect> regions;
     for (int y = 0; y < kHeight; ++y)
         for (int x = 0; x < kWidth; ++x) regions.push_back({x, y, x + 1, y + 1});
     regions.push_back({0, 0, kWidth, kHeight});
-    RenderSettings settings =
-        smallFrame(kWidth, kHeight, IntegratorKind::kPhoton, photonPasses, 3);
-    settings.photons = std::getenv("PM_PH") ? std::atoi(std::getenv("PM_PH")) : 40'000;
-    const auto photon = measureRegions(scene, settings, {0, 0, kWidth, kHeight}, regions);
-    const auto path =
-        measureRegions(scene, smallFrame(kWidth, kHeight, IntegratorKind::kPath, pathPasses, 5),
-                       {0, 0, kWidth, kHeight}, regions);
-    if (std::getenv("PM_LAYERS")) for (const auto* m : {&photon.back(), &path.back()}) fmt::print("direct {:.5f}+-{:.5f} caustic {:.5f}+-{:.5f} indirect {:.5f}+-{:.5f} emission {:.5f}\n", m->direct.mean[1], m->direct.standardError[1], m->caustic.mean[1], m->caustic.standardError[1], m->indirect.mean[1], m->indirect.standardError[1], m->emission.mean[1]);
+    RenderSettings settings = smallFrame(kWidth, kHeight, integrator, passes, level);
+    settings.photons = 40'000;
+    if (integrator == IntegratorKind::kPath) settings.seed += 1000;
+    return measureRegions(scene, settings, {0, 0, kWidth, kHeight}, regions);
+}
+
+struct Against {
+    double ratio = 0, standardError = 0;  // of the pictures' means, photons over paths
+    double relMse = 0;                    // of photons, with the paths' own noise taken off
+};
+
+Against compare(const std::shared_ptr<const Scene>& scene) {
+    const auto photon = rendered(scene, IntegratorKind::kPhoton, 8, 3);
+    const auto path = rendered(scene, IntegratorKind::kPath, 8, 5);
     Against found;
     const Measured &a = photon.back().beauty, &b = path.back().beauty;
-    found.photon = a.mean[1];
-    found.path = b.mean[1];
-    found.z = (a.mean[1] - b.mean[1]) / std::hypot(a.standardError[1], b.standardError[1]);
-    for (std::size_t i = 0; i + 1 < regions.size(); ++i) {
+    found.ratio = a.mean[1] / b.mean[1];
+    found.standardError =
+        found.ratio * std::hypot(a.standardError[1] / a.mean[1], b.standardError[1] / b.mean[1]);
+    for (std::size_t i = 0; i + 1 < path.size(); ++i) {
         const Measured &x = photon[i].beauty, &r = path[i].beauty;
-        if (std::getenv("PM_MAP")) fmt::print("{:.4f}/{:.4f}{}", x.mean[1], r.mean[1], i % 24 == 23 ? "\n" : " ");
         const double off = x.mean[1] - r.mean[1], own = r.standardError[1];
         found.relMse += (off * off - own * own) / (r.mean[1] * r.mean[1] + 0.01);
-        found.noise += own * own / (r.mean[1] * r.mean[1] + 0.01);
     }
-    found.relMse /= static_cast<double>(regions.size() - 1);
-    found.noise /= static_cast<double>(regions.size() - 1);
+    found.relMse /= kWidth * kHeight;
     return found;
 }
 
-TEST(GlossyReceivers, Sweep) {
-    const int step = std::getenv("PM_STEP") ? std::atoi(std::getenv("PM_STEP")) : 1;
-    const int path = std::getenv("PM_PATHS") ? std::atoi(std::getenv("PM_PATHS")) : 16;
-    const bool plain = std::getenv("PM_BALL") != nullptr;
-    for (int i = std::getenv("PM_FROM") ? std::atoi(std::getenv("PM_FROM")) : 20; i >= 0; i -= step) {
-        const float r = static_cast<float>(i) / 20;
-        MaterialDescription lam; lam.diffuse = Rgb(0.8f);
-        const auto scene = std::getenv("PM_LAM") ? ballOver(lam, glass()) : plain ? ballOver(metal(0.5f), metal(r)) : ballOver(metal(r), glass());
-        const Against a = compare(scene, static_cast<std::uint32_t>(path), std::getenv("PM_PASSES") ? std::atoi(std::getenv("PM_PASSES")) : 8);
-        fmt::print("{:.2f}: photon {:.4f} path {:.4f} ratio {:.3f} z {:.2f} relMSE {:.5f} ref {:.5f}\n",
-                   static_cast<double>(r), a.photon, a.path, a.photon / a.path, a.z, a.relMse,
-                   a.noise);
+// What blur takes out of the frame and below the ball, at this size of pixels.
+constexpr double kBias = 0.04;
+// Up to 0.011 was seen, most of it what few of the reference's paths found. Found along lobes alone
+// it is twice this at some steps, see docs/testing.md.
+constexpr double kMostRelMse = 0.02;
+
+// Twenty steps from roughness 1 to none. Means are within their noise and a bias, and go on from
+// step to step without a jump beyond noise; so does the error.
+template <typename SceneOf>
+void expectFlat(const SceneOf& sceneOf) {
+    constexpr int kSteps = 20;
+    Against before;
+    double largestRelMse = 0, largestJump = 0;
+    std::string line;
+    for (int i = kSteps; i >= 0; --i) {
+        const float roughness = static_cast<float>(i) / kSteps;
+        SCOPED_TRACE(fmt::format("roughness {}", roughness));
+        const Against now = compare(sceneOf(roughness));
+        EXPECT_LT(std::abs(now.ratio - 1), kBias + 4 * now.standardError);
+        EXPECT_LT(now.relMse, kMostRelMse);
+        line += fmt::format(" {:.4f}", now.relMse);
+        largestRelMse = std::max(largestRelMse, now.relMse);
+        if (i < kSteps) {
+            const double jump = std::abs(now.ratio - before.ratio) /
+                                std::hypot(now.standardError, before.standardError);
+            EXPECT_LT(jump, 4);
+            largestJump = std::max(largestJump, jump);
+        }
+        before = now;
+    }
+    fmt::print(
+        "    relMSE{}\n    largest {:.4f}, largest step of the mean {:.2f} standard errors\n", line,
+        largestRelMse, largestJump);
+}
+
+TEST(GlossyReceivers, FloorsFromRoughToAMirror) {
+    expectFlat([](float roughness) { return ballOver(metal(roughness), glass()); });
+}
+
+TEST(GlossyReceivers, BallsFromRoughToAMirror) {
+    expectFlat([](float roughness) { return ballOver(metal(0.5f), metal(roughness)); });
+}
+
+TEST(GlossyReceivers, BallsFromRoughToClearGlass) {
+    expectFlat([](float roughness) {
+        MaterialDescription ball = glass();
+        ball.roughness = roughness;
+        return ballOver(metal(0.5f), ball);
+    });
+}
+
+// No path finds the caustic of a point. Of a small ball of the same flux it does; that the camera
+// sees the ball in the glass is left out.
+TEST(GlossyReceivers, CausticsOfPoints) {
+    for (const float roughness : {0.1f, 0.2f, 0.4f, 0.8f}) {
+        SCOPED_TRACE(fmt::format("roughness {}", roughness));
+        const auto of = [&](Lamp lamp, IntegratorKind integrator, std::uint32_t passes) {
+            const auto found =
+                rendered(ballOver(metal(roughness), glass(), lamp), integrator, passes, 5).back();
+            Measured sum = found.beauty;
+            for (std::size_t c = 0; c < 3; ++c) sum.mean[c] -= found.emission.mean[c];
+            return sum;
+        };
+        const Measured point = of(Lamp::kPoint, IntegratorKind::kPhoton, 8);
+        const Measured ball = of(Lamp::kBall, IntegratorKind::kPath, 64);
+        fmt::print("    {}: point {:.5f} +- {:.5f}, ball {:.5f} +- {:.5f}\n", roughness,
+                   point.mean[1], point.standardError[1], ball.mean[1], ball.standardError[1]);
+        EXPECT_TRUE(agree(point, ball, 0.06));
+        // Direct light alone is far from it.
+        const auto alone = rendered(ballOver(metal(roughness), glass(), Lamp::kPoint),
+                                    IntegratorKind::kPath, 8, 4);
+        EXPECT_FALSE(agree(alone.back().beauty, ball, 0.06));
     }
 }
 

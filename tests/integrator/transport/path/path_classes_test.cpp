@@ -13,8 +13,8 @@ namespace {
 PathClass classOf(const std::string& lobes) {
     PathState state;
     for (const char lobe : lobes)
-        state.scatter(lobe == 'D'   ? Lobe::kDiffuse
-                      : lobe == 'B' ? Lobe::kBroad
+        state.scatter(lobe == 'D'                  ? Lobe::kDiffuse
+                      : lobe == 'B'                ? Lobe::kBroad
                       : lobe == 'G' || lobe == 'W' ? Lobe::kGlossy
                                                    : Lobe::kReflection,
                       lobe == 'W');
@@ -28,8 +28,8 @@ TEST(PathClasses, ByTheLobesOnTheWay) {
     for (const char* path : {"DS", "DG", "SDS", "DBS", "DSBS", "DBBG", "BS", "BG", "WS", "WG", "WW",
                              "GWS", "SBBS", "WBS", "BWG", "BWS"})
         EXPECT_EQ(classOf(path), PathClass::kCaustic) << path;
-    for (const char* path :
-         {"DD", "DSD", "DB", "DSB", "BD", "BB", "GWB", "BSD", "WD", "WDS", "WSD", "DDS", "DBDS", "BDS", "DSDS"})
+    for (const char* path : {"DD", "DSD", "DB", "DSB", "BD", "BB", "GWB", "BSD", "WD", "WDS", "WSD",
+                             "DDS", "DBDS", "BDS", "DSDS"})
         EXPECT_EQ(classOf(path), PathClass::kIndirect) << path;
 }
 
