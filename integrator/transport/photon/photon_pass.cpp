@@ -116,7 +116,7 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
     PhotonTraceRequest request{kind, count, m_settings.seed, pass};
     request.aim = isCaustic(kind) ? m_aim.get() : m_focused.get();
     if (isCaustic(kind)) request.descent = m_plan.descent;
-    request.received = m_plan.receivedMap;
+    request.received = isCaustic(kind) && m_plan.receivedMap;
     request.withoutCaustics = m_plan.descent > 0.0f;
     request.oneInChains = m_plan.oneInChains;
     PhotonTraceResult result =

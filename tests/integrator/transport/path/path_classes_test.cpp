@@ -23,13 +23,14 @@ PathClass classOf(const std::string& lobes) {
 
 TEST(PathClasses, ByTheLobesOnTheWay) {
     for (const char* path : {"", "S", "SS"}) EXPECT_EQ(classOf(path), PathClass::kEmission) << path;
-    for (const char* path : {"D", "B", "G", "W", "SG", "GS", "SD", "GD", "SB", "SW", "GW"})
+    for (const char* path :
+         {"D", "B", "G", "W", "SG", "GS", "SD", "GD", "SB", "SW", "GW", "WD", "WSD", "GWB"})
         EXPECT_EQ(classOf(path), PathClass::kDirect) << path;
     for (const char* path : {"DS", "DG", "SDS", "DBS", "DSBS", "DBBG", "BS", "BG", "WS", "WG", "WW",
-                             "GWS", "SBBS", "WBS", "BWG", "BWS"})
+                             "GWS", "SBBS", "WBS", "BWG", "BWS", "WDS", "GWDG"})
         EXPECT_EQ(classOf(path), PathClass::kCaustic) << path;
-    for (const char* path : {"DD", "DSD", "DB", "DSB", "BD", "BB", "GWB", "BSD", "WD", "WDS", "WSD",
-                             "DDS", "DBDS", "BDS", "DSDS"})
+    for (const char* path : {"DD", "DSD", "DB", "DSB", "BD", "BB", "BSD", "WD", "WDS", "WSD", "DDS",
+                             "DBDS", "BDS", "DSDS"})
         EXPECT_EQ(classOf(path), PathClass::kIndirect) << path;
 }
 
