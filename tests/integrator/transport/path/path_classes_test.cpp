@@ -29,8 +29,8 @@ TEST(PathClasses, ByTheLobesOnTheWay) {
     for (const char* path : {"DS", "DG", "SDS", "DBS", "DSBS", "DBBG", "BS", "BG", "WS", "WG", "WW",
                              "GWS", "SBBS", "WBS", "BWG", "BWS", "WDS", "GWDG"})
         EXPECT_EQ(classOf(path), PathClass::kCaustic) << path;
-    for (const char* path : {"DD", "DSD", "DB", "DSB", "BD", "BB", "BSD", "WD", "WDS", "WSD", "DDS",
-                             "DBDS", "BDS", "DSDS"})
+    for (const char* path :
+         {"DD", "DSD", "DB", "DSB", "BD", "BB", "BSD", "DDS", "DBDS", "BDS", "DSDS"})
         EXPECT_EQ(classOf(path), PathClass::kIndirect) << path;
 }
 
