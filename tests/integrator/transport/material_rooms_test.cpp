@@ -94,6 +94,16 @@ SceneMaker outside(const MaterialDescription& floor) {
     return maker;
 }
 
+// The same below a lamp, with little else to see: what the floor receives tells.
+SceneMaker stage(const MaterialDescription& floor) {
+    SceneMaker maker;
+    plate(maker, floor);
+    maker.quad({-1, -1, -1}, {2, 0, 0}, {0, 1.2, 0}, maker.diffuse(Rgb(0.1f)));
+    ceilingLamp(maker, 0.4, Rgb(8.0f));
+    maker.camera({0, 0.8, 3.2}, {0, -0.6, 0}, {0, 1, 0}, 34);
+    return maker;
+}
+
 Room underMetals() {
     SceneMaker maker = litRoom();
     balls(maker, metal(0.15f), metal(0.35f));
@@ -102,9 +112,8 @@ Room underMetals() {
 }
 
 Room overGold() {
-    SceneMaker maker = litRoom();
-    plate(maker, gold(0.3f));
-    balls(maker, mirror(), gold(0.1f));
+    SceneMaker maker = stage(gold(0.3f));
+    balls(maker, glass(), gold(0.1f));
     return {"gold by n and k", maker};
 }
 
@@ -115,8 +124,7 @@ Room roughGlasses() {
 }
 
 Room coats() {
-    SceneMaker maker = litRoom();
-    plate(maker, surface({0.5f, 0.4f, 0.3f}, Rgb(0.04f), 0.3f));
+    SceneMaker maker = stage(surface({0.3f, 0.2f, 0.2f}, Rgb(0.2f), 0.3f));
     balls(maker, glass(), surface({0.2f, 0.3f, 0.5f}, Rgb(0.08f), 0.1f));
     return {"coats", maker};
 }
@@ -140,36 +148,33 @@ Room leaves() {
 }
 
 Room absorbing() {
-    SceneMaker maker = litRoom();
     MaterialDescription red = glass();
     red.attenuationColour = {0.8f, 0.2f, 0.1f};
     red.attenuationDistance = 0.4f;
     MaterialDescription floor = metal(0.8f);
     floor.roughnessTexture = 0;
-    plate(maker, floor);
+    SceneMaker maker = stage(floor);
     balls(maker, red, metal(0.5f));
     maker.description.textures = std::make_shared<Chequers>(0.5f, 1.0f);
     return {"absorbing glass over textured metal", maker};
 }
 
 Room mapped() {
-    SceneMaker maker = litRoom();
     MaterialDescription floor = metal(0.35f);
     floor.normalTexture = 1;
-    plate(maker, floor);
-    balls(maker, mirror(), surface(Rgb(0.5f)));
+    SceneMaker maker = stage(floor);
+    balls(maker, glass(), surface(Rgb(0.5f)));
     maker.description.textures = std::make_shared<Chequers>(0.5f, 1.0f);
     return {"normal map", maker};
 }
 
 Room mixtures() {
-    SceneMaker maker = litRoom();
     MaterialDescription floor = surface({0.3f, 0.4f, 0.2f}, Rgb(0.4f));
     floor.glossyExponent = 200;
-    plate(maker, floor);
+    SceneMaker maker = stage(floor);
     MaterialDescription broad = surface({0.4f, 0.2f, 0.2f}, Rgb(0.4f));
     broad.glossyExponent = 20;
-    balls(maker, roughGlass(0.25f), broad);
+    balls(maker, roughGlass(0.15f), broad);
     return {"mixtures", maker};
 }
 
