@@ -22,6 +22,7 @@ DirectionCone LightSampler::emissionCone(const Light& light) const {
 
 bool LightSampler::emitFromPoint(const Light& light, float probability, Vec2f u,
                                  EmittedPhoton& photon) const {
+    photon.isMet = false;
     const DirectionCone cone = emissionCone(light);
     photon.ray.origin = Vec3f(light.position());
     photon.flux = light.intensity() * (1.0f / probability);
@@ -46,6 +47,7 @@ Ray LightSampler::parallelRay(const Vec3d& through, const Vec3f& direction) cons
 
 bool LightSampler::emitFromAfar(const Light& light, float probability, Vec2f uPoint,
                                 Vec2f uDirection, EmittedPhoton& photon) const {
+    photon.isMet = light.isMet();
     ParallelLight parallel;
     if (!light.emitParallel(uDirection, parallel)) return false;
     const BoxShadow scene(m_scene.halfSize(), Vec3d(parallel.direction));

@@ -33,7 +33,8 @@ struct ChosenLight {
 // A photon as it leaves a light.
 struct EmittedPhoton {
     Ray ray;
-    Rgb flux;  // W, of one photon if only one were emitted: divide by the number emitted
+    Rgb flux;           // W, of one photon if only one were emitted: divide by the number emitted
+    bool isMet = true;  // the light, by rays
 };
 
 // A place where light is asked for, and any direction on the side of the surface that is lit.

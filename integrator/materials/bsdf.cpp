@@ -26,6 +26,7 @@ Bsdf::Bsdf(const Materials& materials, const Surface& surface, const Vec3f& out,
            Transport transport, const Rgb& carried)
     : m_at(out, surface.geometricNormal, surface.shadingNormal, transport) {
     m_at.opacity = opacityAt(materials, materials[surface.material], surface.uv);
+    m_isWide = pm::isWide(materials[surface.material]);
     setLobes(materials, surface, m_at, m_lobes);
     m_lobes.of(Lobe::kStraight) = Straight::reflectance(m_at);
     // A camera path finds no light there, so a photon from there brings none.

@@ -33,6 +33,10 @@ class Bsdf {
     }
     // The role of the lobe that is glossy or broad, where there is one: a surface has one at most.
     Lobe glossyLobe() const { return m_lobes.glossyRole; }
+    // Whether the lobe is glossy and wide, or broad: see isWide(MaterialDescription).
+    bool isWide(Lobe lobe) const {
+        return lobe == Lobe::kBroad || (lobe == Lobe::kGlossy && m_isWide);
+    }
     // With which sample() chooses the lobe.
     float probability(Lobe lobe) const { return m_probability[index(lobe)]; }
     // What the lobe reflects or transmits; at a refraction without its factor 1 / etaSquared().
@@ -95,7 +99,7 @@ class Bsdf {
     bool takeBy(const OneOfModels& lobe, Vec2f u, BsdfSample& sample) const;
 
     LobePoint m_at;
-    bool m_black = false, m_diffuseOnly = false, m_followsAll = false;
+    bool m_black = false, m_diffuseOnly = false, m_followsAll = false, m_isWide = false;
     Lobes m_lobes;
     std::array<float, kLobeCount> m_probability{};
 };

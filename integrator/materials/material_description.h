@@ -135,6 +135,17 @@ inline bool isBroad(const MaterialDescription& material) {
                                      : material.glossyExponent <= kMostBroadExponent;
 }
 
+// From this roughness of facets on, or up to the exponent of a Phong lobe as wide, a ray along a
+// lobe seldom finds a lamp's image: photons do it better.
+inline constexpr float kLeastWideRoughness = 0.25f, kMostWideExponent = 510.0f;
+
+// Whether the material's glossy lobe, where it has one, is so wide that it receives caustics as a
+// diffuse one does. Broad ones are, too. By the number alone, whatever its texture.
+inline bool isWide(const MaterialDescription& material) {
+    return material.roughness > 0.0f ? material.roughness >= kLeastWideRoughness
+                                     : material.glossyExponent <= kMostWideExponent;
+}
+
 // Whether light that a mirror or glass sends on is spread.
 inline bool isRough(const MaterialDescription& material) {
     return material.roughness > 0.0f || material.glossyExponent > 0.0f || hasCoat(material);

@@ -208,7 +208,7 @@ void PhotonFileReader::readEntries() {
         if (head.kind != static_cast<std::uint32_t>(kind) || head.pass != pass ||
             !fillsExactly(head, place->payloadBytes - sizeof head))
             throw damaged(at);
-        m_entries.push_back({*place, head.photons});
+        m_entries.push_back({*place, head.photons, head.descended, head.received});
         at = place->end();
     }
     const auto end = findRecord(m_file, at, m_size);
@@ -250,15 +250,17 @@ PhotonTraceResult PhotonFileReader::read(PhotonKind kind, std::uint32_t pass,
     // Sizes of what was found when the file was opened; the file may be another one by now.
     TracedHead head, found;
     found.photons = from.photons;
-    found.descended = (from.place.payloadBytes - sizeof head) / sizeof(Photon) - from.photons;
+    found.descended = from.descended;
+    found.received = from.received;
     PhotonTraceResult traced;
     const auto room = tracedRoom(found, traced);
-    const std::array<std::span<std::byte>, 3> payload = {
-        std::as_writable_bytes(std::span(&head, 1)), room[0], room[1]};
+    const std::array<std::span<std::byte>, 4> payload = {
+        std::as_writable_bytes(std::span(&head, 1)), room[0], room[1], room[2]};
     const bool isWhole = readRecord(m_file, from.place, payload,
                                     stopIf(cancelled, "cancelled while reading photons"));
     const char* fault = "a checksum is wrong";
-    if (isWhole && head.photons == found.photons && head.descended == found.descended)
+    if (isWhole && head.photons == found.photons && head.descended == found.descended &&
+        head.received == found.received)
         fault = faultOf(head, traced, m_wanted.sceneRadius);
     if (fault != nullptr)
         throw unusable(m_file.name(), fmt::format("the photon map is damaged at byte {}: {}",

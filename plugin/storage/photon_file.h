@@ -87,7 +87,7 @@ class PhotonFileReader : public PhotonSource {
     // Photons of one kind.
     struct Entry {
         RecordPlace place;
-        std::uint64_t photons = 0;
+        std::uint64_t photons = 0, descended = 0, received = 0;
     };
     void readHead();
     void readEntries();

@@ -336,6 +336,7 @@ bool AimedEmission::emit(Vec2f uChoice, Vec2f uPoint, Vec2f uDirection, AimedPho
     float probability;
     photon.light = m_choice.choose(uChoice.x, probability);
     const Light& light = m_scene.lights()[photon.light];
+    photon.isMet = light.isMet();
     if (light.isFar())
         return emitParallel(light, probability, uChoice.y, uPoint, uDirection, photon);
     Origin origin;

@@ -48,11 +48,12 @@ constexpr std::array<Zone, 4> kZones{
 }  // namespace
 
 SeenArea lookFor(const Scene& scene, const PhotonGate& gate, const Vec3f& apex,
-                 const Vec3f& inPlane) {
+                 const Vec3f& inPlane, bool ofGlossy) {
     const Vec3f ray = gate.position + inPlane - apex;
     Surface surface;
     if (!scene.intersect({apex, ray, kRayReach}, surface)) return {};
-    if (!reflectsDiffusely(scene.material(surface.material))) return {};
+    const MaterialDescription& material = scene.material(surface.material);
+    if (!(ofGlossy ? mayBeGlossy(material) : reflectsDiffusely(material))) return {};
     const Vec3f facing = dot(surface.geometricNormal, ray) < 0.0f ? surface.geometricNormal
                                                                   : -surface.geometricNormal;
     const Vec3f fromPoint = surface.position - gate.position;
@@ -90,7 +91,8 @@ std::uint32_t patternAt(const Vec3f& position) {
 SeenArea SurfaceEstimate::lookAt(const View& view, float turns, float radii) const {
     const SinCos phi = sinCosTurns(turns - std::floor(turns));
     const Vec3f inPlane = (view.tangent * phi.cos + view.bitangent * phi.sin) * (radii * m_radius);
-    return lookFor(m_scene, m_map.gate(view.position, view.normal), view.apex, inPlane);
+    return lookFor(m_scene, m_map.gate(view.position, view.normal), view.apex, inPlane,
+                   m_weights != nullptr);
 }
 
 SurfaceEstimate::Seen SurfaceEstimate::look(const View& view, float turns,
@@ -137,10 +139,45 @@ TwoRadii SurfaceEstimate::irradiance(const TwoRadii& flux, const Shares& share) 
             flux.narrow / (0.5f * discArea * std::max(kSmallestShare, share.narrow))};
 }
 
+// Of all photons, or of those that are seen from the apex, by their weights.
+TwoRadii SurfaceEstimate::weighted(const Vec3f& position, const Vec3f& normal, float radius,
+                                   const Vec3f* apex) const {
+    TwoRadii sum;
+    const float narrow = 0.5f * radius * radius;
+    m_map.visitAccepted(
+        position, normal, radius, m_weights->scratch,
+        [&](std::uint32_t index, float distanceSquared) {
+            const Rgb weight = m_weights->of(index);
+            if (isBlack(weight)) return;
+            if (apex) {
+                const Photon photon = m_map.photon(index);
+                if (!isSeenFrom(m_scene, *apex, photon.position, photon.normal.unpack())) return;
+            }
+            sum.wide += weight;
+            if (distanceSquared <= narrow) sum.narrow += weight;
+        });
+    return sum;
+}
+
+TwoRadii SurfaceEstimate::fluxWithin(const Vec3f& position, const Vec3f& normal,
+                                     float radius) const {
+    return m_weights ? weighted(position, normal, radius, nullptr)
+                     : m_map.fluxWithin(position, normal, radius);
+}
+
+// Of the photons that are seen from above the point.
+TwoRadii SurfaceEstimate::fluxSeen(const View& view) const {
+    if (m_weights) return weighted(view.position, view.normal, m_radius, &view.apex);
+    return m_map.fluxWithin(view.position, view.normal, m_radius, [&](std::uint32_t index) {
+        const Photon photon = m_map.photon(index);
+        return isSeenFrom(m_scene, view.apex, photon.position, photon.normal.unpack());
+    });
+}
+
 TwoRadii SurfaceEstimate::at(const Vec3f& position, const Vec3f& normal,
                              std::uint32_t pattern) const {
     // In the dark there is nothing to correct.
-    const TwoRadii flux = m_map.fluxWithin(position, normal, m_radius);
+    const TwoRadii flux = fluxWithin(position, normal, m_radius);
     if (isBlack(flux.wide)) return {};
     if (const auto seen = ofWhatIsSeen(position, normal, pattern, flux, 0)) return *seen;
     return beside(position, normal, pattern);
@@ -153,7 +190,7 @@ TwoRadii SurfaceEstimate::beside(const Vec3f& position, const Vec3f& normal,
     const Frame frame(normal);
     for (const Vec3f& aside : {frame.tangent, frame.bitangent, -frame.tangent, -frame.bitangent}) {
         const Vec3f place = position + aside * (kAside * m_radius);
-        const TwoRadii flux = m_map.fluxWithin(place, normal, m_radius);
+        const TwoRadii flux = fluxWithin(place, normal, m_radius);
         if (const auto seen = ofWhatIsSeen(place, normal, pattern, flux, 0)) return *seen;
     }
     return {};
@@ -176,8 +213,9 @@ std::optional<TwoRadii> SurfaceEstimate::ofWhatIsSeen(const Vec3f& position, con
     if (sawAny && share->wide >= least) return irradiance(counted, *share);
     if (halvings == kMostHalvings) return std::nullopt;
     // Patches don't tell apart what is so small.
-    const SurfaceEstimate nearer(m_scene, m_map, 0.5f * m_radius);
-    const TwoRadii fluxNearer = m_map.fluxWithin(position, normal, nearer.m_radius);
+    SurfaceEstimate nearer(m_scene, m_map, 0.5f * m_radius);
+    nearer.m_weights = m_weights;
+    const TwoRadii fluxNearer = fluxWithin(position, normal, nearer.m_radius);
     const auto seen = isBlack(fluxNearer.wide) ? std::nullopt
                                                : nearer.ofWhatIsSeen(position, normal, pattern,
                                                                      fluxNearer, halvings + 1);
@@ -214,15 +252,12 @@ SurfaceEstimate::Shares SurfaceEstimate::askRays(const Vec3f& position, const Ve
                     toUnitFloat(static_cast<std::uint32_t>(random >> 32))};
     bool isPlane;
     if (isWhole(view, isPlane) && (isPlane || !m_scene.hasSheets())) {
-        if (m_scene.hasSheets()) flux = m_map.fluxInPlane(position, normal, m_radius);
+        if (m_scene.hasSheets() && !m_weights) flux = m_map.fluxInPlane(position, normal, m_radius);
         return {};
     }
     const Shares share = shares(view);
     if (share.wide < least || !(share.wide > 0.0f)) return share;
-    flux = m_map.fluxWithin(position, normal, m_radius, [&](std::uint32_t index) {
-        const Photon photon = m_map.photon(index);
-        return isSeenFrom(m_scene, view.apex, photon.position, photon.normal.unpack());
-    });
+    flux = fluxSeen(view);
     return share;
 }
 

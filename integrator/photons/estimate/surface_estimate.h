@@ -22,14 +22,29 @@ struct SeenArea {
     Vec3f fromPoint, normal;  // the normal on the apex's side
 };
 // What is seen from the apex, above the gate's point, towards a place of the point's plane.
+// ofGlossy: of surfaces with a glossy lobe, in place of those that reflect diffusely.
 SeenArea lookFor(const Scene& scene, const PhotonGate& gate, const Vec3f& apex,
-                 const Vec3f& inPlane);
+                 const Vec3f& inPlane, bool ofGlossy = false);
 // How far above a point to look from, scene units: enough to see a disc of this radius, but half as
 // high as whatever stands there; under a ball on the floor the apex must not be inside the ball.
 float apexHeight(const Scene& scene, const Vec3f& position, const Vec3f& normal, float radius);
 // Whether a point of a surface, lifted by Scene::liftOfPoints, is seen from the apex. For a hit
 // that is pointUnderRay, so that a leaning wall is not passed on the way up.
 bool isSeenFrom(const Scene& scene, const Vec3f& apex, const Vec3f& position, const Vec3f& normal);
+
+// What photons of a map of glossy surfaces count for in place of their flux: what is reflected of
+// them.
+class PhotonWeights {
+  public:
+    explicit PhotonWeights(NearestPhotons& scratch) : scratch(scratch) {}
+    virtual ~PhotonWeights() = default;
+    PhotonWeights(const PhotonWeights&) = delete;
+    PhotonWeights& operator=(const PhotonWeights&) = delete;
+    // index: as PhotonMap::photon().
+    virtual Rgb of(std::uint32_t index) const = 0;
+
+    NearestPhotons& scratch;  // for queries
+};
 
 // A pattern of rays that depends on the place alone.
 std::uint32_t patternAt(const Vec3f& position);
@@ -49,6 +64,9 @@ class SurfaceEstimate {
     SurfaceEstimate(const Scene& scene, const PhotonMap& map, float radius,
                     const SurfacePatches* patches = nullptr)
         : m_scene(scene), m_map(map), m_radius(radius), m_patches(patches) {}
+    SurfaceEstimate(const Scene& scene, const PhotonMap& map, float radius,
+                    const PhotonWeights& weights)
+        : m_scene(scene), m_map(map), m_radius(radius), m_patches(nullptr), m_weights(&weights) {}
 
     const Scene& scene() const { return m_scene; }
     float radius() const { return m_radius; }
@@ -77,6 +95,10 @@ class SurfaceEstimate {
         Vec3f tangent, bitangent;
         float turn, shift;  // [0, 1)
     };
+    TwoRadii fluxWithin(const Vec3f& position, const Vec3f& normal, float radius) const;
+    TwoRadii fluxSeen(const View& view) const;
+    TwoRadii weighted(const Vec3f& position, const Vec3f& normal, float radius,
+                      const Vec3f* apex) const;
     TwoRadii beside(const Vec3f& position, const Vec3f& normal, std::uint32_t pattern) const;
     std::optional<TwoRadii> ofWhatIsSeen(const Vec3f& position, const Vec3f& normal,
                                          std::uint32_t pattern, const TwoRadii& flux,
@@ -96,6 +118,7 @@ class SurfaceEstimate {
     const PhotonMap& m_map;
     float m_radius;
     const SurfacePatches* m_patches;
+    const PhotonWeights* m_weights = nullptr;
 };
 
 }  // namespace pm

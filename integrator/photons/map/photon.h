@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "integrator/values/rgb.h"
@@ -21,6 +22,7 @@ struct PackedNormal {
     bool isNull() const { return components[0] == 0 && components[1] == 0 && components[2] == 0; }
     // A mark that whoever stores the normal gives a meaning.
     void mark() { components[3] = 1; }
+    void unmark() { components[3] = 0; }
     bool isMarked() const { return components[3] != 0; }
     float dotWith(const Vec3f& n) const {
         return (static_cast<float>(components[0]) * n.x + static_cast<float>(components[1]) * n.y +
@@ -48,5 +50,42 @@ struct Photon {
     PackedNormal normal;
 };
 static_assert(sizeof(Photon) == 28);
+
+// A unit vector to within 1e-4 radians: on an octahedron whose lower half is folded outwards.
+// Source: Meyer et al. 2010, "On floating-point normal vectors".
+struct PackedDirection {
+    std::array<std::int16_t, 2> components{};
+
+    PackedDirection() = default;
+    explicit PackedDirection(const Vec3f& v) {
+        const float sum = std::abs(v.x) + std::abs(v.y) + std::abs(v.z);
+        const float x = v.x / sum, y = v.y / sum;
+        components = v.z >= 0.0f ? std::array{pack(x), pack(y)}
+                                 : std::array{pack(folded(x, y)), pack(folded(y, x))};
+    }
+    Vec3f unpack() const {
+        const float x = static_cast<float>(components[0]) / kLargest;
+        const float y = static_cast<float>(components[1]) / kLargest;
+        const float z = 1.0f - std::abs(x) - std::abs(y);
+        return normalize(z >= 0.0f ? Vec3f{x, y, z} : Vec3f{folded(x, y), folded(y, x), z});
+    }
+
+  private:
+    static constexpr float kLargest = 32767.0f;
+    static float folded(float a, float b) {
+        return a < 0.0f ? std::abs(b) - 1.0f : 1.0f - std::abs(b);
+    }
+    static std::int16_t pack(float v) {
+        return static_cast<std::int16_t>(v * kLargest + (v < 0.0f ? -0.5f : 0.5f));
+    }
+};
+
+// A photon where it met a lobe that is glossy or broad. Its flux is as it arrived, with no regard
+// to normals; marked: no path from the camera finds its like, see PhotonTraceResult.
+struct ReceivedPhoton {
+    Photon photon;
+    PackedDirection from;  // away from the surface, to where it came from
+};
+static_assert(sizeof(ReceivedPhoton) == 32);
 
 }  // namespace pm

@@ -33,6 +33,7 @@ struct Batch {
     std::vector<Photon> photons;
     PhotonBalance balance;
     std::vector<Photon> descended;
+    std::vector<ReceivedPhoton> received;
     std::vector<EmissionRecord> records;
     std::uint64_t metCaster = 0;
 };
@@ -96,6 +97,7 @@ class PhotonWalk {
         // It has passed, on its way from the light, what shadow rays pass and others do not, or the
         // other way round; see passesHidden().
         bool pastShadowless = false, pastMirrorless = false;
+        bool isUnmet = false;  // by delta lobes alone, from a light that no ray meets
 
         bool isVoid() const { return pastShadowless && pastMirrorless; }
         bool mayGoOnBy(Lobe lobe) const {
@@ -124,6 +126,7 @@ class PhotonWalk {
         Waiting waiting;
         Part& first = waiting.parts[waiting.count++];
         first = {photon.ray, photon.flux, {.index = index}};
+        first.way.isUnmet = !photon.isMet;
         if (m_scene.viewersDiffer()) first.ray.viewer = kShadowRays | kReflectionRays;
         double landed = 0;
         while (waiting.count > 0) {
@@ -163,6 +166,7 @@ class PhotonWalk {
                     m_scene.pointUnderRay(surface.position, ray, bsdf.facingGeometricNormal());
                 landed += land(part, surface, bsdf, sampler, batch);
             }
+            if (m_request.received) landed += receive(part, surface, bsdf, batch);
             BsdfSample sample;
             float uLobe = sampler.next1D();
             const Vec2f u = sampler.next2D();
@@ -185,6 +189,7 @@ class PhotonWalk {
                 return landed;
             }
             Rgb scattered = flux * sample.weight * (keeps ? survival : 1.0f);
+            way.isUnmet = way.isUnmet && isDelta(sample.lobe);
             if (!advance(part, sample.lobe, sampler, scattered)) {
                 balance.fluxAbsorbed += channelSum(flux);
                 return landed;
@@ -360,6 +365,22 @@ class PhotonWalk {
         return channelSum(flux);
     }
 
+    // Stores a photon where a lobe that is neither diffuse nor delta receives it as a caustic.
+    // Returns its flux if so.
+    static double receive(const Part& part, const Surface& surface, const Bsdf& bsdf,
+                          Batch& batch) {
+        const Way& way = part.way;
+        const Lobe lobe = bsdf.glossyLobe();
+        if (way.stage != Stage::kSpecular || !bsdf.has(lobe)) return 0;
+        if (!bsdf.isWide(lobe) && !way.isUnmet) return 0;
+        batch.received.push_back(
+            {{surface.position, part.flux, PackedNormal(bsdf.facingGeometricNormal())},
+             PackedDirection(-part.ray.direction)});
+        if (way.isUnmet) batch.received.back().photon.normal.mark();
+        ++batch.balance.stored;
+        return bsdf.has(Lobe::kDiffuse) ? 0 : channelSum(part.flux);
+    }
+
     // What caustics send straight to a surface, or by broad lobes, is even: the share that is
     // followed carries it.
     void landDescended(Part& part, const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
@@ -454,6 +475,7 @@ PhotonTraceResult tracePhotons(const Scene& scene, const LightSampler& lights,
     check.throwIfSet("tracing photons");
     join(batches, &Batch::photons, result.photons, check);
     join(batches, &Batch::descended, result.descended, check);
+    join(batches, &Batch::received, result.received, check);
     join(batches, &Batch::records, result.records, check);
     for (const Batch& batch : batches) {
         result.balance += batch.balance;

@@ -55,6 +55,8 @@ struct PhotonTraceRequest {
     // else's business and ends there.
     bool withoutCaustics = false;
     bool keepRecords = false;  // for AimedEmission::refine
+    // Caustic photons: whether those that glossy and broad lobes receive are asked for as well.
+    bool received = false;
     // Where photons land very often: of those that landed, one in so many goes on (LongChains), a
     // power of two. 0: all go on, and all landings are stored.
     std::uint32_t oneInChains = 0;
@@ -66,6 +68,10 @@ struct PhotonTraceResult {
     // Of caustic photons the arrivals after the first. Marked where light that a caustic sends out
     // comes by way of other lobes before it meets another diffuse surface: refocused.
     BigVector<Photon> descended;
+    // Of caustic photons the arrivals at broad lobes and wide glossy ones before a diffuse one has
+    // scattered them. Marked, and at narrow glossy lobes, too: of lights that no ray meets, by way
+    // of delta lobes alone, which no path from the camera finds.
+    BigVector<ReceivedPhoton> received;
     BigVector<EmissionRecord> records;  // of each photon that carried something, if asked for
     Focus focus;                        // that global photons were aimed at
     // Of the caustic ones, those that began by another lobe than a diffuse one.

@@ -16,8 +16,10 @@ namespace pm {
 // the room plan, which knows all that a plan decides on.
 struct Plan {
     bool tracePhotons = false;
-    bool globalMap = false;            // the scene has indirect diffuse light to gather
-    bool causticMap = false;           // light can reach a diffuse surface by way of a specular one
+    bool globalMap = false;   // the scene has indirect diffuse light to gather
+    bool causticMap = false;  // light can reach a diffuse surface by way of a specular one
+    // Caustic photons are kept where glossy and broad lobes receive them, too: see ReceivedMap.
+    bool receivedMap = false;
     std::uint64_t globalPhotons = 0;   // emitted a pass for the global map
     std::uint64_t causticPhotons = 0;  // emitted a pass for the caustic map alone
     // Share of the caustic photons that is followed on, as light descended from caustics, which
@@ -36,6 +38,7 @@ struct Plan {
     // caustic map, afterwards, and of these refocused.
     double landingsOfPhoton = 0, causticLandingsOfPhoton = 0, descendedOfPhoton = 0;
     double refocusedOfPhoton = 0;
+    double receivedOfPhoton = 0;  // of a caustic one, by glossy and broad lobes
     // Where photons land very often, see PhotonTraceRequest; else 0.
     std::uint32_t oneInChains = 0;
     double processorSecondsPerPass = 0;  // estimated, to a factor of about two
@@ -47,12 +50,13 @@ struct Plan {
     std::uint64_t photonsPerPass() const { return globalPhotons + causticPhotons; }
     // That those leave where they land, at most as a rule.
     std::uint64_t landingsPerPass() const {
-        return globalLandings() + causticLandings() + descendedLandings();
+        return globalLandings() + causticLandings() + descendedLandings() + receivedLandings();
     }
     std::uint64_t globalLandings() const;
     std::uint64_t causticLandings() const;
     std::uint64_t descendedLandings() const;  // refocused ones included
     std::uint64_t refocusedLandings() const;
+    std::uint64_t receivedLandings() const;
 
     // All memory of maps where those of the first so many passes are held, with pointBytes of
     // gather points each.

@@ -18,7 +18,7 @@ struct GatherWay {
 
     // Whether light of lamps that the last lobe leads to, or reflects, is the ray's business.
     static bool isAsked(const GatherEnds& ends, Lobe lobe) {
-        return ends.lights && (lobe == Lobe::kBroad || ends.findsAll);
+        return ends.lights && (lobe == Lobe::kBroad || (ends.findsAll && !ends.withoutCaustics));
     }
 };
 

@@ -27,6 +27,8 @@ struct GatherEnds {
     bool findsAll = false;
     // What sent the ray out, where light of lamps that it meets at once is asked for as well.
     const LastScatter* from = nullptr;
+    // But for light of lamps by way of other lobes than broad ones: a ReceivedMap has it.
+    bool withoutCaustics = false;
 };
 
 // What one final-gather ray brings.

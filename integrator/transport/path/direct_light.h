@@ -16,7 +16,8 @@ namespace pm {
 // Which part of the picture a light path belongs to. With D the diffuse lobe, B a broad one and S
 // any other but going straight on, which is none, read from the eye: emission E S* L where every S
 // is delta; direct E S* (D|B) L, and E S+ L where a glossy lobe takes part; caustic E S* D (B|S)* S
-// L; indirect all others, which have two D or B or more. Each path is in exactly one.
+// L and, with W a lobe that is broad, or glossy and wide, E S* W (B|S)* S L; indirect all others,
+// which have two D or B or more. Each path is in exactly one.
 enum class PathClass : std::uint8_t { kEmission, kDirect, kCaustic, kIndirect };
 
 // How far a path from the camera has come.
@@ -26,12 +27,18 @@ struct PathState {
     Since since = Since::kNone;
     bool firstIsDiffuse = false;
     bool lastIsSpecular = false;
-    bool anyGlossy = false;
+    bool anyGlossy = false, anyDiffuse = false;
+    bool isPastWide = false;       // it has met a W, and no D
+    bool isCausticOnWide = false;  // what light is found next the first W receives as a caustic
 
-    void scatter(Lobe lobe) {
+    // isWide: a glossy lobe; broad ones are in any case.
+    void scatter(Lobe lobe, bool isWide = false) {
         if (lobe == Lobe::kStraight) return;
         const bool diffuse = lobe == Lobe::kDiffuse;
         lastIsSpecular = !diffuse && lobe != Lobe::kBroad;
+        anyDiffuse = anyDiffuse || diffuse;
+        isCausticOnWide = isPastWide && lastIsSpecular;
+        isPastWide = !anyDiffuse && (isPastWide || isWide || lobe == Lobe::kBroad);
         anyGlossy = anyGlossy || lobe == Lobe::kGlossy;
         if (since != Since::kNone)
             since = diffuse ? Since::kDiffuse : std::max(since, Since::kOthers);
@@ -41,6 +48,7 @@ struct PathState {
         }
     }
     PathClass classify() const {
+        if (isCausticOnWide) return PathClass::kCaustic;
         if (since == Since::kNone) return anyGlossy ? PathClass::kDirect : PathClass::kEmission;
         if (since == Since::kNothing) return PathClass::kDirect;
         return since == Since::kOthers && firstIsDiffuse && lastIsSpecular ? PathClass::kCaustic

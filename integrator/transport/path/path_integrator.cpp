@@ -31,7 +31,7 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
                 m_scene, m_lights, surface, bsdf, LampStrategy::kBoth, 1, sampler, result.rays);
             PathState byDiffuse = state, byGlossy = state;
             byDiffuse.scatter(Lobe::kDiffuse);
-            byGlossy.scatter(bsdf.glossyLobe());
+            byGlossy.scatter(bsdf.glossyLobe(), bsdf.isWide(bsdf.glossyLobe()));
             result.of(byDiffuse.classify()) += path.throughput * direct.diffuse;
             result.of(byGlossy.classify()) += path.throughput * direct.glossy;
         }
@@ -43,7 +43,7 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
             if (path.isCut()) result.addCut(path.amount());
             return result;
         }
-        state.scatter(sample.lobe);
+        state.scatter(sample.lobe, bsdf.isWide(sample.lobe));
         if (sample.lobe == Lobe::kStraight) continue;
         last = lastScatter(surface, sample);
         if (m_scene.viewersDiffer() && !isDelta(sample.lobe)) {

@@ -106,7 +106,7 @@ bool PhotonIntegrator::Branch::goOn(const Surface& surface, const Bsdf& bsdf,
                                     const BsdfSample& sample, bool isPart, Sampler& sampler) {
     if (!path.scatter(surface, bsdf, sample, sampler, isPart)) return false;
     if (sample.lobe == Lobe::kStraight) return true;
-    state.scatter(sample.lobe);
+    state.scatter(sample.lobe, bsdf.isWide(sample.lobe));
     last = lastScatter(surface, sample, lampSamples);
     return true;
 }
@@ -115,9 +115,10 @@ bool PhotonIntegrator::Branch::goOn(const Surface& surface, const Bsdf& bsdf,
 void PhotonIntegrator::addLampsAlong(Branch& branch, const Tree& tree) const {
     if (!m_scene.viewersDiffer() || isDelta(branch.last.lobe) || branch.last.hasLamps) return;
     SampleRadiance& result = tree.result;
-    result.of(branch.state.classify()) +=
-        branch.path.throughput *
-        lightAlong(m_scene, m_lights, branch.path.ray, branch.last, result.rays);
+    if (!isOfMap(branch.state))
+        result.of(branch.state.classify()) +=
+            branch.path.throughput *
+            lightAlong(m_scene, m_lights, branch.path.ray, branch.last, result.rays);
     branch.last.hasLamps = true;
 }
 
@@ -128,13 +129,16 @@ void PhotonIntegrator::follow(Branch& branch, const Tree& tree) const {
         Surface surface;
         ++result.rays;
         const PathClass found = branch.state.classify();
+        const bool isFound = isOfMap(branch.state);
         if (!m_scene.intersect(path.ray, surface)) {
-            result.of(found) += path.throughput * weightedFarLight(m_scene, m_lights, branch.last);
+            if (!isFound)
+                result.of(found) +=
+                    path.throughput * weightedFarLight(m_scene, m_lights, branch.last);
             return;
         }
         branch.way += length(surface.position - path.ray.origin);
         path.throughput *= m_scene.leftAlong(path.ray, surface);
-        if (tree.view.withSeenLamps || found != PathClass::kEmission)
+        if (!isFound && (tree.view.withSeenLamps || found != PathClass::kEmission))
             result.of(found) += path.throughput * weightedEmission(m_lights, surface, branch.last);
         Bsdf bsdf(m_scene.materials(), surface, -path.ray.direction, Transport::kRadiance,
                   path.throughput);
@@ -210,11 +214,37 @@ PhotonIntegrator::StillToFind PhotonIntegrator::addReflected(const Surface& surf
         const DirectRadiance direct =
             estimateDirect(m_scene, m_lights, surface, bsdf, still.lamps, branch.lampSamples,
                            tree.sampler, tree.result.rays);
-        PathState lit = branch.state;
-        lit.scatter(Lobe::kDiffuse);
-        tree.result.of(lit.classify()) += throughput * (direct.diffuse + direct.glossy);
+        PathState byDiffuse = branch.state, byGlossy = branch.state;
+        byDiffuse.scatter(Lobe::kDiffuse);
+        byGlossy.scatter(bsdf.glossyLobe(), bsdf.isWide(bsdf.glossyLobe()));
+        tree.result.of(byDiffuse.classify()) += throughput * direct.diffuse;
+        if (!isOfMap(byGlossy)) tree.result.of(byGlossy.classify()) += throughput * direct.glossy;
     }
+    if (m_maps.received) addReceived(surface, bsdf, branch, tree);
     return still;
+}
+
+// Caustics by the lobe that is glossy or broad, where the path has met no wide one before. Narrow
+// ones follow the light of lamps that rays meet; of others they have what came by way of delta
+// lobes alone.
+void PhotonIntegrator::addReceived(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
+                                   const Tree& tree) const {
+    const Lobe lobe = bsdf.glossyLobe();
+    if (!bsdf.has(lobe) || branch.state.isPastWide) return;
+    const Vec3f& ng = bsdf.facingGeometricNormal();
+    const float pixelWidth = tree.view.beam.widthAfter(branch.way);
+    const Rgb& throughput = branch.path.throughput;
+    // Photons tell of light for each area of the surface, by the cosine to the geometric normal.
+    constexpr float kLeastCosine = 1e-3f;
+    const auto value = [&](const Vec3f& from) {
+        return bsdf.evaluate(lobe, from) / std::max(kLeastCosine, std::abs(dot(from, ng)));
+    };
+    for (const float side : {1.0f, -1.0f}) {
+        if (side < 0.0f && !bsdf.goesThrough()) break;
+        const ReceivedMap::Place place{surface.position, ng * side, !bsdf.isWide(lobe), pixelWidth};
+        add(m_maps.received->radiance(place, value, tree.scratch), throughput, tree.result.caustic,
+            tree.result);
+    }
 }
 
 PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(const Surface& surface, const Bsdf& bsdf,
@@ -298,8 +328,13 @@ void PhotonIntegrator::followBroad(const Surface& surface, const Bsdf& bsdf, con
                            branch.lampSamples};
     const Ray ray = rayFrom(surface, sample.direction);
     const bool findsLamps = !m_scene.viewersDiffer();
-    const GatherEnds ends{*m_maps.global, m_maps.lamps, 1,
-                          &m_lights,      true,         findsLamps ? &last : nullptr};
+    const GatherEnds ends{*m_maps.global,
+                          m_maps.lamps,
+                          1,
+                          &m_lights,
+                          true,
+                          findsLamps ? &last : nullptr,
+                          m_maps.received != nullptr};
     Gathered found = finalGather(m_scene, ends, ray, 1.0f, tree.sampler);
     if (!findsLamps) found.lampsStraight = lightAlong(m_scene, m_lights, ray, last, found.rays);
     result.rays += found.rays;

@@ -8,6 +8,7 @@
 #include "integrator/light_sampling/light_sampler.h"
 #include "integrator/photons/estimate/caustic_map.h"
 #include "integrator/photons/estimate/irradiance_sites.h"
+#include "integrator/photons/estimate/received_map.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
@@ -24,6 +25,7 @@ struct PhotonMaps {
     const SurfaceEstimate* refocused = nullptr;
     const CausticMap* caustic = nullptr;
     const VirtualLamps* lamps = nullptr;
+    const ReceivedMap* received = nullptr;
 };
 
 // Radiance from photon maps. Every light path belongs to one class, every class to one estimator
@@ -94,6 +96,10 @@ class PhotonIntegrator {
                              const Tree& tree) const;
     StillToFind readMaps(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
                          const Tree& tree) const;
+    void addReceived(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
+                     const Tree& tree) const;
+    // Whether a map has the light that a path in this state finds at a lamp.
+    bool isOfMap(const PathState& state) const { return m_maps.received && state.isCausticOnWide; }
     void addRefocused(const GatherPoints::Place& place, float clearance, float share,
                       const Rgb& reflected, const Tree& tree) const;
     void followDiffuse(const Surface& surface, const Bsdf& bsdf, const Branch& branch,

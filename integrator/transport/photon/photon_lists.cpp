@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <utility>
 
 namespace pm {
 
@@ -15,6 +16,12 @@ std::vector<Photon> refocusedOf(std::span<const Photon> descended) {
     std::ranges::copy_if(descended, std::back_inserter(found),
                          [](const Photon& photon) { return photon.normal.isMarked(); });
     return found;
+}
+
+std::vector<Photon> photonsOf(std::span<const ReceivedPhoton> received) {
+    std::vector<Photon> photons(received.size());
+    std::ranges::transform(received, photons.begin(), &ReceivedPhoton::photon);
+    return photons;
 }
 
 BigVector<Photon> join(std::span<const Photon> first, std::span<const Photon> second) {
@@ -33,6 +40,13 @@ PhotonTraceResult joinHalves(PhotonTraceResult first, PhotonTraceResult second) 
     both.descended = join(first.descended, second.descended);
     for (BigVector<Photon>* const photons : {&both.photons, &both.descended})
         for (Photon& photon : *photons) photon.flux *= 0.5f;
+    both.received = std::move(first.received);
+    for (ReceivedPhoton& received : both.received) received.photon.normal.unmark();
+    for (ReceivedPhoton& received : second.received) {
+        received.photon.normal.mark();
+        both.received.push_back(received);
+    }
+    for (ReceivedPhoton& received : both.received) received.photon.flux *= 0.5f;
     both.balance = first.balance;
     both.balance += second.balance;
     for (double* const flux : {&both.balance.fluxEmitted, &both.balance.fluxAbsorbed,

@@ -14,6 +14,9 @@ namespace pm {
 // Of the photons that are descended from caustics, those that have been refocused, in their order.
 std::vector<Photon> refocusedOf(std::span<const Photon> descended);
 
+// Those that glossy lobes received, as a pilot of radii takes them.
+std::vector<Photon> photonsOf(std::span<const ReceivedPhoton> received);
+
 // The second after the first. Works in parallel in the calling TBB arena.
 BigVector<Photon> join(std::span<const Photon> first, std::span<const Photon> second);
 

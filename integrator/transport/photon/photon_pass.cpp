@@ -66,7 +66,7 @@ PhotonMaps PhotonPass::maps(std::uint32_t pass) const {
 std::uint64_t PhotonPass::PassMaps::memoryBytes() const {
     const auto bytesOf = [](const auto& part) { return part ? part->memoryBytes() : 0; };
     return bytesOf(global) + bytesOf(sites) + bytesOf(points) + bytesOf(refocusedPhotons) +
-           bytesOf(caustic) + bytesOf(lamps);
+           bytesOf(caustic) + bytesOf(lamps) + bytesOf(received);
 }
 
 // A map of so many photons was just built, as the last one of these.
@@ -80,7 +80,8 @@ void PhotonPass::noteBuilding(const PassMaps& maps, std::size_t photons) {
 // Patches and gather points grow as a pass is rendered.
 std::uint64_t PhotonPass::heldMapBytes() const {
     std::uint64_t held = m_patches->memoryBytes();
-    for (const auto* const radius : {m_causticRadius.get(), m_refocusedRadius.get()})
+    for (const auto* const radius :
+         {m_causticRadius.get(), m_refocusedRadius.get(), m_receivedRadius.get()})
         if (radius) held += radius->memoryBytes();
     for (const PassMaps& maps : m_held) held += maps.memoryBytes();
     return held;
@@ -115,6 +116,7 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
     PhotonTraceRequest request{kind, count, m_settings.seed, pass};
     request.aim = isCaustic(kind) ? m_aim.get() : m_focused.get();
     if (isCaustic(kind)) request.descent = m_plan.descent;
+    request.received = isCaustic(kind) && m_plan.receivedMap;
     request.withoutCaustics = m_plan.descent > 0.0f;
     request.oneInChains = m_plan.oneInChains;
     PhotonTraceResult result =
@@ -142,6 +144,13 @@ BigVector<Photon> PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
                                                 m_patches.get(), check);
     BigVector<Photon>().swap(traced.photons);
     noteBuilding(maps, landed);
+    if (m_plan.receivedMap) {
+        maps.received = std::make_unique<ReceivedMap>(
+            m_scene, std::vector(traced.received.begin(), traced.received.end()), *m_receivedRadius,
+            factor, check);
+        BigVector<ReceivedPhoton>().swap(traced.received);
+        noteBuilding(maps, maps.received->size());
+    }
     if (m_plan.descent > 0.0f) {
         const float radius = radiusOfGathered();
         maps.lamps = std::make_unique<VirtualLamps>(m_scene, maps.caustic->photons(),

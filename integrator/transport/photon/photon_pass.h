@@ -15,6 +15,7 @@
 #include "integrator/photons/emission/focus.h"
 #include "integrator/photons/estimate/caustic_map.h"
 #include "integrator/photons/estimate/irradiance_sites.h"
+#include "integrator/photons/estimate/received_map.h"
 #include "integrator/photons/map/photon_map.h"
 #include "integrator/photons/trace/photon_store.h"
 #include "integrator/photons/trace/photon_tracer.h"
@@ -77,10 +78,12 @@ class PhotonPass {
         std::unique_ptr<SurfaceEstimate> refocused;  // refers to refocusedPhotons
         std::unique_ptr<CausticMap> caustic;         // refers to m_causticRadius and m_patches
         std::unique_ptr<VirtualLamps> lamps;         // refers to caustic
+        std::unique_ptr<ReceivedMap> received;       // refers to m_receivedRadius
         std::unique_ptr<GatherPoints> points;        // refers to sites, refocused and lamps
 
         PhotonMaps view() const {
-            return {sites.get(), points.get(), refocused.get(), caustic.get(), lamps.get()};
+            return {sites.get(),   points.get(), refocused.get(),
+                    caustic.get(), lamps.get(),  received.get()};
         }
         std::uint64_t memoryBytes() const;
     };
@@ -123,7 +126,7 @@ class PhotonPass {
     std::unique_ptr<GatherGuide> m_guide;      // of gather rays; null: by the cosine alone
     std::unique_ptr<AimedEmission> m_focused;  // of global photons; null: unaimed
     std::unique_ptr<AimedEmission> m_aim;      // of caustic photons
-    std::unique_ptr<PilotRadius> m_causticRadius, m_refocusedRadius;
+    std::unique_ptr<PilotRadius> m_causticRadius, m_refocusedRadius, m_receivedRadius;
     std::unique_ptr<SurfacePatches> m_patches;  // filled as the passes go on
 
     mutable std::mutex m_mutex;    // of what follows

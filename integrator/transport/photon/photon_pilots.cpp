@@ -65,12 +65,13 @@ void PhotonPass::aim(Control& control) {
     m_aim = std::make_unique<AimedEmission>(
         m_scene, m_lights, findSeenFocus(m_scene, m_camera, m_settings, check), check);
     if (m_aim->empty()) return;
-    const PhotonTraceRequest request{PhotonKind::kCausticPilot,
-                                     m_plan.aimPilotPhotons(),
-                                     m_settings.seed,
-                                     kPilotOfAiming,
-                                     m_aim.get(),
-                                     true};
+    PhotonTraceRequest request{PhotonKind::kCausticPilot,
+                               m_plan.aimPilotPhotons(),
+                               m_settings.seed,
+                               kPilotOfAiming,
+                               m_aim.get(),
+                               true};
+    request.received = m_plan.receivedMap;
     const PhotonTraceResult landed =
         tracePhotons(m_scene, m_lights, request, control.cancelled, {});
     m_aim->refine(landed.records);
@@ -117,6 +118,9 @@ BigVector<Photon> PhotonPass::findCausticRadii(float fallback, Control& control)
         trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), kPilotOfRadii, control);
     const auto sought = static_cast<std::uint32_t>(kSoughtInCaustics * m_settings.estimatePhotons);
     m_causticRadius = std::make_unique<PilotRadius>(pilot.photons, sought, fallback, check);
+    if (m_plan.receivedMap)
+        m_receivedRadius =
+            std::make_unique<PilotRadius>(photonsOf(pilot.received), sought, fallback, check);
     if (m_plan.descent > 0.0f)
         m_refocusedRadius =
             std::make_unique<PilotRadius>(refocusedOf(pilot.descended), sought, fallback, check);

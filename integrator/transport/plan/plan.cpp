@@ -53,7 +53,9 @@ constexpr std::uint64_t kMapBytesOfHugeFrame = std::uint64_t{560} << 20;
 struct SceneTraits {
     bool diffuse = false;   // some surface reflects diffusely
     bool specular = false;  // some surface has another lobe that may cast caustics
-    bool glossy = false;    // or a Phong lobe, broad or not
+    bool glossy = false;    // or a glossy lobe, broad or not
+    bool wide = false;      // that may be wide
+    bool delta = false;     // some surface may cast caustics by a delta lobe
     bool lights = false;
     bool pointLights = false;  // of those that no ray meets: point lights, spots, parallel light
     bool farLights = false;    // of those that rays meet
@@ -66,7 +68,9 @@ SceneTraits findTraits(const Scene& scene) {
             const MaterialDescription& m = scene.material(index);
             traits.diffuse |= reflectsDiffusely(m);
             traits.glossy |= mayBeGlossy(m);
+            traits.wide |= mayBeGlossy(m) && isWide(m);
             traits.specular |= castsCaustics(m);
+            traits.delta |= castsCaustics(m) && mayHaveDelta(m);
         }
     traits.lights = !scene.lights().empty();
     for (const Light& light : scene.lights())
@@ -160,6 +164,7 @@ void planLandings(const Scene& scene, const RenderSettings& settings, Plan& plan
     plan.landingsOfPhoton = kExpectedLandings;
     plan.causticLandingsOfPhoton = kCausticParts;
     plan.refocusedOfPhoton = kCausticParts * kExpectedRefocused;
+    plan.receivedOfPhoton = kCausticParts;
     plan.descendedOfPhoton = kCausticParts * static_cast<double>(kAutoDescent) * kExpectedLandings +
                              plan.refocusedOfPhoton;
     const LandingPilot pilot = LandingPilot::of(scene, settings);
@@ -208,6 +213,30 @@ void planCausticMap(const SceneTraits& traits, Plan& plan) {
         plan.descent * 100.0f));
 }
 
+// Whether glossy and broad lobes receive caustics that nothing but photons finds well, or at all.
+bool needsReceivedMap(const SceneTraits& traits) {
+    return (traits.wide && traits.specular) ||
+           (traits.glossy && traits.delta && traits.pointLights);
+}
+
+void explainReceivedMap(const SceneTraits& traits, Plan& plan) {
+    if (traits.wide && traits.specular)
+        plan.reasons.push_back(fmt::format(
+            "caustics on glossy surfaces of roughness {:.2f} or more: by photons, which "
+            "keep where they came from, as a ray along so wide a lobe seldom finds a "
+            "lamp in a mirror or lens",
+            kLeastWideRoughness));
+    if (traits.glossy && traits.delta && traits.pointLights)
+        plan.reasons.push_back(
+            "caustics of lights that no ray meets, on glossy surfaces of any roughness: by photons "
+            "alone");
+    if (traits.glossy && !traits.wide && traits.specular && !(traits.pointLights && traits.delta))
+        plan.reasons.push_back(fmt::format(
+            "caustics on glossy surfaces of roughness below {:.2f}: by rays along their "
+            "lobes, which find lamps well",
+            kLeastWideRoughness));
+}
+
 // Why light goes from no surface to another; empty where it may.
 std::string whyNothingGoesOn(const Scene& scene) {
     if (scene.isFlat()) return "all surfaces that reflect lie in one plane";
@@ -233,15 +262,19 @@ std::string whyNoCaustics(const Scene& scene, const RenderSettings& settings,
 
 void planMaps(const Scene& scene, const RenderSettings& settings, const SceneTraits& traits,
               bool everything, Plan& plan) {
-    const std::string noGlobalMap = everything ? "" : whyNothingGoesOn(scene);
+    const std::string nothingGoesOn = everything ? "" : whyNothingGoesOn(scene);
+    const std::string noGlobalMap = traits.diffuse || everything || !nothingGoesOn.empty()
+                                        ? nothingGoesOn
+                                        : "no surface reflects diffusely";
     const std::string noCausticMap =
-        everything ? "" : whyNoCaustics(scene, settings, traits, noGlobalMap, plan);
+        everything ? "" : whyNoCaustics(scene, settings, traits, nothingGoesOn, plan);
     plan.globalMap = noGlobalMap.empty();
     plan.causticMap = noCausticMap.empty();
     plan.tracePhotons = plan.globalMap || plan.causticMap;
     if (plan.globalMap) plan.globalPhotons = photonsOf(settings, kAutoGlobalPhotons);
     if (plan.causticMap) plan.causticPhotons = photonsOf(settings, kAutoCausticPhotons);
     if (plan.globalMap && plan.causticMap) plan.descent = kAutoDescent;
+    plan.receivedMap = plan.causticMap && (everything || needsReceivedMap(traits));
     limitPhotons(settings, plan);
     if (plan.oneInChains > 0) plan.globalPhotons = LongChains::wholeNumber(plan.globalPhotons);
     if (plan.globalMap)
@@ -252,6 +285,7 @@ void planMaps(const Scene& scene, const RenderSettings& settings, const SceneTra
         planCausticMap(traits, plan);
     else
         plan.reasons.push_back("no caustic map: " + noCausticMap);
+    if (plan.causticMap) explainReceivedMap(traits, plan);
 }
 
 }  // namespace
@@ -260,7 +294,7 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
     Plan plan;
     const SceneTraits traits = findTraits(scene);
     const bool isPath = settings.integrator == IntegratorKind::kPath;
-    if (traits.glossy && traits.specular && traits.pointLights)
+    if (isPath && traits.glossy && traits.specular && traits.pointLights)
         plan.notices.push_back({NoticeCode::kNotCovered,
                                 "light of point lights, spots and suns without a disc that reaches "
                                 "a glossy lobe by way of a mirror, glass or another glossy surface "
@@ -280,7 +314,7 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
         plan.reasons.push_back("no photons: nothing emits");
         return plan;
     }
-    if (!traits.diffuse && !everything) {
+    if (!traits.diffuse && !everything && !needsReceivedMap(traits)) {
         plan.reasons.push_back("no photons: no surface reflects diffusely, paths are followed");
         return plan;
     }

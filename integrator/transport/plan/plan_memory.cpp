@@ -9,6 +9,7 @@
 
 #include "integrator/photons/estimate/caustic_map.h"
 #include "integrator/photons/estimate/irradiance_sites.h"
+#include "integrator/photons/estimate/received_map.h"
 #include "integrator/photons/estimate/surface_patches.h"
 #include "integrator/photons/map/photon_map.h"
 #include "integrator/transport/frame/pass_radius.h"
@@ -75,9 +76,15 @@ std::uint64_t Plan::refocusedLandings() const {
                : 0;
 }
 
+std::uint64_t Plan::receivedLandings() const {
+    return receivedMap
+               ? static_cast<std::uint64_t>(static_cast<double>(causticPhotons) * receivedOfPhoton)
+               : 0;
+}
+
 std::uint64_t Plan::pilotMapBytes() const {
-    return (causticLandings() + refocusedLandings()) / PilotRadius::kPilotShare *
-           PilotRadius::kHeldBytesPerPhoton;
+    return (causticLandings() + refocusedLandings() + receivedLandings()) /
+           PilotRadius::kPilotShare * PilotRadius::kHeldBytesPerPhoton;
 }
 
 std::uint64_t Plan::passMapBytes(std::uint32_t pass) const {
@@ -85,6 +92,7 @@ std::uint64_t Plan::passMapBytes(std::uint32_t pass) const {
     const std::uint64_t caustics = causticLandings() + refocusedLandings();
     const float factor = radiusFactor(pass);
     std::uint64_t bytes = (gathered + caustics) * PhotonMap::kHeldBytesPerPhoton;
+    bytes += receivedLandings() * ReceivedMap::kHeldBytesPerPhoton;
     if (globalMap) bytes += IrradianceSites::memoryBytes(gathered, factor);
     if (descent > 0.0f) bytes += VirtualLamps::memoryBytes(causticLandings(), factor);
     return bytes;
@@ -115,7 +123,14 @@ std::uint64_t Plan::buildingMapBytes(std::uint32_t pass) const {
     const std::uint64_t lamps =
         descent > 0.0f ? VirtualLamps::memoryBytes(causticLandings(), factor) : 0;
     const std::uint64_t global = gathered * kHeld + sites;
-    return std::max({beyond(causticLandings() * kEach + descended * sizeof(Photon),
+    const std::uint64_t received = receivedLandings();
+    const std::uint64_t receivedHeld = received * ReceivedMap::kHeldBytesPerPhoton;
+    return std::max({beyond(causticLandings() * kEach + descended * sizeof(Photon) +
+                                received * sizeof(ReceivedPhoton),
+                            receivedHeld + lamps + refocused * kHeld + global),
+                     beyond(received * (ReceivedMap::kBytesPerPhoton -
+                                        ReceivedMap::kHeldBytesPerPhoton + sizeof(ReceivedPhoton)) +
+                                descended * sizeof(Photon),
                             lamps + refocused * kHeld + global),
                      beyond(refocused * kEach + descended * sizeof(Photon), global),
                      beyond(2 * gathered * sizeof(Photon), global),

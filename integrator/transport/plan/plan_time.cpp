@@ -70,6 +70,7 @@ double secondsOfPass(const Scene& scene, const RenderSettings& settings, const P
     const double lampSamples = plan.lampSamples > 0 ? plan.lampSamples : kLampSamples;
     double sample = ray * (1 + kShadowRay * lampSamples) + kLookUps;
     if (plan.causticMap) sample += kLookUpsOfCaustics;
+    if (plan.receivedMap) sample += kLookUpsOfCaustics;
     if (traits.broad) sample += kRaysAlongBroad * ray;
     if (traits.divides) sample *= kDivided;
     const double samples = static_cast<double>(settings.window.area()) *

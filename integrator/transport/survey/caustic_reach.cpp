@@ -23,6 +23,7 @@ bool findsCaustics(const Scene& scene, std::uint64_t seed) {
     const std::atomic<bool> neverCancelled{false};
     const LightSampler lights = LightSampler::forPhotons(scene);
     PhotonTraceRequest request{PhotonKind::kCausticPilot, kUnaimed, seed, kPilotOfReach};
+    request.received = true;
     // Where they land it may be rare, far from where the camera looks: that they go on is enough.
     const auto goOn = [&] {
         const PhotonTraceResult traced = tracePhotons(scene, lights, request, neverCancelled, {});

@@ -62,12 +62,14 @@ void expectLandings(const Scene& scene, const RenderSettings& settings, Plan& pl
     PhotonTraceRequest request{PhotonKind::kCausticPilot, kCausticPhotons, settings.seed,
                                kPilotOfLandings};
     request.descent = plan.descent;
+    request.received = plan.receivedMap;
     request.oneInChains = plan.oneInChains;
     const PhotonTraceResult traced = trace(scene, request);
     if (traced.metCaster < kFewestAtCasters) return;
     const auto refocused = static_cast<std::uint64_t>(std::ranges::count_if(
         traced.descended, [](const Photon& photon) { return photon.normal.isMarked(); }));
     plan.causticLandingsOfPhoton = kAimedMeet * ratio(traced.photons.size(), traced.metCaster);
+    plan.receivedOfPhoton = kAimedMeet * ratio(traced.received.size(), traced.metCaster);
     plan.refocusedOfPhoton = kAimedMeet * ratio(refocused, traced.metCaster);
     plan.descendedOfPhoton = kAimedMeet * ratio(traced.descended.size(), traced.metCaster);
 }

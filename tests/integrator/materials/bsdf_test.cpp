@@ -95,6 +95,45 @@ TEST(Bsdf, IsReciprocal) {
     }
 }
 
+// Of every material whose lobes are in one plane with its surface: coats, what lies below them, and
+// both sides of a leaf.
+TEST(Bsdf, EveryRoughLobeIsReciprocal) {
+    std::vector<MaterialDescription> materials(5);
+    materials[0].diffuse = Rgb(0.5f);
+    materials[0].glossy = Rgb(0.2f);
+    materials[0].roughness = 0.35f;
+    materials[1] = materials[0];
+    materials[1].roughness = 0.7f;
+    materials[2].diffuse = Rgb(0.2f);
+    materials[2].diffuseTransmission = Rgb(0.5f);
+    materials[3].kind = materials[4].kind = MaterialKind::kMirror;
+    materials[3].glossy = materials[4].glossy = Rgb(0.8f);
+    materials[3].roughness = 0.3f;
+    materials[4].roughness = 0.9f;
+    materials[4].conductorN = Rgb(0.2f);
+    materials[4].conductorK = Rgb(3.0f);
+    Random random(3);
+    for (const MaterialDescription& material : materials) {
+        const Bench bench(material);
+        int found = 0;
+        for (int i = 0; i < 2000; ++i) {
+            const Vec3f a = above(random);
+            Vec3f b = above(random);
+            for (const float side : {1.0f, -1.0f}) {
+                b.z = std::abs(b.z) * side;
+                for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kGlossy, Lobe::kBroad}) {
+                    if (!bench.bsdf(a).has(lobe) || !bench.bsdf(b).has(lobe)) continue;
+                    const float ab = bench.bsdf(a).evaluate(lobe, b).g / std::abs(b.z);
+                    const float ba = bench.bsdf(b).evaluate(lobe, a).g / std::abs(a.z);
+                    ASSERT_NEAR(ab, ba, 3e-3f * std::abs(ab) + 1e-6f);
+                    found += ab > 0.0f;
+                }
+            }
+        }
+        EXPECT_GT(found, 1000);
+    }
+}
+
 // K(light -> eye) of the photons over |eye . ng| is the camera's over |light . ng| (Veach 1997, eq.
 // 5.19), wherever the shading normal points; only where the correction is cut may it be less.
 TEST(Bsdf, PhotonsAreTheAdjointOfTheCamera) {

@@ -149,9 +149,10 @@ TEST(Warps, BsdfSamplesItsDensity) {
         }
 }
 
-// Rough metal, rough glass from both sides, a coat, plaster and a leaf.
+// Rough metal, broad and narrow, by its colour and by n and k, rough glass from both sides, broad
+// and narrow, a coat, plaster and a leaf.
 TEST(Warps, RoughSurfacesSampleTheirDensity) {
-    std::vector<MaterialDescription> materials(7);
+    std::vector<MaterialDescription> materials(11);
     materials[0].kind = materials[1].kind = MaterialKind::kMirror;
     materials[0].glossy = materials[1].glossy = {0.9f, 0.8f, 0.5f};
     materials[0].roughness = 0.8f;
@@ -165,11 +166,19 @@ TEST(Warps, RoughSurfacesSampleTheirDensity) {
     materials[5].diffuseRoughness = 0.9f;
     materials[6].diffuse = Rgb(0.2f);
     materials[6].diffuseTransmission = Rgb(0.5f);
+    for (std::size_t i = 7; i < 9; ++i) {
+        materials[i] = materials[0];
+        materials[i].roughness = 0.4f;
+    }
+    materials[8].conductorN = {0.14f, 0.37f, 1.44f};
+    materials[8].conductorK = {3.98f, 2.38f, 1.6f};
+    materials[9] = materials[10] = materials[2];
+    materials[9].roughness = materials[10].roughness = 0.4f;
     std::uint64_t seed = 300;
     for (std::size_t i = 0; i < materials.size(); ++i)
         for (const Transport transport : {Transport::kRadiance, Transport::kPhotons}) {
             const Bench bench(materials[i], {0, 0, 1});
-            const Vec3f out = normalize(Vec3f{0.6f, 0.3f, i == 3 ? -0.5f : 0.5f});
+            const Vec3f out = normalize(Vec3f{0.6f, 0.3f, i == 3 || i == 10 ? -0.5f : 0.5f});
             const Bsdf bsdf(bench.scene->materials(), bench.surface, out, transport,
                             Rgb(0.7f, 1.0f, 0.4f));
             for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kBroad, Lobe::kGlossy}) {

@@ -13,21 +13,24 @@ namespace {
 PathClass classOf(const std::string& lobes) {
     PathState state;
     for (const char lobe : lobes)
-        state.scatter(lobe == 'D'   ? Lobe::kDiffuse
-                      : lobe == 'B' ? Lobe::kBroad
-                      : lobe == 'G' ? Lobe::kGlossy
-                                    : Lobe::kReflection);
+        state.scatter(lobe == 'D'                  ? Lobe::kDiffuse
+                      : lobe == 'B'                ? Lobe::kBroad
+                      : lobe == 'G' || lobe == 'W' ? Lobe::kGlossy
+                                                   : Lobe::kReflection,
+                      lobe == 'W');
     return state.classify();
 }
 
 TEST(PathClasses, ByTheLobesOnTheWay) {
     for (const char* path : {"", "S", "SS"}) EXPECT_EQ(classOf(path), PathClass::kEmission) << path;
-    for (const char* path : {"D", "B", "G", "SG", "GS", "SD", "GD", "SB"})
+    for (const char* path :
+         {"D", "B", "G", "W", "SG", "GS", "SD", "GD", "SB", "SW", "GW", "WD", "WSD", "GWB"})
         EXPECT_EQ(classOf(path), PathClass::kDirect) << path;
-    for (const char* path : {"DS", "DG", "SDS", "DBS", "DSBS", "DBBG"})
+    for (const char* path : {"DS", "DG", "SDS", "DBS", "DSBS", "DBBG", "BS", "BG", "WS", "WG", "WW",
+                             "GWS", "SBBS", "WBS", "BWG", "BWS", "WDS", "GWDG"})
         EXPECT_EQ(classOf(path), PathClass::kCaustic) << path;
     for (const char* path :
-         {"DD", "DSD", "DB", "DSB", "BD", "BB", "BS", "BSD", "DDS", "DBDS", "BDS", "DSDS"})
+         {"DD", "DSD", "DB", "DSB", "BD", "BB", "BSD", "DDS", "DBDS", "BDS", "DSDS"})
         EXPECT_EQ(classOf(path), PathClass::kIndirect) << path;
 }
 

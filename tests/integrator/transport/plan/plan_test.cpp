@@ -195,11 +195,48 @@ TEST(Plan, PathsThatNoEstimatorCoversAreNamed) {
     glossy.glossy = Rgb(0.5f);
     glossy.glossyExponent = 50;
     maker.quad({-1, 0, -1}, {2, 0, 0}, {0, 2, 0}, maker.material(glossy));
-    EXPECT_TRUE(hasNotice(planOf(maker), NoticeCode::kNotCovered));
+    EXPECT_FALSE(hasNotice(planOf(maker), NoticeCode::kNotCovered));
+    RenderSettings paths;
+    paths.integrator = IntegratorKind::kPath;
+    EXPECT_TRUE(hasNotice(makePlan(*maker.build(), paths), NoticeCode::kNotCovered));
 }
 
 bool says(const Plan& plan, const std::string& text) {
     return plan.explain().find(text) != std::string::npos;
+}
+
+// Which estimator glossy surfaces have their caustics from, and why.
+TEST(Plan, GlossyReceiversNameTheirEstimator) {
+    const auto planOver = [](float roughness, bool withPoint, bool withGlass = true) {
+        SceneMaker maker;
+        MaterialDescription metal, glass;
+        metal.kind = MaterialKind::kMirror;
+        metal.glossy = Rgb(0.8f);
+        metal.roughness = roughness;
+        glass.kind = MaterialKind::kDielectric;
+        maker.quad({-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, maker.material(metal));
+        if (withGlass) maker.sphere({0, 0.5, 0}, 0.3, maker.material(glass));
+        if (withPoint)
+            maker.pointLight({0, 2, 0}, Rgb(1.0f));
+        else
+            maker.quad({-0.3, 2, -0.3}, {0.6, 0, 0}, {0, 0, 0.6}, maker.diffuse({}, Rgb(10.0f)));
+        return planOf(maker);
+    };
+    const char* const wide = "roughness 0.25 or more: by photons";
+    const char* const unmet = "of any roughness: by photons alone";
+    const char* const narrow = "roughness below 0.25: by rays";
+    for (const float roughness : {0.3f, 0.8f}) {
+        EXPECT_TRUE(planOver(roughness, false).receivedMap);
+        EXPECT_TRUE(says(planOver(roughness, false), wide));
+        EXPECT_FALSE(says(planOver(roughness, false), unmet));
+        EXPECT_TRUE(says(planOver(roughness, true), unmet));
+    }
+    EXPECT_FALSE(planOver(0.1f, false).receivedMap);
+    EXPECT_TRUE(planOver(0.1f, true).receivedMap);
+    EXPECT_TRUE(says(planOver(0.1f, true), unmet));
+    EXPECT_FALSE(says(planOver(0.1f, true), narrow));
+    EXPECT_FALSE(planOver(0.0f, true).receivedMap);
+    EXPECT_FALSE(planOver(0.8f, true, false).receivedMap);
 }
 
 // A lobe that carries next to nothing, or spreads it widely; what light does not come to.
