@@ -25,7 +25,7 @@ struct TextureUse {
     std::array<float, 2> offset{};
     float base{0.0f};
     float gain{1.0f};
-    float strength{1.0f};  // of a normal map
+    float strength{1.0f};  // of a normal map; of a bump map: scene units of a height of 1
 };
 
 // A parameter of a material by its name, as docs/parameters.md lists them: numbers, or a text.
@@ -46,7 +46,16 @@ struct MaterialData {
     std::array<float, 3> diffuse{0.8f, 0.8f, 0.8f};
     std::array<float, 3> glossy{};
     float glossyExponent{};
-    float roughness{};  // of mirrors and glass, in [0, 1]; 0: by the exponent, or smooth
+    // In [0, 1]; 0: by the exponent, or smooth. A surface's glossy part then is a coat that
+    // reflects its colour at normal incidence and all at grazing angles, and takes that from what
+    // is below.
+    float roughness{};
+    float coat{};  // clear, over all else: the share that it covers, in [0, 1]
+    float coatRoughness{};
+    std::array<float, 3> sheen{};  // of cloth, over a surface
+    float sheenRoughness{0.3f};
+    float anisotropy{};          // of the roughness, in [0, 1]
+    float anisotropyRotation{};  // turns
     float ior{1.5f};
     std::array<float, 3> transmission{1.0f, 1.0f, 1.0f};
     std::array<float, 3> emission{};  // radiance, W m^-2 sr^-1
@@ -54,7 +63,8 @@ struct MaterialData {
     float transparency{};
     std::optional<TextureUse> diffuseTexture, glossyTexture, glossyExponentTexture,
         roughnessTexture, transmissionTexture, emissionTexture, opacityTexture,
-        normalTexture;  // in tangent space
+        normalTexture,  // in tangent space
+        bumpTexture;    // heights
 
     std::vector<NamedValue> byName;  // in place of what else is here
 

@@ -12,7 +12,7 @@ std::vector<std::filesystem::path> filesOf(const SceneData& scene) {
         for (const auto* use :
              {&material.diffuseTexture, &material.glossyTexture, &material.glossyExponentTexture,
               &material.roughnessTexture, &material.transmissionTexture, &material.emissionTexture,
-              &material.opacityTexture, &material.normalTexture}) {
+              &material.opacityTexture, &material.normalTexture, &material.bumpTexture}) {
             if (*use) files.emplace_back((*use)->file);
         }
     }

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <initializer_list>
 #include <limits>
 #include <utility>
 
@@ -32,7 +33,7 @@ void store(const Rgb3& colour, float largest, float (&target)[3]) {
 
 using TextureOfKind = std::pair<const std::optional<TextureUse>*, TextureKind>;
 
-std::array<TextureOfKind, 8> usesOf(const MaterialData& material) {
+std::array<TextureOfKind, 9> usesOf(const MaterialData& material) {
     return {{{&material.diffuseTexture, TextureKind::kColour},
              {&material.glossyTexture, TextureKind::kColour},
              {&material.glossyExponentTexture, TextureKind::kData},
@@ -40,7 +41,8 @@ std::array<TextureOfKind, 8> usesOf(const MaterialData& material) {
              {&material.transmissionTexture, TextureKind::kColour},
              {&material.emissionTexture, TextureKind::kColour},
              {&material.opacityTexture, TextureKind::kMask},
-             {&material.normalTexture, TextureKind::kVector}}};
+             {&material.normalTexture, TextureKind::kVector},
+             {&material.bumpTexture, TextureKind::kData}}};
 }
 
 TextureRequest requestOf(const TextureUse& use, TextureKind kind) {
@@ -130,6 +132,8 @@ void MaterialBuilder::convertColours(const MaterialData& material, PmrMaterialDe
     store(m_colour.materialToRendering(material.transmission), 1.0f, desc.transmission);
     store(m_colour.materialToRendering(material.emission), std::numeric_limits<float>::max(),
           desc.emission);
+    // What is below a coat of facets gets no more than that leaves.
+    if (material.roughness > 0) return;
     // In the other space a channel's sum may have passed 1.
     float largest = 1.0f;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -171,13 +175,15 @@ void MaterialBuilder::setByName(const MaterialData& material, PmrMaterial handle
     auto desc = PMR_INIT(PmrParameterDesc);
     desc.object = PMR_OBJECT_MATERIAL;
     desc.material = handle;
-    const auto setNumber = [&](const char* name, float number) {
-        const double value = static_cast<double>(number);
+    const auto setNumbers = [&](const char* name, std::initializer_list<double> numbers) {
         PmrParameterDesc own = desc;
         own.name = name;
-        own.numbers = &value;
-        own.numberCount = 1;
+        own.numbers = numbers.begin();
+        own.numberCount = static_cast<std::uint32_t>(numbers.size());
         m_context.check(m_context.api().setParameter(&own), of);
+    };
+    const auto setNumber = [&](const char* name, float number) {
+        setNumbers(name, {static_cast<double>(number)});
     };
     const auto setTexture = [&](const char* name, const std::optional<TextureUse>& use,
                                 TextureKind kind) {
@@ -193,6 +199,22 @@ void MaterialBuilder::setByName(const MaterialData& material, PmrMaterial handle
     }
     if (setTexture("normalTexture", material.normalTexture, TextureKind::kVector))
         setNumber("normalScale", material.normalTexture->strength);
+    if (setTexture("bumpTexture", material.bumpTexture, TextureKind::kData))
+        setNumber("bumpScale", material.bumpTexture->strength);
+    if (material.coat > 0) {
+        setNumber("coat", material.coat);
+        setNumber("coatRoughness", material.coatRoughness);
+    }
+    if (material.anisotropy > 0) {
+        setNumber("anisotropy", material.anisotropy);
+        setNumber("anisotropyRotation", material.anisotropyRotation);
+    }
+    if (material.sheen == std::array<float, 3>{}) return;
+    float sheen[3];
+    store(m_colour.materialToRendering(material.sheen), 1.0f, sheen);
+    setNumbers("sheen", {static_cast<double>(sheen[0]), static_cast<double>(sheen[1]),
+                         static_cast<double>(sheen[2])});
+    setNumber("sheenRoughness", material.sheenRoughness);
 }
 
 void MaterialBuilder::setNamed(const NamedValue& value, PmrMaterial handle) {

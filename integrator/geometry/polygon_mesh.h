@@ -57,6 +57,7 @@ struct TriangleMesh {
     std::vector<std::uint32_t> faces;      // the polygon each triangle came from
 
     Kept rayTracing;  // the SharedMesh of its instances
+    Kept tangents;    // the Tangents of its corners
 };
 
 // What was put right on the way to triangles, for one warning each.

@@ -76,7 +76,8 @@ GgxReflection facets(const MaterialDescription& material, const Surface& surface
     lobe.ggx.stretch = stretchOf(material);
     const SinCos turn = sinCosTurns(material.anisotropyRotation);
     const Frame frame(surface.shadingNormal, surface.tangent);
-    lobe.tangent = frame.tangent * turn.cos + frame.bitangent * turn.sin;
+    lobe.tangent = frame.tangent * turn.cos +
+                   frame.bitangent * (surface.isTextureMirrored ? -turn.sin : turn.sin);
     return lobe;
 }
 

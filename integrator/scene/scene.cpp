@@ -123,8 +123,11 @@ bool Scene::findFlat(const CancelCheck& cancel) const {
 std::uint64_t Scene::memoryBytes() const {
     std::uint64_t bytes = m_tracer.memoryBytes();
     std::set<const TriangleMesh*> instanced;
+    std::set<const Tangents*> withTangents;
     for (const ShapeRecord& record : m_shapes) {
         bytes += sizeof(ShapeRecord);
+        if (record.tangents && withTangents.insert(record.tangents.get()).second)
+            bytes += record.tangents->memoryBytes();
         if (record.placement) {
             if (!instanced.insert(record.mesh.get()).second) continue;
             bytes += record.mesh->rayTracing

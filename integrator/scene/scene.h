@@ -22,7 +22,7 @@
 #include "integrator/rays/ray_tracer.h"
 #include "integrator/scene/scene_core.h"
 #include "integrator/scene/scene_description.h"
-#include "integrator/shapes/normal_map.h"
+#include "integrator/shapes/bump_map.h"
 #include "integrator/shapes/surface.h"
 #include "integrator/values/notice.h"
 
@@ -209,8 +209,18 @@ class Scene {
     bool areOne(const Ray& ray, const RayHit& crossing, const RayHit& next) const;
     void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, const Corner& corner,
                            double b1, double b2, Surface& surface) const;
-    void turnNormal(const MaterialDescription& material, const TexturedEdges& edges,
-                    Surface& surface) const;
+    // Makes a shape's tangents where its materials ask for them; gives notice of what has none.
+    void prepareMaps(ShapeRecord& shape, const InstanceDescription& instance,
+                     const CancelCheck& cancel);
+    // Turns the shading normal by the material's maps, and sets the tangent where it is asked for.
+    void applyMaps(const ShapeRecord& shape, std::uint32_t primitive, const TexturedEdges& edges,
+                   Vec2f barycentric, Surface& surface) const;
+    void turnByNormalMap(const MaterialDescription& material, const Vec3f& tangent,
+                         float normalLength, Surface& surface) const;
+    void turnByBumpMap(const MaterialDescription& material, const TexturedEdges& edges,
+                       Surface& surface) const;
+    static float smoothness(const ShapeRecord& shape, std::uint32_t primitive, Vec2f barycentric,
+                            const Surface& surface);
     // Of a texture of lights; gives notice the first time.
     bool findBadTexels(std::int32_t texture, const CancelCheck& cancel);
     LampTexture lookAtLamp(const SurfaceLight& light, std::size_t mostLooks,
@@ -239,7 +249,6 @@ class Scene {
     double m_triangleArea = 0;  // of all
     bool m_isFlat = false, m_hasSheets = false;
     bool m_letsThrough = false;  // some material does
-    bool m_hasNormalMaps = false;
     bool m_hasThinWalls = false;
     bool m_absorbs = false;  // some material does
     bool m_hasInstances = false, m_viewersDiffer = false;

@@ -48,7 +48,6 @@ class Scene::Builder {
         m_scene.m_viewersDiffer = findViewers();
         m_scene.m_letsThrough =
             std::ranges::any_of(m_scene.m_description.materials, pm::letsThrough);
-        m_scene.m_hasNormalMaps = findNormalMaps();
         m_scene.m_absorbs = std::ranges::any_of(m_scene.m_description.materials, absorbs);
         m_scene.m_hasThinWalls = std::ranges::any_of(m_scene.m_description.materials,
                                                      [](const auto& m) { return m.thinWalled; });
@@ -78,24 +77,6 @@ class Scene::Builder {
     void goOn() {
         constexpr std::uint32_t kStepsBetweenLooks = 1 << 16;
         if (++m_steps % kStepsBetweenLooks == 0) m_cancel.throwIfSet("building the scene");
-    }
-
-    // Of what is no mesh none is rendered.
-    bool findNormalMaps() {
-        const SceneDescription& d = m_scene.m_description;
-        const auto hasMap = [&](std::uint32_t material) {
-            return d.materials[material].normalTexture != kNoTexture;
-        };
-        for (const InstanceDescription& instance : d.instances)
-            if (!std::holds_alternative<std::shared_ptr<const TriangleMesh>>(instance.shape) &&
-                std::ranges::any_of(instance.materials, hasMap))
-                m_scene.m_notices.push_back(
-                    {NoticeCode::kNotCovered,
-                     fmt::format("instance '{}' is no mesh: the normal map of its material is left "
-                                 "out",
-                                 instance.name)});
-        return std::ranges::any_of(d.materials,
-                                   [](const auto& m) { return m.normalTexture != kNoTexture; });
     }
 
     void noteHiddenSheen() {
@@ -237,6 +218,7 @@ class Scene::Builder {
             record.curved.emplace(instance.shape, instance.transform, m_scene.m_centre,
                                   hasTexture(m_scene.material(record.materials[0])), instance.name);
         }
+        m_scene.prepareMaps(record, instance, m_cancel);
         m_scene.m_shapes.push_back(std::move(record));
     }
 

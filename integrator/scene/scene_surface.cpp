@@ -12,7 +12,6 @@
 #include "integrator/scene/media.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/shape_record.h"
-#include "integrator/shapes/normal_map.h"
 #include "integrator/shapes/surface.h"
 
 namespace pm {
@@ -151,6 +150,7 @@ void Scene::surfaceAt(const Ray& ray, const RayHit& hit, Surface& surface) const
     }
     const Vec3d origin(ray.origin), direction(ray.direction);
     const Vec3d point = origin + direction * rootOf(*record.curved, origin, direction, hit.t);
+    surface.tangent = {};
     record.curved->surfaceNear(point, surface);
     nameSurface(record, 0, surface);
 }
@@ -171,27 +171,19 @@ void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive
                               f2, surface.geometricNormal);
     }
     surface.uv = {};
+    surface.tangent = {};
     if (!mesh.texcoords.empty()) {
         const auto& at = mesh.texcoordIndices[primitive];
         const Vec2f t0 = mesh.texcoords[at[0]], t1 = mesh.texcoords[at[1]],
                     t2 = mesh.texcoords[at[2]];
         const float f0 = 1.0f - f1 - f2;
         surface.uv = {t0.x * f0 + t1.x * f1 + t2.x * f2, t0.y * f0 + t1.y * f1 + t2.y * f2};
-        if (m_hasNormalMaps)
-            turnNormal(m_materials[record.materialOf(primitive)],
-                       {e1, e2, {t1.x - t0.x, t1.y - t0.y}, {t2.x - t0.x, t2.y - t0.y}}, surface);
+        if (record.hasMaps)
+            applyMaps(record, primitive,
+                      {e1, e2, {t1.x - t0.x, t1.y - t0.y}, {t2.x - t0.x, t2.y - t0.y}}, {f1, f2},
+                      surface);
     }
     nameSurface(record, primitive, surface);
-}
-
-void Scene::turnNormal(const MaterialDescription& material, const TexturedEdges& edges,
-                       Surface& surface) const {
-    if (material.normalTexture == kNoTexture) return;
-    const Texel texel = m_materials.textures->lookUp(material.normalTexture, surface.uv, 0.0f);
-    const Vec3f mapped{decodedNormal(texel.r) * material.normalScale,
-                       decodedNormal(texel.g) * material.normalScale, decodedNormal(texel.b)};
-    surface.shadingNormal =
-        mappedNormal(surface.shadingNormal, surface.geometricNormal, edges, mapped);
 }
 
 void Scene::nameSurface(const ShapeRecord& record, std::uint32_t primitive, Surface& surface) {

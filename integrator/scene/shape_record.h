@@ -3,12 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 
 #include "integrator/materials/material_description.h"
 #include "integrator/scene/scene.h"
 #include "integrator/shapes/curved_shape.h"
 #include "integrator/shapes/placement.h"
+#include "integrator/shapes/tangents.h"
 
 namespace pm {
 
@@ -42,6 +44,8 @@ struct Scene::ShapeRecord {
     std::vector<std::uint32_t> materials;        // of each slot
     std::vector<std::int32_t> lightOfPrimitive;  // empty when nothing here emits
     std::uint32_t instanceId = 0;
+    bool hasMaps = false;                      // some material has what applyMaps is for
+    std::shared_ptr<const Tangents> tangents;  // in the mesh's space; null where none asks for them
 
     std::uint32_t materialOf(std::uint32_t primitive) const {
         return mesh ? materials[mesh->materials.empty() ? 0 : mesh->materials[primitive]]

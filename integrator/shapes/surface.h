@@ -21,7 +21,9 @@ struct Surface {
     float offset = 0.0f;
     Vec3f geometricNormal;  // unit, out of the front
     Vec3f shadingNormal;    // unit, in the hemisphere of the geometric normal
-    Vec3f tangent;          // where the material asks for one; zero: none is known
+    // Where u grows, of anisotropic materials: unit, at right angles to the shading normal; 0 where
+    // the material is none or there are no texture coordinates.
+    Vec3f tangent;
     Vec2f uv;
     std::uint32_t material = 0;
     std::uint32_t shape = 0;
@@ -36,6 +38,9 @@ struct Surface {
     // its own material and front say).
     std::int32_t medium = kNoMedium;
     float eta = 0.0f;
+    // Where there is a tangent: whether the bitangent, where v grows, is minus the cross product of
+    // shading normal and tangent.
+    bool isTextureMirrored = false;
 };
 
 // Bound on the distance between a computed point on a triangle and where Embree's robust

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 
@@ -90,16 +91,15 @@ TEST(MtlDialect, BlendersPlasticReflectsFourPercent) {
                           "illum 2\n");
     EXPECT_EQ(r.material.kind, MaterialKind::kSurface);
     expectNear(r.material.glossy, {0.04f, 0.04f, 0.04f});
-    // Lobe and diffuse part together reflect in the mean what the coat does over the colour.
-    const auto more = static_cast<float>(meanOfCoat(0.04, 0.5) - 0.04 * meanOfLobe(0.5));
-    EXPECT_NEAR(more, 0.032, 0.003);
-    expectNear(r.material.diffuse, {0.8f + more, 0.1f + more, 0.1f + more});
-    // Roughness .5, so GGX of alpha .25.
-    EXPECT_NEAR(r.material.glossyExponent, (2 / 0.0625 - 2) / 4, 1e-3);
+    // The renderer's coat takes from what is below it, Blender's does not; and the diffuse part of
+    // a surface that is half rough reflects .953 + .1122 / 2 in the mean.
+    const auto more = static_cast<float>((0.953 + 0.0561) / (1 - meanOfCoat(0.04, 0.5)));
+    expectNear(r.material.diffuse, {0.8f * more, 0.1f * more, 0.1f * more});
+    EXPECT_NEAR(r.material.roughness, 0.5f, 1e-6);
     EXPECT_TRUE(r.heard.list.empty());
     const Result textured = read(kBlender3, "Ns 250\nmap_Kd -mm 0.1 0.5 a.png\nKs 0.5 0.5 0.5\n");
-    expectNear(textured.material.diffuse, {0.96f, 0.96f, 0.96f});
-    EXPECT_NEAR(textured.material.diffuseTexture->base, 0.1f + more / 0.96f, 1e-5);
+    expectNear(textured.material.diffuse, {1, 1, 1});
+    EXPECT_EQ(textured.material.diffuseTexture->base, 0.1f);
     EXPECT_EQ(textured.material.diffuseTexture->gain, 0.5f);
     EXPECT_NEAR(
         read(kBlender3, "Ks 0.25 0.25 0.25\nNs 250\nKd 0.5 0.5 0.5\nillum 2\n").material.glossy[0],
@@ -142,9 +142,8 @@ TEST(MtlDialect, BlendersMetalsKeepTheirColour) {
                               "illum 3\n");
     EXPECT_EQ(mixed.material.kind, MaterialKind::kSurface);
     expectNear(mixed.material.glossy, half);
-    // No more diffuse than the sum leaves.
-    const auto more = static_cast<float>(meanOfCoat(0.04, 0.2) - 0.04 * meanOfLobe(0.2)) / 2;
-    expectNear(mixed.material.diffuse, {0.48f, 0.385f + more, 0.17f + more});
+    const auto more = static_cast<float>(0.5 * (0.953 + 0.02244) / (1 - meanOfCoat(0.52, 0.2)));
+    expectNear(mixed.material.diffuse, {std::min(1.0f, more), 0.77f * more, 0.34f * more});
     expectNear(read(kBlender3, "Pr 0.2\nPm 0.5\nKd 1 0.77 0.34\nKs 0.5 0.5 0.5\nillum 2\n")
                    .material.glossy,
                half);
@@ -199,6 +198,36 @@ TEST(MtlDialect, BlendersBumpIsANormalMap) {
     EXPECT_TRUE(r.heard.list.empty());
 }
 
+// Coat, sheen and the rest as each of its versions means them.
+TEST(MtlDialect, BlendersLayers) {
+    const std::string layers =
+        "Kd 0.4 0.2 0.1\nPr 0.4\nPm 0\nPs 0.6\nPc 0.8\nPcr 0.1\n"
+        "aniso 0.5\nanisor 0.25\nKs 0.5 0.5 0.5\nillum 2\n";
+    const Result four = read(MtlDialect::kBlender4, layers);
+    EXPECT_EQ(four.material.coat, 0.8f);
+    EXPECT_EQ(four.material.coatRoughness, 0.1f);
+    expectNear(four.material.sheen, {0.6f, 0.6f, 0.6f});
+    EXPECT_EQ(four.material.sheenRoughness, 0.5f);
+    EXPECT_EQ(four.material.anisotropy, 0.5f);
+    EXPECT_EQ(four.material.anisotropyRotation, 0.25f);
+    EXPECT_TRUE(four.heard.list.empty());
+    // A quarter of a coat at most, and sheen that is half the colour's.
+    const Result three = read(kBlender3, layers);
+    EXPECT_FLOAT_EQ(three.material.coat, 0.2f);
+    const float luminance = 0.2126f * 0.4f + 0.7152f * 0.2f + 0.0722f * 0.1f;
+    expectNear(three.material.sheen,
+               {0.6f, 0.3f + 0.3f * 0.2f / luminance, 0.3f + 0.3f * 0.1f / luminance});
+}
+
+// A picture of roughness is one on any surface.
+TEST(MtlDialect, PicturesOfRoughnessOnSurfaces) {
+    const Result r = read(MtlDialect::kBlender4, "Kd 0.5 0.5 0.5\nmap_Pr rough.png\nillum 2\n");
+    EXPECT_EQ(r.material.kind, MaterialKind::kSurface);
+    EXPECT_EQ(r.material.roughness, 1.0f);
+    ASSERT_TRUE(r.material.roughnessTexture);
+    EXPECT_TRUE(r.heard.list.empty());
+}
+
 // Files of no known program: with Pm they are translated, with an illum of their own they say
 // themselves what is rough.
 TEST(MtlDialect, KeysForPhysicallyBasedMaterialsInAnyFile) {
@@ -228,13 +257,13 @@ TEST(MtlDialect, PicturesOfRoughnessAndMetalAreTold) {
     EXPECT_TRUE(r.heard.has(Warning::kMaterialPart, "a.mtl:5: material m: map_Ns is a picture of"));
     EXPECT_TRUE(r.heard.has(Warning::kMaterialPart, "a.mtl:6: material m: refl is a picture of"));
     EXPECT_FALSE(r.material.glossyExponentTexture);
-    EXPECT_NEAR(r.material.glossyExponent, 7.5, 1e-3);
+    EXPECT_EQ(r.material.roughness, 0.5f);
 }
 
 TEST(MtlDialect, OlderBlendersHaveAnotherLargestExponent) {
     EXPECT_NEAR(read(MtlDialect::kBlender28, "Ns 225\nKd 1 1 1\nKs 0.5 0.5 0.5\nillum 2\n")
-                    .material.glossyExponent,
-                7.5, 1e-3);
+                    .material.roughness,
+                0.5, 1e-6);
 }
 
 // d and Tr both stand there, Ni 1.5 on everything; Ks is a highlight that takes nothing from Kd.

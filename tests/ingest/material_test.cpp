@@ -102,15 +102,55 @@ TEST(Material, valuesOutOfRangeAreClampedWithTheLine) {
 TEST(Material, whatIsUnknownOrNotRenderedIsSaid) {
     EXPECT_TRUE(read("Kdd 0.5 0.5 0.5\n")
                     .heard.has(Warning::kMaterialValue, "a.mtl:2: material m: 'Kdd 0.5 0.5 0.5'"));
-    const Result shiny = read("Kd 0.5 0.5 0.5\nPr 0.3\nPm 0\nPs 0\nPc 1\n");
-    EXPECT_EQ(shiny.heard.list.size(), 1u);
-    EXPECT_TRUE(shiny.heard.has(Warning::kMaterialPart, "a.mtl:6: material m: Pc is not rendered"));
+    EXPECT_TRUE(read("disp d.png\n").heard.has(Warning::kMaterialPart, "is not displaced yet"));
+    EXPECT_TRUE(read("refl -type sphere s.png\n")
+                    .heard.has(Warning::kMaterialPart, "mirrors show the scene, not a picture"));
     EXPECT_TRUE(
         read("illum 11\n").heard.has(Warning::kMaterialValue, "illum 11 is outside [0, 10]"));
     // What exporters write and nobody misses.
     const Result usual = read(
         "Ka 1 1 1\nKd 0.5 0.5 0.5\nillum 2\nsharpness 60\naniso 0\nanisor 0\nPcr 0\nTf 1 1 1\n");
     EXPECT_TRUE(usual.heard.list.empty()) << usual.heard.list.front().second;
+}
+
+TEST(Material, layersOfPhysicallyBasedMaterials) {
+    const Result r =
+        read("Kd 0.5 0.5 0.5\nPr 0.3\nPm 0\nPs 0.4\nPc 1\nPcr 0.2\naniso 0.7\nanisor 0.5\n");
+    EXPECT_EQ(r.material.roughness, 0.3f);
+    EXPECT_EQ(r.material.sheen, (Colour{0.4f, 0.4f, 0.4f}));
+    EXPECT_EQ(r.material.coat, 1.0f);
+    EXPECT_EQ(r.material.coatRoughness, 0.2f);
+    EXPECT_EQ(r.material.anisotropy, 0.7f);
+    EXPECT_EQ(r.material.anisotropyRotation, 0.5f);
+    EXPECT_TRUE(r.heard.list.empty());
+    EXPECT_TRUE(read("Kd 1 1 1\nPc 2\n").heard.has(Warning::kMaterialValue, "Pc 2 is outside"));
+    EXPECT_TRUE(read("Ks 1 1 1\nillum 3\nPs 1\n")
+                    .heard.has(Warning::kMaterialPart, "Ps is not rendered on a mirror"));
+    EXPECT_TRUE(read("Kd 1 1 1\nKs 0.1 0.1 0.1\nNs 9\naniso 1\n")
+                    .heard.has(Warning::kMaterialPart, "with a roughness (Pr) alone"));
+}
+
+// Of what only has a number, all pictures in one line.
+TEST(Material, picturesOfNumbersAreToldOnce) {
+    const Result r = read("Kd 0.5 0.5 0.5\nmap_Pc c.png\nPc 0.5\nmap_Ps s.png\nmap_aniso a.png\n");
+    EXPECT_EQ(r.heard.list.size(), 1u);
+    EXPECT_TRUE(
+        r.heard.has(Warning::kMaterialPart, "map_Ps (Ps 0), map_Pc (Pc 0.5), map_aniso (aniso 0)"));
+    EXPECT_EQ(r.material.coat, 0.5f);
+}
+
+TEST(Material, bumpMaps) {
+    for (const char* key : {"bump", "map_bump", "map_Bump"}) {
+        const Result r = read(std::string(key) + " -bm 0.02 -s 2 2 b.png\n");
+        ASSERT_TRUE(r.material.bumpTexture) << key;
+        EXPECT_EQ(r.material.bumpTexture->file, "folder/b.png");
+        EXPECT_TRUE(r.material.bumpTexture->isData);
+        EXPECT_EQ(r.material.bumpTexture->strength, 0.02f);
+        EXPECT_TRUE(r.heard.list.empty());
+    }
+    EXPECT_EQ(read("bump -bm -2 b.png\n").material.bumpTexture->strength, -2.0f);
+    EXPECT_TRUE(
+        read("bump -bm 1e9 b.png\n").heard.has(Warning::kMaterialValue, "is outside [-1000000"));
 }
 
 TEST(Material, oneLineForAllChannels) {
@@ -155,7 +195,7 @@ TEST(Material, maps) {
     EXPECT_FALSE(use.isData);
     EXPECT_TRUE(r.material.opacityTexture->isData);
     EXPECT_EQ(r.material.diffuse, (Colour{1, 1, 1}));
-    EXPECT_TRUE(r.heard.has(Warning::kMaterialPart, "map_bump is not rendered yet"));
+    EXPECT_EQ(r.material.bumpTexture->strength, 3.0f);
     EXPECT_EQ(read("Kd 0.5 0.5 0.5\nmap_Kd a.png\n").material.diffuse, (Colour{0.5f, 0.5f, 0.5f}));
     EXPECT_EQ(read("illum 7\nNi 1.5\nmap_Tf a.png\n").material.transmissionTexture->file,
               "folder/a.png");

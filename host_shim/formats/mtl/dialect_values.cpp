@@ -23,6 +23,9 @@ double mean(const Colour& colour) {
 
 // Blender's Principled BSDF as its exporters write it.
 class PrincipledSection {
+    // What is smoother is a mirror's; 0 would mean that an exponent says it.
+    static constexpr double kLeastRoughness = 0.01;
+
   public:
     // isBlenders: by its own exporter.
     PrincipledSection(MtlDialect dialect, MtlSection& section, bool isBlenders = true)
@@ -41,6 +44,7 @@ class PrincipledSection {
         if (illum == 4 || illum == 5 || illum == 7) return {};
         m_isMetalOn = illum == 3 || illum == 6 || illum == 8;
         if (illum != 0) m_section.numbers["illum"] = 2;
+        setLayers();
         if (isGlass())
             makeGlass();
         else
@@ -61,6 +65,20 @@ class PrincipledSection {
         m_section.colours.erase(key);
         m_section.numbers.erase(key);
         m_section.maps.erase(key);
+    }
+
+    // What MTL does not say of them is as Blender has it where nobody changes it.
+    void setLayers() {
+        if (m_dialect == MtlDialect::kBlender4) {
+            m_translation.sheenRoughness = 0.5;
+            return;
+        }
+        // A clear coat covers a quarter at most, and sheen is half tinted by the colour below.
+        if (const auto coat = m_section.number("Pc")) m_section.numbers["Pc"] = 0.25 * *coat;
+        const Colour base = m_section.colour("Kd").value_or(Colour{1, 1, 1});
+        const double luminance = 0.2126 * base[0] + 0.7152 * base[1] + 0.0722 * base[2];
+        for (std::size_t i = 0; luminance > 0 && i < 3; ++i)
+            m_translation.sheenTint[i] = std::min(1.0, 0.5 + 0.5 * base[i] / luminance);
     }
 
     // A picture of it, which the number then multiplies; of old exporters a picture of exponents
@@ -138,48 +156,46 @@ class PrincipledSection {
         if (!m_section.number("Ni")) m_section.numbers["Ni"] = 1.45;
     }
 
+    // What reflects at the surface is a coat of facets over the diffuse part.
     void makeSurface() {
         const double metal = metallic();
         constexpr double kWholly = 0.999;
-        const bool hasRoughnessMap = metal >= kWholly && keepsRoughnessMap();
+        const bool hasRoughnessMap = keepsRoughnessMap();
         const double rough = hasRoughnessMap ? 1 : roughness();
         const Colour base = m_section.colour("Kd").value_or(Colour{1, 1, 1});
-        const Colour coat = specular();
+        const Colour specular = this->specular();
         for (const char* key : {"Pm", "Ns", "Tf"}) drop(key);
         if (!hasRoughnessMap) drop("Pr");
         // Of what is cut away light goes straight on, whatever the index.
         drop("Ni");
         if (metal >= kWholly) return makeMetal(base, rough);
-        m_section.numbers["Ns"] = exponentOfRoughness(rough);
-        const bool hasMap = m_section.hasMap("map_Kd");
-        Colour diffuse{}, glossy{}, added{};
-        for (std::size_t i = 0; i < 3; ++i) {
-            glossy[i] = metal * base[i] + (1 - metal) * coat[i];
-            added[i] = (1 - metal) * addedByCoat(coat[i], rough);
-            diffuse[i] = (1 - metal) * underCoat(base[i], coat[i], rough) + (hasMap ? 0 : added[i]);
-            diffuse[i] = std::min(diffuse[i], std::max(0.0, 1 - glossy[i]));
-        }
-        // Texels are multiplied by the number.
-        if (hasMap && mean(diffuse) > 0)
-            m_translation.addedToDiffuseMap = mean(added) / mean(diffuse);
+        Colour coat{};
+        for (std::size_t i = 0; i < 3; ++i)
+            coat[i] = std::min(1.0, metal * base[i] + (1 - metal) * specular[i]);
+        const double below =
+            m_dialect == MtlDialect::kBlender4 ? passedBy(specular, rough) : meanOfDiffuse(rough);
+        const double passes = below / passedBy(coat, rough);
+        Colour diffuse{};
+        for (std::size_t i = 0; i < 3; ++i)
+            diffuse[i] = std::min(1.0, (1 - metal) * base[i] * passes);
         m_section.colours["Kd"] = diffuse;
-        m_section.colours["Ks"] = glossy;
+        m_section.colours["Ks"] = coat;
+        m_section.numbers["Pr"] = std::max(rough, kLeastRoughness);
         if (metal >= 0.5 && m_section.hasMap("map_Kd"))
             m_section.maps["map_Ks"] = m_section.maps["map_Kd"];
     }
 
-    // Before Blender 4 the coat takes nothing from what is below it.
-    double underCoat(double base, double coat, double rough) const {
-        return m_dialect == MtlDialect::kBlender4 && coat > 0 ? base * (1 - meanOfCoat(coat, rough))
-                                                              : base;
+    // What a coat leaves of even light. Before Blender 4 what is below gets all, whatever the coat
+    // reflects; the renderer's gets what that leaves, so its colour is the brighter.
+    static double passedBy(const Colour& coat, double rough) {
+        const double largest = std::max({coat[0], coat[1], coat[2]});
+        return largest > 0 ? std::max(0.01, 1 - meanOfCoat(largest, rough)) : 1;
     }
 
-    // The lobe has what the coat reflects at normal incidence and nothing of the rise towards
-    // grazing angles. What all that brings in the mean is spread evenly, or rooms of plastic would
-    // be a quarter darker.
-    static double addedByCoat(double coat, double rough) {
-        return coat > 0 ? std::max(0.0, meanOfCoat(coat, rough) - coat * meanOfLobe(rough)) : 0;
-    }
+    // Before Blender 4 the diffuse part is Burley's, which shines at grazing angles where it is
+    // rough and darkens there where it is smooth; that is what it reflects of even light, within
+    // .001.
+    static double meanOfDiffuse(double rough) { return 0.953 + 0.1122 * rough; }
 
     // Blender's metals reflect their colour at normal incidence and all at grazing angles.
     void makeMetal(const Colour& base, double rough) {

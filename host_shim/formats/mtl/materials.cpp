@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "host_shim/formats/mtl/material_layers.h"
 #include "host_shim/formats/mtl/material_maps.h"
 #include "host_shim/formats/mtl/mtl_keys.h"
 #include "host_shim/formats/mtl/mtl_text.h"
@@ -42,13 +43,16 @@ class MaterialReader {
         const Translation translation = translateToGeneric(m_source.dialect, m_section);
         for (const DialectNote& told : translation.notes)
             note(Warning::kMaterialPart, told.key, told.text);
-        noteLeftOut();
+        const MaterialNote tell = [this](Warning code, const std::string& key,
+                                         const std::string& text) { note(code, key, text); };
+        noteLeftOut(m_section, tell);
+        noteIllum();
         readMaps();
-        if (m_material.diffuseTexture)
-            m_material.diffuseTexture->base += static_cast<float>(translation.addedToDiffuseMap);
+        limitStrengths(m_material, tell);
         readColours();
         decideKind();
         readKind();
+        readLayers(m_section, translation, m_material, tell);
         limitSum();
         return std::move(m_material);
     }
@@ -108,31 +112,11 @@ class MaterialReader {
         m_material.opacityTexture = map("map_d", true);
         m_material.emissionTexture = map("map_Ke", false);
         m_material.normalTexture = map("norm", true);
-        limitStrength();
+        m_material.bumpTexture = map("map_bump", true);
         m_material.transmissionTexture = map("map_Tf", false);
     }
 
-    void limitStrength() {
-        if (!m_material.normalTexture) return;
-        constexpr float kMost = 100.0f;
-        float& strength = m_material.normalTexture->strength;
-        const float allowed = strength >= 0 ? std::min(strength, kMost) : 1.0f;
-        if (allowed == strength) return;
-        note(Warning::kMaterialValue, "norm",
-             fmt::format("-bm {} is outside [0, {}]; {} is taken", strength, kMost, allowed));
-        strength = allowed;
-    }
-
-    void noteLeftOut() const {
-        for (const MtlKey& key : mtlKeys()) {
-            if (std::string_view(key.key) != key.meansKey) continue;
-            const bool isLeftOut =
-                (key.kind == MtlKind::kMapLeftOut && m_section.hasMap(key.key)) ||
-                (key.kind == MtlKind::kNumberLeftOut && number(key.key, 0) != 0);
-            if (isLeftOut)
-                note(Warning::kMaterialPart, key.key,
-                     fmt::format("{} is not rendered yet and left out", key.key));
-        }
+    void noteIllum() const {
         if (given("illum") && (illum() < 0 || illum() > 10)) {
             note(Warning::kMaterialValue, "illum",
                  fmt::format("illum {} is outside [0, 10] and left out", illum()));
@@ -237,7 +221,6 @@ class MaterialReader {
         }
     }
 
-    // Of mirrors and glass.
     void readRoughness() {
         const double value = number("Pr", 0);
         m_material.roughness = static_cast<float>(std::clamp(value, 0.0, 1.0));
@@ -300,8 +283,10 @@ class MaterialReader {
     }
 
     void readLobe() {
-        m_material.roughnessTexture.reset();
         const bool noLobe = illum() == 0 || illum() == 1;
+        if (!noLobe && !isBlack(m_material.glossy)) readRoughness();
+        if (m_material.roughness > 0) return;
+        m_material.roughnessTexture.reset();
         if (noLobe || !hasExponent()) {
             m_material.glossy = {};
             m_material.glossyTexture.reset();
@@ -336,8 +321,10 @@ class MaterialReader {
         m_material.diffuseTexture.reset();
     }
 
-    // No surface may reflect more than it gets.
+    // No surface may reflect more than it gets; what is below a coat of facets gets what that
+    // leaves.
     void limitSum() {
+        if (m_material.roughness > 0) return;
         float largest = 0;
         for (std::size_t i = 0; i < 3; ++i) {
             largest = std::max(largest, m_material.diffuse[i] + m_material.glossy[i]);

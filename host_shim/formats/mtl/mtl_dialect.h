@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <string>
@@ -61,7 +62,8 @@ struct DialectNote {
 
 struct Translation {
     std::vector<DialectNote> notes;
-    double addedToDiffuseMap{};  // to the texels of map_Kd
+    std::array<double, 3> sheenTint{1, 1, 1};  // of Ps
+    double sheenRoughness{0.3};
 };
 
 // Turns what a section says in its dialect into what the keys mean in the generic one. Nothing is

@@ -13,6 +13,7 @@ enum class MtlKind {
     kNumber,         // one number
     kMap,            // options and the name of a picture; rendered
     kMapLeftOut,     // the same, not rendered yet
+    kMapOfNumber,    // the same, of what is rendered by one number
     kNumberLeftOut,  // a number that is not rendered yet; 0 changes nothing
     kNoWeight,       // says nothing to a renderer like this one
 };

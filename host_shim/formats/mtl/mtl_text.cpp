@@ -59,6 +59,7 @@ void addStatement(std::string_view line, std::uint64_t number, MtlSection& secti
             break;
         case MtlKind::kMap:
         case MtlKind::kMapLeftOut:
+        case MtlKind::kMapOfNumber:
             section.maps.insert_or_assign(name, std::string(rest));
             break;
         case MtlKind::kNoWeight:

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// What maps over a mesh, and the directions in which its texture coordinates grow, do to a point of
+// it.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+
+#include "integrator/scene/scene.h"
+#include "integrator/scene/shape_record.h"
+#include "integrator/shapes/bump_map.h"
+#include "integrator/shapes/normal_map.h"
+#include "integrator/shapes/tangents.h"
+
+namespace pm {
+
+namespace {
+
+bool hasReliefMap(const MaterialDescription& material) {
+    return material.normalTexture != kNoTexture || material.bumpTexture != kNoTexture;
+}
+
+bool asksForTangents(const MaterialDescription& material) {
+    return material.normalTexture != kNoTexture || material.anisotropy > 0.0f;
+}
+
+Vec3f interpolated(const std::array<Vec3f, 3>& corners, Vec2f b) {
+    return corners[0] * (1.0f - b.x - b.y) + corners[1] * b.x + corners[2] * b.y;
+}
+
+Vec3f moved(const Transform& m, const Vec3f& v) {
+    const Vec3d d(v);
+    const Vec3d image{dot(row(m, 0), d), dot(row(m, 1), d), dot(row(m, 2), d)};
+    const double l = length(image);
+    return l > 0.0 ? Vec3f(image / l) : Vec3f();
+}
+
+// Puts a tangent at right angles to the shading normal that there is by now.
+void setTangent(const Vec3f& tangent, Surface& surface) {
+    const Vec3f& n = surface.shadingNormal;
+    const Vec3f flat = tangent - n * dot(tangent, n);
+    constexpr float kLeast = 1e-12f;  // squared; less is rounding's direction
+    if (lengthSquared(flat) > kLeast) surface.tangent = normalize(flat);
+}
+
+// What heights change by along one axis of texture coordinates, from half a texel before a place to
+// half a texel behind: the difference of neighbouring texels, which between their middles changes
+// evenly.
+double slopeAlong(float Vec2f::*axis, std::uint32_t texels, const TextureSource& textures,
+                  const MaterialDescription& material, Vec2f uv) {
+    const float half = 0.5f / static_cast<float>(std::max(texels, 1u));
+    Vec2f before = uv, after = uv;
+    before.*axis -= half;
+    after.*axis += half;
+    // Not always a texel: far from 0 texture coordinates lie farther apart.
+    const float way = after.*axis - before.*axis;
+    if (!(way > 0.0f)) return 0.0;
+    const float rise = textures.lookUp(material.bumpTexture, after, 0.0f).r -
+                       textures.lookUp(material.bumpTexture, before, 0.0f).r;
+    const double slope = static_cast<double>(rise) * static_cast<double>(material.bumpScale) /
+                         static_cast<double>(way);
+    return std::isfinite(slope) ? slope : 0.0;
+}
+
+}  // namespace
+
+void Scene::prepareMaps(ShapeRecord& record, const InstanceDescription& instance,
+                        const CancelCheck& cancel) {
+    const auto any = [&](const auto& is) {
+        return std::ranges::any_of(instance.materials,
+                                   [&](std::uint32_t m) { return is(material(m)); });
+    };
+    const bool hasCoordinates = record.mesh && !record.mesh->texcoords.empty();
+    if (!hasCoordinates) {
+        if (any(hasReliefMap))
+            m_notices.push_back(
+                {NoticeCode::kNotCovered,
+                 fmt::format("instance '{}' is no mesh with texture coordinates: the normal map or "
+                             "bump map of its material is left out",
+                             instance.name)});
+        return;
+    }
+    record.hasMaps = any(hasReliefMap) || any(asksForTangents);
+    if (any(asksForTangents)) record.tangents = Tangents::of(*record.mesh, cancel);
+}
+
+// The length of the normal as it is interpolated; 1 where there is none, or it is not used.
+float Scene::smoothness(const ShapeRecord& record, std::uint32_t primitive, Vec2f barycentric,
+                        const Surface& surface) {
+    if (record.mesh->normals.empty() || surface.shadingNormal == surface.geometricNormal)
+        return 1.0f;
+    const auto& at = record.mesh->normalIndices[primitive];
+    return length(interpolated({record.normal(at[0]), record.normal(at[1]), record.normal(at[2])},
+                               barycentric));
+}
+
+void Scene::applyMaps(const ShapeRecord& record, std::uint32_t primitive,
+                      const TexturedEdges& edges, Vec2f barycentric, Surface& surface) const {
+    const MaterialDescription& material = m_materials[record.materialOf(primitive)];
+    const bool needsTangent = asksForTangents(material);
+    Vec3f tangent;
+    if (needsTangent) {
+        const Transform& transform = m_description.instances[surface.shape].transform;
+        const Tangents& of = *record.tangents;
+        const auto at = [&](std::size_t corner) {
+            return moved(transform, of.at(primitive, corner));
+        };
+        tangent = interpolated({at(0), at(1), at(2)}, barycentric);
+        surface.isTextureMirrored = of.isMirrored(primitive) != record.mirrored;
+    }
+    if (material.normalTexture != kNoTexture)
+        turnByNormalMap(material, tangent, smoothness(record, primitive, barycentric, surface),
+                        surface);
+    if (material.bumpTexture != kNoTexture) turnByBumpMap(material, edges, surface);
+    if (material.anisotropy > 0.0f) setTangent(tangent, surface);
+}
+
+void Scene::turnByNormalMap(const MaterialDescription& material, const Vec3f& tangent,
+                            float normalLength, Surface& surface) const {
+    const Texel texel = m_materials.textures->lookUp(material.normalTexture, surface.uv, 0.0f);
+    const Vec3f mapped{decodedNormal(texel.r) * material.normalScale,
+                       decodedNormal(texel.g) * material.normalScale, decodedNormal(texel.b)};
+    const TangentFrame frame =
+        tangentFrame(tangent, surface.shadingNormal * normalLength, surface.isTextureMirrored);
+    surface.shadingNormal =
+        mappedNormal(surface.shadingNormal, surface.geometricNormal, frame, mapped);
+}
+
+void Scene::turnByBumpMap(const MaterialDescription& material, const TexturedEdges& edges,
+                          Surface& surface) const {
+    const TextureSource& textures = *m_materials.textures;
+    const auto [across, down] = textures.texels(material.bumpTexture);
+    const HeightSlopes slopes{slopeAlong(&Vec2f::x, across, textures, material, surface.uv),
+                              slopeAlong(&Vec2f::y, down, textures, material, surface.uv)};
+    surface.shadingNormal =
+        bumpedNormal(surface.shadingNormal, surface.geometricNormal, edges, slopes);
+}
+
+}  // namespace pm
