@@ -74,6 +74,16 @@ inline bool hasTexture(const MaterialDescription& material) {
     return false;
 }
 
+// Whether it looks up one that is filtered over what a ray covers: of what is cut away, and of
+// light, it is always the finest level.
+inline bool filtersTexture(const MaterialDescription& material) {
+    for (const std::int32_t texture :
+         {material.diffuseTexture, material.glossyTexture, material.glossyExponentTexture,
+          material.roughnessTexture, material.transmissionTexture, material.normalTexture})
+        if (texture != kNoTexture) return true;
+    return false;
+}
+
 // Whether light can leave the material in no other way than diffusely, whatever its textures.
 inline bool isDiffuseAtMost(const MaterialDescription& material) {
     return material.kind == MaterialKind::kSurface && isBlack(material.glossy) &&

@@ -23,6 +23,7 @@
 #include "integrator/scene/scene_core.h"
 #include "integrator/scene/scene_description.h"
 #include "integrator/shapes/normal_map.h"
+#include "integrator/shapes/ray_footprint.h"
 #include "integrator/shapes/surface.h"
 #include "integrator/values/notice.h"
 
@@ -43,7 +44,9 @@ class Scene {
                                               const CancelCheck& cancel = {});
     ~Scene();
 
-    bool intersect(const Ray& ray, Surface& surface) const;
+    // footprint: of the ray, becomes that at the surface, whose textures are looked up by it. Null,
+    // or one that is not known: they are looked up at their finest level.
+    bool intersect(const Ray& ray, Surface& surface, RayFootprint* footprint = nullptr) const;
     // By anything that any ray meets.
     bool occluded(Ray ray) const {
         ray.viewer = kAllRays;
@@ -125,6 +128,16 @@ class Scene {
         return pm::rayOnwards(position, normal, direction, 2.0f * liftOfPoints(position));
     }
 
+    // Whether some material has a texture that is filtered, so that footprints are worth their
+    // time.
+    bool filtersTextures() const { return m_filtersTextures; }
+    // Of a ray that leaves a surface or a light as one of many, along a direction of any length.
+    // Not known where there is nothing to filter.
+    RayFootprint coneAround(const Vec3f& direction) const {
+        return m_filtersTextures ? RayFootprint::cone(normalize(direction), RayFootprint::kWidest)
+                                 : RayFootprint{};
+    }
+
     // True when all that reflects or lets light through are triangles in one plane (to rounding),
     // so that no light goes from one surface by way of another.
     bool isFlat() const { return m_isFlat; }
@@ -192,17 +205,29 @@ class Scene {
         Vec3d vertex, e1, e2;
     };
     struct Facet;
+    // A ray that meets a surface, and its footprint, null where nobody asks for it.
+    struct Arrival {
+        const Ray* ray;
+        RayFootprint* footprint;
+    };
     // Sets centre and bounds.
     void place(const Box3d& whole, const std::optional<Box3d>& core);
     bool findFlat(const CancelCheck& cancel) const;
     // Of what a ray meets; shape and all else but isPane.
-    void surfaceAt(const Ray& ray, const RayHit& hit, Surface& surface) const;
+    void surfaceAt(const Ray& ray, const RayHit& hit, Surface& surface,
+                   RayFootprint* footprint = nullptr) const;
     float straightShare(const Ray& ray, const RayHit& hit) const;
     bool areOne(const Ray& ray, const RayHit& crossing, const RayHit& next) const;
     void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, const Corner& corner,
-                           double b1, double b2, Surface& surface) const;
+                           double b1, double b2, Surface& surface,
+                           const Arrival& arrival = {nullptr, nullptr}) const;
+    void footprintOnTriangle(const ShapeRecord& shape, std::uint32_t primitive,
+                             const Corner& corner, Vec2f at, const Arrival& arrival,
+                             Surface& surface) const;
+    void footprintOnCurved(const ShapeRecord& shape, const Arrival& arrival,
+                           Surface& surface) const;
     void turnNormal(const MaterialDescription& material, const TexturedEdges& edges,
-                    Surface& surface) const;
+                    const UvFootprint& footprint, Surface& surface) const;
     // Of a texture of lights; gives notice the first time.
     bool findBadTexels(std::int32_t texture, const CancelCheck& cancel);
     LampTexture lookAtLamp(const SurfaceLight& light, std::size_t mostLooks,
@@ -232,6 +257,7 @@ class Scene {
     bool m_isFlat = false, m_hasSheets = false;
     bool m_letsThrough = false;  // some material does
     bool m_hasNormalMaps = false;
+    bool m_filtersTextures = false;
     bool m_absorbs = false;  // some material does
     bool m_hasInstances = false, m_viewersDiffer = false;
     RayTracer m_tracer;  // last: it refers to the shapes' arrays and is destroyed before them

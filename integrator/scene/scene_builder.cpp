@@ -49,6 +49,8 @@ class Scene::Builder {
         m_scene.m_letsThrough =
             std::ranges::any_of(m_scene.m_description.materials, pm::letsThrough);
         m_scene.m_hasNormalMaps = findNormalMaps();
+        m_scene.m_filtersTextures =
+            std::ranges::any_of(m_scene.m_description.materials, filtersTexture);
         m_scene.m_absorbs = std::ranges::any_of(m_scene.m_description.materials, absorbs);
         makeGlass();
         addToTracer();

@@ -111,37 +111,42 @@ Scene::Facet::Facet(const Corner& corner, bool mirrored, bool exact) {
                                          : byEdges);
 }
 
-bool Scene::intersect(const Ray& ray, Surface& surface) const {
+bool Scene::intersect(const Ray& ray, Surface& surface, RayFootprint* footprint) const {
     RayHit hit;
     if (!m_tracer.intersect(ray, hit)) return false;
     if (m_coincident) hit = m_coincident->chosen(ray, hit);
-    surfaceAt(ray, hit, surface);
+    surfaceAt(ray, hit, surface, footprint && footprint->isKnown ? footprint : nullptr);
     surface.isPane = hit.isPane;
     if (hit.isPane) {
         surface.shadingNormal = surface.geometricNormal;
         surface.offset *= CoincidentFaces::kBeyondPane;
+        if (footprint) footprint->x.normal = footprint->y.normal = Vec3f(0.0f);
     }
     return true;
 }
 
-void Scene::surfaceAt(const Ray& ray, const RayHit& hit, Surface& surface) const {
+void Scene::surfaceAt(const Ray& ray, const RayHit& hit, Surface& surface,
+                      RayFootprint* footprint) const {
     const ShapeRecord& record = m_shapes[hit.shape];
     surface.shape = hit.shape;
     if (record.mesh) {
         const Corner corner = record.corner(hit.primitive);
         double b1, b2;
         barycentrics(ray, corner.vertex, corner.e1, corner.e2, b1, b2);
-        surfaceOnTriangle(record, hit.primitive, corner, b1, b2, surface);
+        const Arrival arrival{&ray, footprint};
+        surfaceOnTriangle(record, hit.primitive, corner, b1, b2, surface, arrival);
         return;
     }
     const Vec3d origin(ray.origin), direction(ray.direction);
     const Vec3d point = origin + direction * rootOf(*record.curved, origin, direction, hit.t);
     record.curved->surfaceNear(point, surface);
     nameSurface(record, 0, surface);
+    if (footprint) footprintOnCurved(record, {&ray, footprint}, surface);
 }
 
 void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive,
-                              const Corner& corner, double b1, double b2, Surface& surface) const {
+                              const Corner& corner, double b1, double b2, Surface& surface,
+                              const Arrival& arrival) const {
     const TriangleMesh& mesh = *record.mesh;
     const auto& [v0, e1, e2] = corner;
     surface.position = Vec3f(v0 + (e1 * b1 + e2 * b2));
@@ -156,23 +161,31 @@ void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive
                               f2, surface.geometricNormal);
     }
     surface.uv = {};
+    surface.footprint = {};
+    if (arrival.footprint)
+        footprintOnTriangle(record, primitive, corner, {f1, f2}, arrival, surface);
     if (!mesh.texcoords.empty()) {
         const auto& at = mesh.texcoordIndices[primitive];
         const Vec2f t0 = mesh.texcoords[at[0]], t1 = mesh.texcoords[at[1]],
                     t2 = mesh.texcoords[at[2]];
         const float f0 = 1.0f - f1 - f2;
         surface.uv = {t0.x * f0 + t1.x * f1 + t2.x * f2, t0.y * f0 + t1.y * f1 + t2.y * f2};
-        if (m_hasNormalMaps)
-            turnNormal(m_materials[record.materialOf(primitive)],
-                       {e1, e2, {t1.x - t0.x, t1.y - t0.y}, {t2.x - t0.x, t2.y - t0.y}}, surface);
+        if (m_hasNormalMaps) {
+            const MaterialDescription& material = m_materials[record.materialOf(primitive)];
+            // Of caustics every facet counts.
+            const bool isFinest =
+                arrival.footprint && arrival.footprint->isWide && castsCaustics(material);
+            turnNormal(material, {e1, e2, {t1.x - t0.x, t1.y - t0.y}, {t2.x - t0.x, t2.y - t0.y}},
+                       isFinest ? UvFootprint{} : surface.footprint, surface);
+        }
     }
     nameSurface(record, primitive, surface);
 }
 
 void Scene::turnNormal(const MaterialDescription& material, const TexturedEdges& edges,
-                       Surface& surface) const {
+                       const UvFootprint& footprint, Surface& surface) const {
     if (material.normalTexture == kNoTexture) return;
-    const Texel texel = m_materials.textures->lookUp(material.normalTexture, surface.uv, 0.0f);
+    const Texel texel = m_materials.textures->lookUp(material.normalTexture, surface.uv, footprint);
     const Vec3f mapped{decodedNormal(texel.r) * material.normalScale,
                        decodedNormal(texel.g) * material.normalScale, decodedNormal(texel.b)};
     surface.shadingNormal =

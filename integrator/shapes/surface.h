@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "integrator/values/ray.h"
+#include "integrator/values/uv_footprint.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
@@ -21,6 +22,7 @@ struct Surface {
     Vec3f geometricNormal;  // unit, out of the front
     Vec3f shadingNormal;    // unit, in the hemisphere of the geometric normal
     Vec2f uv;
+    UvFootprint footprint;  // of whoever looks at it; see RayFootprint
     std::uint32_t material = 0;
     std::uint32_t shape = 0;
     std::uint32_t primitive = 0;

@@ -29,10 +29,10 @@ std::uint64_t SceneTextures::texelBytes() const {
     return bytes + bytes / 3;
 }
 
-Texel SceneTextures::lookUp(std::int32_t index, Vec2f uv, float width) const {
+Texel SceneTextures::lookUp(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const {
     Texel texel;
     const Texture& texture = *m_textures[static_cast<std::size_t>(index)];
-    if (!texture.system->lookUp(texture.picture, uv, width, texel))
+    if (!texture.system->lookUp(texture.picture, uv, footprint, texel))
         m_failures.fetch_add(1, std::memory_order_relaxed);
     return texel;
 }

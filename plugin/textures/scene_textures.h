@@ -30,7 +30,7 @@ class SceneTextures final : public TextureSource {
     // Bytes of all their texels, of every level.
     std::uint64_t texelBytes() const;
 
-    Texel lookUp(std::int32_t index, Vec2f uv, float width) const override;
+    Texel lookUp(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const override;
     Texel lookUpOfLight(std::int32_t index, Vec2f uv) const override;
     BadTexels badTexels(std::int32_t index, const CancelCheck& cancel) const override;
     std::string name(std::int32_t index) const override;

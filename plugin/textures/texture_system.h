@@ -12,6 +12,7 @@
 
 #include "integrator/materials/texture_source.h"
 #include "integrator/values/cancel_check.h"
+#include "integrator/values/uv_footprint.h"
 #include "integrator/values/vec.h"
 
 namespace pm::plugin {
@@ -69,10 +70,12 @@ class TextureSystem {
     void holdAtMost(std::uint64_t bytes);
 
     // The picture's value at uv, origin bottom left. Bilinear within a level, linear between the
-    // levels of a mip-mapped file; a file without levels is looked up at its only one whatever the
-    // width. One channel is grey, two are grey and alpha; gain and base apply to the colour.
-    // Returns false, and a texel of 0, when the look-up failed or gave no finite number.
-    bool lookUp(const TexturePicture& picture, Vec2f uv, float width, Texel& texel) const;
+    // levels of a mip-mapped file, by several probes along a footprint's longer side; a file
+    // without levels is looked up at its only one whatever the footprint. One channel is grey, two
+    // are grey and alpha; gain and base apply to the colour. Returns false, and a texel of 0, when
+    // the look-up failed or gave no finite number.
+    bool lookUp(const TexturePicture& picture, Vec2f uv, const UvFootprint& footprint,
+                Texel& texel) const;
 
     // The same of a light, at the finest level: each texel without what is no light in it, then
     // interpolated. See TextureSource.

@@ -140,7 +140,8 @@ class PhotonWalk {
         while (true) {
             Surface surface;
             ++balance.rays;
-            if (!m_scene.intersect(ray, surface)) {
+            RayFootprint footprint = m_scene.coneAround(ray.direction);
+            if (!m_scene.intersect(ray, surface, &footprint)) {
                 balance.fluxEscaped += channelSum(flux);
                 return landed;
             }

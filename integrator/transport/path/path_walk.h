@@ -7,6 +7,7 @@
 #include "integrator/sampling/event_count.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/scene.h"
+#include "integrator/shapes/ray_footprint.h"
 #include "integrator/shapes/surface.h"
 #include "integrator/values/rgb.h"
 
@@ -29,8 +30,10 @@ struct Carried {
 // A path from the camera on its way from surface to surface, with the ray to follow next.
 struct PathWalk : Carried {
     Ray ray;
+    RayFootprint footprint;  // of the ray
 
-    explicit PathWalk(const Ray& first) : ray(first) {}
+    explicit PathWalk(const Ray& first, const RayFootprint& ofFirst = {})
+        : ray(first), footprint(ofFirst) {}
 
     // Goes on along a sampled direction, by Russian roulette after the first events. False: the
     // path ends here. No random number is drawn where the path is sure to go on. isPart: it divides
@@ -63,13 +66,14 @@ struct PathStop {
 };
 
 // Follows a path from the camera until visit(PathStop) returns false, or it ends as one of any kind
-// would.
+// would. footprint: of the first ray.
 template <typename Visit>
-void followCameraPath(const Scene& scene, const Ray& first, Sampler& sampler, const Visit& visit) {
-    PathWalk path(first);
+void followCameraPath(const Scene& scene, const Ray& first, const RayFootprint& footprint,
+                      Sampler& sampler, const Visit& visit) {
+    PathWalk path(first, footprint);
     while (true) {
         Surface surface;
-        if (!scene.intersect(path.ray, surface)) return;
+        if (!scene.intersect(path.ray, surface, &path.footprint)) return;
         const Bsdf bsdf(scene.materials(), surface, -path.ray.direction, Transport::kRadiance,
                         path.throughput);
         if (bsdf.isBlackBody()) return;

@@ -72,7 +72,7 @@ bool hasSeveralLobes(const Bsdf& bsdf) {
 SampleRadiance PhotonIntegrator::sample(const View& view, Sampler& sampler,
                                         NearestPhotons& scratch) const {
     SampleRadiance result;
-    Branch branch{PathWalk(view.ray), {}, {}, m_lampSamples};
+    Branch branch{PathWalk(view.ray, view.footprint), {}, {}, m_lampSamples};
     branch.last.direction = view.ray.direction;
     follow(branch, {view, sampler, scratch, result});
     return result;
@@ -128,7 +128,7 @@ void PhotonIntegrator::follow(Branch& branch, const Tree& tree) const {
         Surface surface;
         ++result.rays;
         const PathClass found = branch.state.classify();
-        if (!m_scene.intersect(path.ray, surface)) {
+        if (!m_scene.intersect(path.ray, surface, &path.footprint)) {
             result.of(found) += path.throughput * weightedFarLight(m_scene, m_lights, branch.last);
             return;
         }

@@ -47,6 +47,7 @@ class PhotonIntegrator {
         Ray ray;
         PixelBeam beam{};           // of no width where caustics may be narrower than any pixel
         bool withSeenLamps = true;  // false where emission is left to paths of SeenLamps
+        RayFootprint footprint{};   // of the ray
     };
     SampleRadiance sample(const View& view, Sampler& sampler, NearestPhotons& scratch) const;
 
