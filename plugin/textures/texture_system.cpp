@@ -246,6 +246,35 @@ bool TextureSystem::lookUpOfLight(const TexturePicture& picture, Vec2f uv, Texel
     return true;
 }
 
+TextureReads& TextureReads::operator+=(const TextureReads& other) {
+    tiles += other.tiles;
+    bytes += other.bytes;
+    tilesOnce += other.tilesOnce;
+    bytesOnce += other.bytesOnce;
+    texelsOnce += other.texelsOnce;
+    return *this;
+}
+
+TextureReads TextureSystem::reads(const TexturePicture& picture) const {
+    const OIIO::ustring name(picture.fileName);
+    const auto count = [&](const char* of) {
+        std::int64_t value = 0;
+        if (!m_system->get_texture_info(name, 0, OIIO::ustring(of), OIIO::TypeDesc::INT64, &value))
+            m_system->geterror();  // or the texts pile up
+        return static_cast<std::uint64_t>(std::max<std::int64_t>(value, 0));
+    };
+    int format = OIIO::TypeDesc::FLOAT;
+    m_system->get_texture_info(name, 0, OIIO::ustring("cachedformat"), OIIO::TypeInt, &format);
+    TextureReads reads{count("stat:tilesread"), count("stat:bytesread")};
+    reads.tilesOnce = reads.tiles - std::min(reads.tiles, count("stat:redundant_tiles"));
+    reads.bytesOnce = reads.bytes - std::min(reads.bytes, count("stat:redundant_bytesread"));
+    const OIIO::TypeDesc type(static_cast<OIIO::TypeDesc::BASETYPE>(format));
+    reads.texelsOnce =
+        reads.bytesOnce / std::max<std::size_t>(
+                              1, type.size() * static_cast<std::size_t>(picture.channelCount));
+    return reads;
+}
+
 BadTexels TextureSystem::badTexels(const TexturePicture& picture, const CancelCheck& cancel) const {
     constexpr std::uint32_t kRows = kTilePixels;
     const int channelCount = std::min(picture.channelCount, 4);

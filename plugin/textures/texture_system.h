@@ -51,6 +51,15 @@ struct TexturePicture {
 // Error(kCancelled) soon after cancel is set.
 std::array<std::uint64_t, 2> texelHash(const std::string& fileName, const CancelCheck& cancel);
 
+// What was read of pictures so far, through the cache, by all renders of the same context. Once: not
+// counting again what was read again, as the cache had let go of it.
+struct TextureReads {
+    std::uint64_t tiles = 0, bytes = 0;  // the cache's misses
+    std::uint64_t tilesOnce = 0, bytesOnce = 0, texelsOnce = 0;
+
+    TextureReads& operator+=(const TextureReads& other);
+};
+
 // A texture cache of our own: neither its contents nor its options mix with another user of the
 // same library in this process. Options that change values are all set here, so that what the
 // library takes from the environment has no say.
@@ -83,6 +92,8 @@ class TextureSystem {
     // Looks at all texels of the finest level. Throws CallError(IO); Error(kCancelled) soon after
     // cancel is set.
     BadTexels badTexels(const TexturePicture& picture, const CancelCheck& cancel) const;
+
+    TextureReads reads(const TexturePicture& picture) const;
 
   private:
     OIIO::TextureSystem& system();
