@@ -47,6 +47,8 @@ class Scene {
     // footprint: of the ray, becomes that at the surface, whose textures are looked up by it. Null,
     // or one that is not known: they are looked up at their finest level.
     bool intersect(const Ray& ray, Surface& surface, RayFootprint* footprint = nullptr) const;
+    // The same of the shape alone: no texture is looked up, to turn the shading normal.
+    bool meet(const Ray& ray, Surface& surface) const;
     // By anything that any ray meets.
     bool occluded(Ray ray) const {
         ray.viewer = kAllRays;
@@ -131,10 +133,10 @@ class Scene {
     // Whether some material has a texture that is filtered, so that footprints are worth their
     // time.
     bool filtersTextures() const { return m_filtersTextures; }
-    // Of a ray that leaves a surface or a light as one of many, along a direction of any length.
-    // Not known where there is nothing to filter.
-    RayFootprint coneAround(const Vec3f& direction) const {
-        return m_filtersTextures ? RayFootprint::cone(normalize(direction), RayFootprint::kWidest)
+    // Of a ray that leaves a surface or a light as one of many, along a unit direction. Not known
+    // where there is nothing to filter. width: where it starts, scene units.
+    RayFootprint coneAround(const Vec3f& direction, float width = 0.0f) const {
+        return m_filtersTextures ? RayFootprint::cone(direction, RayFootprint::kWidest, width)
                                  : RayFootprint{};
     }
 
@@ -209,18 +211,20 @@ class Scene {
     struct Arrival {
         const Ray* ray;
         RayFootprint* footprint;
+        bool ofShapeOnly;  // no texture turns the shading normal
     };
     // Sets centre and bounds.
     void place(const Box3d& whole, const std::optional<Box3d>& core);
     bool findFlat(const CancelCheck& cancel) const;
     // Of what a ray meets; shape and all else but isPane.
-    void surfaceAt(const Ray& ray, const RayHit& hit, Surface& surface,
-                   RayFootprint* footprint = nullptr) const;
+    // What its ray meets.
+    bool find(Surface& surface, const Arrival& arrival) const;
+    void surfaceAt(const RayHit& hit, Surface& surface, const Arrival& arrival) const;
     float straightShare(const Ray& ray, const RayHit& hit) const;
     bool areOne(const Ray& ray, const RayHit& crossing, const RayHit& next) const;
     void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, const Corner& corner,
                            double b1, double b2, Surface& surface,
-                           const Arrival& arrival = {nullptr, nullptr}) const;
+                           const Arrival& arrival = {nullptr, nullptr, false}) const;
     void footprintOnTriangle(const ShapeRecord& shape, std::uint32_t primitive,
                              const Corner& corner, Vec2f at, const Arrival& arrival,
                              Surface& surface) const;

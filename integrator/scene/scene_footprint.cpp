@@ -75,7 +75,6 @@ void Scene::footprintOnCurved(const ShapeRecord& record, const Arrival& arrival,
     footprint.arrive(*arrival.ray, surface.position, surface.geometricNormal);
     const auto longest = kLongestStep * static_cast<float>(record.curved->size());
     const bool filters = isFiltered(footprint, m_materials[surface.material]);
-    surface.footprint = {};
     for (auto [side, onto] :
          {std::pair{&footprint.x, &surface.footprint.x}, {&footprint.y, &surface.footprint.y}}) {
         const float step = length(side->origin);

@@ -112,28 +112,36 @@ Scene::Facet::Facet(const Corner& corner, bool mirrored, bool exact) {
 }
 
 bool Scene::intersect(const Ray& ray, Surface& surface, RayFootprint* footprint) const {
+    return find(surface, {&ray, footprint && footprint->isKnown ? footprint : nullptr, false});
+}
+
+bool Scene::meet(const Ray& ray, Surface& surface) const {
+    return find(surface, {&ray, nullptr, true});
+}
+
+bool Scene::find(Surface& surface, const Arrival& arrival) const {
     RayHit hit;
-    if (!m_tracer.intersect(ray, hit)) return false;
-    if (m_coincident) hit = m_coincident->chosen(ray, hit);
-    surfaceAt(ray, hit, surface, footprint && footprint->isKnown ? footprint : nullptr);
+    if (!m_tracer.intersect(*arrival.ray, hit)) return false;
+    if (m_coincident) hit = m_coincident->chosen(*arrival.ray, hit);
+    surfaceAt(hit, surface, arrival);
     surface.isPane = hit.isPane;
     if (hit.isPane) {
         surface.shadingNormal = surface.geometricNormal;
         surface.offset *= CoincidentFaces::kBeyondPane;
-        if (footprint) footprint->x.normal = footprint->y.normal = Vec3f(0.0f);
+        if (RayFootprint* const footprint = arrival.footprint)
+            footprint->x.normal = footprint->y.normal = Vec3f(0.0f);
     }
     return true;
 }
 
-void Scene::surfaceAt(const Ray& ray, const RayHit& hit, Surface& surface,
-                      RayFootprint* footprint) const {
+void Scene::surfaceAt(const RayHit& hit, Surface& surface, const Arrival& arrival) const {
     const ShapeRecord& record = m_shapes[hit.shape];
     surface.shape = hit.shape;
+    const Ray& ray = *arrival.ray;
     if (record.mesh) {
         const Corner corner = record.corner(hit.primitive);
         double b1, b2;
         barycentrics(ray, corner.vertex, corner.e1, corner.e2, b1, b2);
-        const Arrival arrival{&ray, footprint};
         surfaceOnTriangle(record, hit.primitive, corner, b1, b2, surface, arrival);
         return;
     }
@@ -141,7 +149,8 @@ void Scene::surfaceAt(const Ray& ray, const RayHit& hit, Surface& surface,
     const Vec3d point = origin + direction * rootOf(*record.curved, origin, direction, hit.t);
     record.curved->surfaceNear(point, surface);
     nameSurface(record, 0, surface);
-    if (footprint) footprintOnCurved(record, {&ray, footprint}, surface);
+    surface.footprint = {};
+    if (arrival.footprint) footprintOnCurved(record, arrival, surface);
 }
 
 void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive,
@@ -170,7 +179,7 @@ void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive
                     t2 = mesh.texcoords[at[2]];
         const float f0 = 1.0f - f1 - f2;
         surface.uv = {t0.x * f0 + t1.x * f1 + t2.x * f2, t0.y * f0 + t1.y * f1 + t2.y * f2};
-        if (m_hasNormalMaps) {
+        if (m_hasNormalMaps && !arrival.ofShapeOnly) {
             const MaterialDescription& material = m_materials[record.materialOf(primitive)];
             // Of caustics every facet counts.
             const bool isFinest =

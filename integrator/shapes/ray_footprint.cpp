@@ -27,13 +27,17 @@ Vec3f bounded(const Vec3f& change) {
 
 }  // namespace
 
-RayFootprint RayFootprint::cone(const Vec3f& direction, float spread) {
+RayFootprint RayFootprint::cone(const Vec3f& direction, float spread, float width) {
     RayFootprint footprint;
     const Frame frame(direction);
-    footprint.x.direction = frame.tangent * spread;
-    footprint.y.direction = frame.bitangent * spread;
+    footprint.x = {frame.tangent * width, frame.tangent * spread};
+    footprint.y = {frame.bitangent * width, frame.bitangent * spread};
     footprint.isKnown = footprint.isWide = true;
     return footprint;
+}
+
+float RayFootprint::width() const {
+    return std::sqrt(std::min(lengthSquared(x.origin), lengthSquared(y.origin)));
 }
 
 void RayFootprint::arrive(const Ray& ray, const Vec3f& position, const Vec3f& normal) {
@@ -77,7 +81,7 @@ void RayFootprint::widen(const Vec3f& direction, float pdfSolidAngle) {
     const float before =
         std::sqrt(std::max(lengthSquared(x.direction), lengthSquared(y.direction)));
     const float ofLobe = pdfSolidAngle > 0.0f ? kSideOfSample / std::sqrt(pdfSolidAngle) : kWidest;
-    *this = cone(direction, std::min(kWidest, std::max(before, ofLobe)));
+    *this = cone(direction, std::min(kWidest, std::max(before, ofLobe)), width());
 }
 
 }  // namespace pm

@@ -25,9 +25,12 @@ struct RayFootprint {
     // It has left a surface or a light by many directions, of which it stands for some.
     bool isWide = false;
 
-    // Around a ray that starts at a point. direction: unit. spread: the cone's width for each unit
-    // of the way, radians.
-    static RayFootprint cone(const Vec3f& direction, float spread);
+    // Around a ray. direction: unit. spread: the cone's width for each unit of the way, radians;
+    // width: where it starts, scene units.
+    static RayFootprint cone(const Vec3f& direction, float spread, float width = 0.0f);
+
+    // Of the shorter side, where the ray starts or has met a surface; scene units.
+    float width() const;
 
     // The origin's change becomes that of the place where the ray meets a surface. ray: of unit
     // direction; normal: the geometric one, unit.
@@ -38,8 +41,8 @@ struct RayFootprint {
     // surface's front; eta: index on the far side over that on the near side.
     void reflect(const Vec3f& in, const Vec3f& normal, bool turned);
     void refract(const Vec3f& in, const Vec3f& normal, bool turned, float eta);
-    // By any other lobe: a cone that is no narrower than the way before. pdfSolidAngle: of the new
-    // direction, sr^-1.
+    // By any other lobe: a cone that spreads no less than the way before, from what that covers
+    // here. pdfSolidAngle: of the new direction, sr^-1.
     void widen(const Vec3f& direction, float pdfSolidAngle);
 
     // The widest spread of a cone: what is blurred by so much has the same mean seen from a

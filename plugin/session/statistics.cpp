@@ -82,21 +82,20 @@ Json bucketJson(const RenderWork& work, const RenderWork::Progress& progress) {
 
 Json memoryJson(const RenderWork& work, const RenderCounters& counters) {
     const MemoryNeed& need = work.memory().need;
-    return {{"sceneBytes", need.scene},
-            {"frameBytes", need.frame},
-            {"mapBytes", counters.peakMapBytes},
-            {"plannedMapBytes", need.maps},
-            {"bucketBytes", need.buckets},
-            {"plannedTextureBytes", need.textures},
-            {"processBytes", need.process},
-            {"peakResidentBytes", peakResidentBytes()}};
+    return {{"sceneBytes", need.scene},          {"frameBytes", need.frame},
+            {"mapBytes", counters.peakMapBytes}, {"plannedMapBytes", need.maps},
+            {"bucketBytes", need.buckets},       {"plannedTextureBytes", need.textures},
+            {"processBytes", need.process},      {"peakResidentBytes", peakResidentBytes()}};
 }
 
 Json texturesJson(const SceneTextures& textures) {
     const TextureReads reads = textures.reads();
-    return {{"texels", textures.texels()},     {"texelsRead", reads.texelsOnce},
-            {"misses", reads.tiles},           {"bytesRead", reads.bytes},
-            {"tilesReadOnce", reads.tilesOnce}, {"bytesReadOnce", reads.bytesOnce}};
+    return {{"texels", textures.texels()},
+            {"texelsRead", reads.texelsOnce},
+            {"misses", reads.tiles},
+            {"bytesRead", reads.bytes},
+            {"tilesReadOnce", reads.tilesOnce},
+            {"bytesReadOnce", reads.bytesOnce}};
 }
 
 Json warningsJson(const Scene& scene, RenderWork& work) {

@@ -270,8 +270,8 @@ TextureReads TextureSystem::reads(const TexturePicture& picture) const {
     reads.bytesOnce = reads.bytes - std::min(reads.bytes, count("stat:redundant_bytesread"));
     const OIIO::TypeDesc type(static_cast<OIIO::TypeDesc::BASETYPE>(format));
     reads.texelsOnce =
-        reads.bytesOnce / std::max<std::size_t>(
-                              1, type.size() * static_cast<std::size_t>(picture.channelCount));
+        reads.bytesOnce /
+        std::max<std::size_t>(1, type.size() * static_cast<std::size_t>(picture.channelCount));
     return reads;
 }
 

@@ -51,8 +51,8 @@ struct TexturePicture {
 // Error(kCancelled) soon after cancel is set.
 std::array<std::uint64_t, 2> texelHash(const std::string& fileName, const CancelCheck& cancel);
 
-// What was read of pictures so far, through the cache, by all renders of the same context. Once: not
-// counting again what was read again, as the cache had let go of it.
+// What was read of pictures so far, through the cache, by all renders of the same context. Once:
+// not counting again what was read again, as the cache had let go of it.
 struct TextureReads {
     std::uint64_t tiles = 0, bytes = 0;  // the cache's misses
     std::uint64_t tilesOnce = 0, bytesOnce = 0, texelsOnce = 0;

@@ -51,8 +51,7 @@ SeenArea lookFor(const Scene& scene, const PhotonGate& gate, const Vec3f& apex,
                  const Vec3f& inPlane) {
     const Vec3f ray = gate.position + inPlane - apex;
     Surface surface;
-    RayFootprint footprint = scene.coneAround(ray);
-    if (!scene.intersect({apex, ray, kRayReach}, surface, &footprint)) return {};
+    if (!scene.meet({apex, ray, kRayReach}, surface)) return {};
     if (!reflectsDiffusely(scene.material(surface.material))) return {};
     const Vec3f facing = dot(surface.geometricNormal, ray) < 0.0f ? surface.geometricNormal
                                                                   : -surface.geometricNormal;
@@ -72,8 +71,7 @@ float apexHeight(const Scene& scene, const Vec3f& position, const Vec3f& normal,
     // Off the surface itself, but below a ball as close to where it touches as can be told.
     const Vec3f start = position + normal * scene.liftOfPoints(position);
     Surface above;
-    RayFootprint footprint = scene.coneAround(normal);
-    if (!scene.intersect({start, normal, 2.0f * height}, above, &footprint)) return height;
+    if (!scene.meet({start, normal, 2.0f * height}, above)) return height;
     return std::min(height, 0.5f * dot(above.position - position, normal));
 }
 

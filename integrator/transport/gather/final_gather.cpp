@@ -73,7 +73,7 @@ void setEnd(const Scene& scene, const GatherEnds& ends, const GatherWay& way, co
 Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray, float cosine,
                       Sampler& sampler) {
     Gathered result;
-    GatherWay way{PathWalk(ray, scene.coneAround(ray.direction)), {}};
+    GatherWay way{PathWalk(ray, scene.coneAround(ray.direction, ends.width)), {}};
     bool atOnce = true;
     while (true) {
         Surface surface;

@@ -136,7 +136,7 @@ void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
             const Vec3f& normal = stop.bsdf.facingGeometricNormal();
             point.position = m_scene.pointUnderRay(stop.surface.position, stop.ray, normal);
             point.normal = stop.bsdf.facingShadingNormal();
-            tile.origins[cell.inTile()] = {normal, stop.surface.offset};
+            tile.origins[cell.inTile()] = {normal, stop.surface.offset, stop.footprint.width()};
             return false;
         });
 }
@@ -153,7 +153,8 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
     float clearance = std::numeric_limits<float>::max();
     float lamps = 0;
     Gathered last;
-    const GatherEnds ends{m_sites, m_request.caustics, m_request.rays, m_request.lights};
+    GatherEnds ends{m_sites, m_request.caustics, m_request.rays, m_request.lights};
+    ends.width = origin.width;
     const auto addLast = [&] {
         endGather(ends, last);
         addTo(sum, last.radiance);

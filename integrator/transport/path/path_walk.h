@@ -54,9 +54,10 @@ struct PathStop {
     const Ray& ray;  // that led there
     const Surface& surface;
     const Bsdf& bsdf;
-    const Rgb& throughput;  // of the path up to here
-    Lobe next;              // by which the path would leave
-    Sampler& sampler;       // of the path
+    const Rgb& throughput;          // of the path up to here
+    const RayFootprint& footprint;  // at the surface
+    Lobe next;                      // by which the path would leave
+    Sampler& sampler;               // of the path
 
     // Whether indirect light is gathered here: at the first diffuse surface, and where a broad lobe
     // leads on, along which gather rays look for it.
@@ -80,7 +81,8 @@ void followCameraPath(const Scene& scene, const Ray& first, const RayFootprint& 
         BsdfSample sample;
         const float uLobe = sampler.next1D();
         const bool goesOn = bsdf.sample(uLobe, sampler.next2D(), sample);
-        if (!visit(PathStop{path.ray, surface, bsdf, path.throughput, sample.lobe, sampler}) ||
+        if (!visit(PathStop{path.ray, surface, bsdf, path.throughput, path.footprint, sample.lobe,
+                            sampler}) ||
             !goesOn || !path.scatter(surface, bsdf, sample, sampler))
             return;
     }

@@ -204,6 +204,7 @@ PhotonIntegrator::StillToFind PhotonIntegrator::addReflected(const Surface& surf
     const Rgb& throughput = branch.path.throughput;
     StillToFind still;
     if (bsdf.has(Lobe::kDiffuse)) still = readMaps(surface, bsdf, branch, tree);
+    still.width = branch.path.footprint.width();
     if (still.indirect && m_maps.lamps)
         sampleCaustics(surface, bsdf, throughput, still.ownRays, tree.sampler, tree.result);
     if (bsdf.reflectsLamps()) {
@@ -298,8 +299,13 @@ void PhotonIntegrator::followBroad(const Surface& surface, const Bsdf& bsdf, con
                            branch.lampSamples};
     const Ray ray = rayFrom(surface, sample.direction);
     const bool findsLamps = !m_scene.viewersDiffer();
-    const GatherEnds ends{*m_maps.global, m_maps.lamps, 1,
-                          &m_lights,      true,         findsLamps ? &last : nullptr};
+    const GatherEnds ends{*m_maps.global,
+                          m_maps.lamps,
+                          1,
+                          &m_lights,
+                          true,
+                          findsLamps ? &last : nullptr,
+                          branch.path.footprint.width()};
     Gathered found = finalGather(m_scene, ends, ray, 1.0f, tree.sampler);
     if (!findsLamps) found.lampsStraight = lightAlong(m_scene, m_lights, ray, last, found.rays);
     result.rays += found.rays;
@@ -334,7 +340,8 @@ void PhotonIntegrator::gatherAlong(const Ray& ray, const LastScatter& last, Stil
         result.direct += weight * lightAlong(m_scene, m_lights, ray, last, result.rays);
     if (!still.indirect) return;
     const GatherEnds ends{*m_maps.global, m_maps.lamps, rays,
-                          &m_lights,      false,        findsLamps && !aside ? &last : nullptr};
+                          &m_lights,      false,        findsLamps && !aside ? &last : nullptr,
+                          still.width};
     const Gathered found = finalGather(m_scene, ends, ray, cosine, sampler);
     result.rays += found.rays;
     result.indirect += weight * found.radiance.wide;

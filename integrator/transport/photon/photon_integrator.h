@@ -57,6 +57,7 @@ class PhotonIntegrator {
         LampStrategy lamps = LampStrategy::kBoth;
         bool indirect = false;
         std::uint32_t ownRays = 1;  // by how many rays along it
+        float width = 0.0f;         // of the footprint that they start from, scene units
 
         bool any() const { return indirect || lamps == LampStrategy::kBoth; }
     };
