@@ -14,6 +14,8 @@ namespace {
 
 // From within so many of the scene's radii rounding takes no more of a ray than of the scene.
 constexpr double kNearRadii = 4.0;
+// Of a difference that stands for a differential, whatever the camera's model.
+constexpr double kPixelStep = 1.0 / 64;
 
 const CameraDescription& cameraOf(const Scene& scene) {
     const auto& camera = scene.description().camera;
@@ -76,11 +78,11 @@ RayFootprint Camera::footprint(double x, double y, const Ray& ray) const {
     const Line own = lineThrough(x, y);
     const double way = length(Vec3d(ray.origin) - own.from);
     const auto sideTo = [&](const Line& other) -> RayFootprint::Side {
-        const Vec3d turn = other.along - own.along;
-        return {Vec3f(other.from - own.from + turn * way), Vec3f(turn)};
+        const Vec3d turn = (other.along - own.along) / kPixelStep;
+        return {Vec3f((other.from - own.from) / kPixelStep + turn * way), Vec3f(turn)};
     };
-    footprint.x = sideTo(lineThrough(x + 1.0, y));
-    footprint.y = sideTo(lineThrough(x, y + 1.0));
+    footprint.x = sideTo(lineThrough(x + kPixelStep, y));
+    footprint.y = sideTo(lineThrough(x, y + kPixelStep));
     footprint.isKnown = true;
     return footprint;
 }
