@@ -74,6 +74,12 @@ Vec2f sideIn(const TexturePicture& picture, const Vec2f& side) {
     return {bounded(side.x * picture.uvScale.x), bounded(-side.y * picture.uvScale.y)};
 }
 
+// Of such footprints the finest level is looked up, and no probes are needed for it.
+bool isWithinATexel(const TexturePicture& picture, const Vec2f& side) {
+    return std::abs(side.x) * static_cast<float>(picture.width) <= 1.0f &&
+           std::abs(side.y) * static_cast<float>(picture.height) <= 1.0f;
+}
+
 Texel withGain(const TexturePicture& picture, Texel texel) {
     texel.r = picture.base + picture.gain * texel.r;
     texel.g = picture.base + picture.gain * texel.g;
@@ -192,11 +198,14 @@ bool TextureSystem::lookUp(const TexturePicture& picture, Vec2f uv, const UvFoot
     OIIO::TextureOpt options;
     options.swrap = picture.wrapS;
     options.twrap = picture.wrapT;
-    options.mipmode =
-        footprint.isPoint() ? OIIO::TextureOpt::MipModeTrilinear : OIIO::TextureOpt::MipModeAniso;
     options.interpmode = OIIO::TextureOpt::InterpBilinear;
     options.anisotropic = kMostProbes;
-    const Vec2f dx = sideIn(picture, footprint.x), dy = sideIn(picture, footprint.y);
+    Vec2f dx = sideIn(picture, footprint.x), dy = sideIn(picture, footprint.y);
+    options.mipmode = OIIO::TextureOpt::MipModeAniso;
+    if (isWithinATexel(picture, dx) && isWithinATexel(picture, dy)) {
+        dx = dy = {};
+        options.mipmode = OIIO::TextureOpt::MipModeTrilinear;
+    }
     const int channelCount = std::min(picture.channelCount, 4);
     std::array<float, 4> values{};
     const bool good = m_system->texture(picture.handle, m_system->get_perthread_info(), options, s,
