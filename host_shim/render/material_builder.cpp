@@ -99,6 +99,13 @@ void MaterialBuilder::tell(const std::string& file, const BakedTexture& baked) {
 PmrTexture MaterialBuilder::texture(const std::optional<TextureUse>& use, TextureKind kind,
                                     const std::string& of) {
     if (!use) return nullptr;
+    if (use->file.find("<UDIM>") != std::string::npos) {
+        m_warn(Warning::kTexture,
+               fmt::format("{}: {}: texture {}: pictures in tiles are not read; its number is used "
+                           "alone",
+                           use->place, of, use->file));
+        return nullptr;
+    }
     BakedTexture baked;
     try {
         baked = preparer().texture(requestOf(*use, kind));

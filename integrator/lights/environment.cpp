@@ -83,7 +83,7 @@ Vec2f Environment::toPicture(const Vec3f& local) const {
 
 Rgb Environment::texel(Vec2f uv) const {
     const Texel t = asLight(m_hasBadTexels ? m_textures->lookUpOfLight(m_texture, uv)
-                                           : m_textures->lookUp(m_texture, uv, 0.0f));
+                                           : m_textures->lookUp(m_texture, uv, {}));
     return m_scale * Rgb(t.r, t.g, t.b);
 }
 

@@ -74,6 +74,17 @@ inline bool hasTexture(const MaterialDescription& material) {
     return false;
 }
 
+// Whether it looks up one that is filtered over what a ray covers: of what is cut away, and of
+// light, it is always the finest level.
+inline bool filtersTexture(const MaterialDescription& material) {
+    for (const std::int32_t texture :
+         {material.diffuseTexture, material.glossyTexture, material.glossyExponentTexture,
+          material.roughnessTexture, material.transmissionTexture, material.normalTexture,
+          material.bumpTexture})
+        if (texture != kNoTexture) return true;
+    return false;
+}
+
 // Whether there is a clear coat on it, or fibres: the layer on top, one at most.
 inline bool hasCoat(const MaterialDescription& material) {
     return material.coat > 0.0f && material.kind != MaterialKind::kDielectric;

@@ -15,7 +15,7 @@ namespace {
 class Numbers {
   public:
     Numbers(const Materials& materials, const Surface& surface)
-        : m_materials(materials), m_uv(surface.uv) {}
+        : m_materials(materials), m_surface(surface) {}
 
     float factor(std::int32_t texture) const { return lookUp(texture).r; }
 
@@ -29,12 +29,13 @@ class Numbers {
     static Rgb clamped(const Rgb& c) { return {clamp01(c.r), clamp01(c.g), clamp01(c.b)}; }
 
     Texel lookUp(std::int32_t texture) const {
-        return texture == kNoTexture ? Texel{1.0f, 1.0f, 1.0f, 1.0f}
-                                     : m_materials.textures->lookUp(texture, m_uv, 0.0f);
+        return texture == kNoTexture
+                   ? Texel{1.0f, 1.0f, 1.0f, 1.0f}
+                   : m_materials.textures->lookUp(texture, m_surface.uv, m_surface.footprint);
     }
 
     const Materials& m_materials;
-    Vec2f m_uv;
+    const Surface& m_surface;
 };
 
 float roughnessOf(const MaterialDescription& material, const Numbers& numbers) {

@@ -14,11 +14,12 @@ inline bool letsThrough(const MaterialDescription& material) {
     return material.transparency > 0.0f || material.opacityTexture != kNoTexture;
 }
 
-// Share of the light at a point that does not go straight on, in [0, 1].
+// Share of the light at a point that does not go straight on, in [0, 1]. Always by the finest
+// level: shadow rays, which have no footprint, are to meet what all others meet.
 inline float opacityAt(const Materials& materials, const MaterialDescription& material, Vec2f uv) {
     float opacity = 1.0f - material.transparency;
     if (material.opacityTexture != kNoTexture)
-        opacity *= materials.textures->lookUp(material.opacityTexture, uv, 0.0f).r;
+        opacity *= materials.textures->lookUp(material.opacityTexture, uv, {}).r;
     return opacity > 0.0f ? std::min(opacity, 1.0f) : 0.0f;
 }
 

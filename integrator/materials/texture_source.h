@@ -9,6 +9,7 @@
 #include <string>
 
 #include "integrator/values/cancel_check.h"
+#include "integrator/values/uv_footprint.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
@@ -45,15 +46,15 @@ class TextureSource {
   public:
     virtual ~TextureSource() = default;
 
-    // The value of texture `index` at uv, filtered over a square of side `width` in uv units (0 =
-    // the finest level). Threads: any, at once; the value depends on the arguments only. Errors: a
-    // failed look-up returns 0 and counts; it never throws.
-    virtual Texel lookUp(std::int32_t index, Vec2f uv, float width) const = 0;
+    // The value of texture `index` at uv, filtered over the footprint. Threads: any, at once; the
+    // value depends on the arguments only. Errors: a failed look-up returns 0 and counts; it never
+    // throws.
+    virtual Texel lookUp(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const = 0;
 
     // The finest level at uv, of a light: every texel as asLight() has it before anything is
     // interpolated. Threads and errors as above.
     virtual Texel lookUpOfLight(std::int32_t index, Vec2f uv) const {
-        return asLight(lookUp(index, uv, 0.0f));
+        return asLight(lookUp(index, uv, {}));
     }
 
     // How many texels of the finest level such a light has. Throws Error(kCancelled) soon after

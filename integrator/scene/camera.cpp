@@ -14,6 +14,8 @@ namespace {
 
 // From within so many of the scene's radii rounding takes no more of a ray than of the scene.
 constexpr double kNearRadii = 4.0;
+// Of a difference that stands for a differential, whatever the camera's model.
+constexpr double kPixelStep = 1.0 / 64;
 
 const CameraDescription& cameraOf(const Scene& scene) {
     const auto& camera = scene.description().camera;
@@ -47,13 +49,18 @@ Camera::Camera(const Scene& scene, std::int32_t width, std::int32_t height)
     m_pixel = std::visit([](const auto& model) { return model.pixelWidth(); }, m_model);
 }
 
-Ray Camera::ray(double x, double y) const {
+Camera::Line Camera::lineThrough(double x, double y) const {
     const CameraRay own = std::visit(
         [&](const auto& model) { return model.ray(x - m_halfWidth, m_halfHeight - y); }, m_model);
     const Vec3d direction =
         normalize(m_forward * own.direction.z + m_right * own.direction.x + m_up * own.direction.y);
     const Vec3d eye =
         m_eye + m_right * own.origin.x + m_up * own.origin.y + m_forward * own.origin.z;
+    return {eye, direction};
+}
+
+Ray Camera::ray(double x, double y) const {
+    const auto [eye, direction] = lineThrough(x, y);
     Ray ray{Vec3f(eye), Vec3f(direction)};
     if (m_scene.hasCore()) ray = m_scene.rayFromAfar(eye, direction);
     ray.viewer = kCameraRays;
@@ -63,6 +70,21 @@ Ray Camera::ray(double x, double y) const {
     const double t = intersectSphere(eye, direction, 1e300, Vec3d(0.0), radius);
     if (t > 0) ray.origin = Vec3f(eye + direction * t);
     return ray;
+}
+
+RayFootprint Camera::footprint(double x, double y, const Ray& ray) const {
+    RayFootprint footprint;
+    if (!m_scene.filtersTextures()) return footprint;
+    const Line own = lineThrough(x, y);
+    const double way = length(Vec3d(ray.origin) - own.from);
+    const auto sideTo = [&](const Line& other) -> RayFootprint::Side {
+        const Vec3d turn = (other.along - own.along) / kPixelStep;
+        return {Vec3f((other.from - own.from) / kPixelStep + turn * way), Vec3f(turn)};
+    };
+    footprint.x = sideTo(lineThrough(x + kPixelStep, y));
+    footprint.y = sideTo(lineThrough(x, y + kPixelStep));
+    footprint.isKnown = true;
+    return footprint;
 }
 
 PixelBeam Camera::pixelBeam(const Ray& ray) const {

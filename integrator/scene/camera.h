@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "integrator/cameras/camera_model.h"
+#include "integrator/shapes/ray_footprint.h"
 #include "integrator/values/ray.h"
 #include "integrator/values/vec.h"
 
@@ -32,6 +33,9 @@ class Camera {
     // A ray through frame coordinates (x, y), pixels, origin top left, y down. Unit direction.
     Ray ray(double x, double y) const;
 
+    // What the ray through (x, y) stands for: its pixel. Not known where no texture asks for it.
+    RayFootprint footprint(double x, double y, const Ray& ray) const;
+
     // Of a ray of this camera's.
     PixelBeam pixelBeam(const Ray& ray) const;
 
@@ -39,6 +43,12 @@ class Camera {
     float depth(const Vec3f& position) const;
 
   private:
+    // A place where the camera stands, and a unit direction; scene's own coordinates.
+    struct Line {
+        Vec3d from, along;
+    };
+    Line lineThrough(double x, double y) const;
+
     const Scene& m_scene;
     Vec3d m_eye;  // scene's own coordinates
     Vec3d m_right, m_up, m_forward;

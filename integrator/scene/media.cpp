@@ -94,7 +94,7 @@ const Scene::Media::Body* Scene::Media::bodyAt(const Vec3f& position) const {
         const Body* const body = bodyOf(hit);
         if (!body) return false;
         Surface surface;
-        m_scene.surfaceAt(ray, hit, surface);
+        m_scene.surfaceAt(hit, surface, {&ray, nullptr, true});
         const bool isLeft = dot(surface.geometricNormal, ray.direction) > 0.0f;
         balance.add(static_cast<std::uint32_t>(body - m_bodies.data()), isLeft ? 1 : -1);
         return false;

@@ -23,6 +23,7 @@
 #include "integrator/scene/scene_core.h"
 #include "integrator/scene/scene_description.h"
 #include "integrator/shapes/bump_map.h"
+#include "integrator/shapes/ray_footprint.h"
 #include "integrator/shapes/surface.h"
 #include "integrator/values/notice.h"
 
@@ -40,7 +41,11 @@ class Scene {
                                               const CancelCheck& cancel = {});
     ~Scene();
 
-    bool intersect(const Ray& ray, Surface& surface) const;
+    // footprint: of the ray, becomes that at the surface, whose textures are looked up by it. Null,
+    // or one that is not known: they are looked up at their finest level.
+    bool intersect(const Ray& ray, Surface& surface, RayFootprint* footprint = nullptr) const;
+    // The same of the shape alone: no texture is looked up, to turn the shading normal.
+    bool meet(const Ray& ray, Surface& surface) const;
     // By anything that any ray meets.
     bool occluded(Ray ray) const {
         ray.viewer = kAllRays;
@@ -122,6 +127,16 @@ class Scene {
         return pm::rayOnwards(position, normal, direction, 2.0f * liftOfPoints(position));
     }
 
+    // Whether some material has a texture that is filtered, so that footprints are worth their
+    // time.
+    bool filtersTextures() const { return m_filtersTextures; }
+    // Of a ray that leaves a surface or a light as one of many, along a unit direction. Not known
+    // where there is nothing to filter. width: where it starts, scene units.
+    RayFootprint coneAround(const Vec3f& direction, float width = 0.0f) const {
+        return m_filtersTextures ? RayFootprint::cone(direction, RayFootprint::kWidest, width)
+                                 : RayFootprint{};
+    }
+
     // True when all that reflects or lets light through are triangles in one plane (to rounding),
     // so that no light goes from one surface by way of another.
     bool isFlat() const { return m_isFlat; }
@@ -190,35 +205,50 @@ class Scene {
         Vec3d vertex, e1, e2;
     };
     struct Facet;
+    // A ray that meets a surface, and its footprint, null where nobody asks for it.
+    struct Arrival {
+        const Ray* ray;
+        RayFootprint* footprint;
+        bool ofShapeOnly;  // no texture turns the shading normal
+    };
     // Sets centre and bounds.
     void place(const Box3d& whole, const std::optional<Box3d>& core);
     bool findFlat(const CancelCheck& cancel) const;
-    // The face that a ray meets first, whatever is on its sides.
-    bool meetFace(const Ray& ray, Surface& surface) const;
+    // The face that the ray meets first, whatever is on its sides.
+    bool findFace(Surface& surface, const Arrival& arrival) const;
     // What is left of light on a way through a medium.
     Rgb leftIn(std::int32_t medium, float way) const {
         return medium == kNoMedium
                    ? Rgb(1.0f)
                    : leftAfter(m_materials[static_cast<std::uint32_t>(medium)], way);
     }
-    // Of what a ray meets; shape and all else but isPane.
-    void surfaceAt(const Ray& ray, const RayHit& hit, Surface& surface) const;
+    // What its ray meets.
+    bool find(Surface& surface, const Arrival& arrival) const;
+    // Of that, shape and all else but isPane.
+    void surfaceAt(const RayHit& hit, Surface& surface, const Arrival& arrival) const;
     float straightShare(const Ray& ray, const RayHit& hit) const;
     // Whether the hit is on glass that has the same medium on both sides.
     bool isNone(const Ray& ray, const RayHit& hit) const;
     bool areOne(const Ray& ray, const RayHit& crossing, const RayHit& next) const;
     void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, const Corner& corner,
-                           double b1, double b2, Surface& surface) const;
+                           double b1, double b2, Surface& surface,
+                           const Arrival& arrival = {nullptr, nullptr, false}) const;
+    void footprintOnTriangle(const ShapeRecord& shape, std::uint32_t primitive,
+                             const Corner& corner, Vec2f at, const Arrival& arrival,
+                             Surface& surface) const;
+    void footprintOnCurved(const ShapeRecord& shape, const Arrival& arrival,
+                           Surface& surface) const;
     // Makes a shape's tangents where its materials ask for them; gives notice of what has none.
     void prepareMaps(ShapeRecord& shape, const InstanceDescription& instance,
                      const CancelCheck& cancel);
     // Turns the shading normal by the material's maps, and sets the tangent where it is asked for.
+    // footprint: over which maps are looked up.
     void applyMaps(const ShapeRecord& shape, std::uint32_t primitive, const TexturedEdges& edges,
-                   Vec2f barycentric, Surface& surface) const;
+                   Vec2f barycentric, const UvFootprint& footprint, Surface& surface) const;
     void turnByNormalMap(const MaterialDescription& material, const Vec3f& tangent,
-                         float normalLength, Surface& surface) const;
+                         float normalLength, const UvFootprint& footprint, Surface& surface) const;
     void turnByBumpMap(const MaterialDescription& material, const TexturedEdges& edges,
-                       Surface& surface) const;
+                       const UvFootprint& footprint, Surface& surface) const;
     static float smoothness(const ShapeRecord& shape, std::uint32_t primitive, Vec2f barycentric,
                             const Surface& surface);
     // Of a texture of lights; gives notice the first time.
@@ -250,6 +280,7 @@ class Scene {
     bool m_isFlat = false, m_hasSheets = false;
     bool m_letsThrough = false;  // some material does
     bool m_hasThinWalls = false;
+    bool m_filtersTextures = false;
     bool m_absorbs = false;  // some material does
     bool m_hasInstances = false, m_viewersDiffer = false;
     RayTracer m_tracer;  // last: it refers to the shapes' arrays and is destroyed before them

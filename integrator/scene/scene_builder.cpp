@@ -48,6 +48,8 @@ class Scene::Builder {
         m_scene.m_viewersDiffer = findViewers();
         m_scene.m_letsThrough =
             std::ranges::any_of(m_scene.m_description.materials, pm::letsThrough);
+        m_scene.m_filtersTextures =
+            std::ranges::any_of(m_scene.m_description.materials, filtersTexture);
         m_scene.m_absorbs = std::ranges::any_of(m_scene.m_description.materials, absorbs);
         m_scene.m_hasThinWalls = std::ranges::any_of(m_scene.m_description.materials,
                                                      [](const auto& m) { return m.thinWalled; });

@@ -111,13 +111,21 @@ Scene::Facet::Facet(const Corner& corner, bool mirrored, bool exact) {
                                          : byEdges);
 }
 
-bool Scene::intersect(const Ray& asked, Surface& surface) const {
-    if (!m_media) return meetFace(asked, surface);
-    Ray ray = asked;
+bool Scene::intersect(const Ray& ray, Surface& surface, RayFootprint* footprint) const {
+    return find(surface, {&ray, footprint && footprint->isKnown ? footprint : nullptr, false});
+}
+
+bool Scene::meet(const Ray& ray, Surface& surface) const {
+    return find(surface, {&ray, nullptr, true});
+}
+
+bool Scene::find(Surface& surface, const Arrival& arrival) const {
+    if (!m_media) return findFace(surface, arrival);
+    Ray ray = *arrival.ray;
     // Faces that are none are few; one that rays can't leave ends the search.
     constexpr int kMostFaces = 256;
     for (int i = 0; i < kMostFaces; ++i) {
-        if (!meetFace(ray, surface)) return false;
+        if (!findFace(surface, {&ray, arrival.footprint, arrival.ofShapeOnly})) return false;
         if (m_media->resolve(ray.direction, surface)) return true;
         const Vec3f onwards = rayOrigin(surface, ray.direction);
         ray.tMax -= std::sqrt(lengthSquared(onwards - ray.origin) / lengthSquared(ray.direction));
@@ -127,25 +135,30 @@ bool Scene::intersect(const Ray& asked, Surface& surface) const {
     return false;
 }
 
-bool Scene::meetFace(const Ray& ray, Surface& surface) const {
+bool Scene::findFace(Surface& surface, const Arrival& arrival) const {
     RayHit hit;
-    if (!m_tracer.intersect(ray, hit)) return false;
-    if (m_coincident) hit = m_coincident->chosen(ray, hit);
-    surfaceAt(ray, hit, surface);
+    if (!m_tracer.intersect(*arrival.ray, hit)) return false;
+    if (m_coincident) hit = m_coincident->chosen(*arrival.ray, hit);
+    surfaceAt(hit, surface, arrival);
     surface.isPane = hit.isPane || (m_hasThinWalls && m_materials[surface.material].thinWalled);
-    if (surface.isPane) surface.shadingNormal = surface.geometricNormal;
     if (hit.isPane) surface.offset *= CoincidentFaces::kBeyondPane;
+    if (surface.isPane) {
+        surface.shadingNormal = surface.geometricNormal;
+        if (RayFootprint* const footprint = arrival.footprint)
+            footprint->x.normal = footprint->y.normal = Vec3f(0.0f);
+    }
     return true;
 }
 
-void Scene::surfaceAt(const Ray& ray, const RayHit& hit, Surface& surface) const {
+void Scene::surfaceAt(const RayHit& hit, Surface& surface, const Arrival& arrival) const {
     const ShapeRecord& record = m_shapes[hit.shape];
     surface.shape = hit.shape;
+    const Ray& ray = *arrival.ray;
     if (record.mesh) {
         const Corner corner = record.corner(hit.primitive);
         double b1, b2;
         barycentrics(ray, corner.vertex, corner.e1, corner.e2, b1, b2);
-        surfaceOnTriangle(record, hit.primitive, corner, b1, b2, surface);
+        surfaceOnTriangle(record, hit.primitive, corner, b1, b2, surface, arrival);
         return;
     }
     const Vec3d origin(ray.origin), direction(ray.direction);
@@ -153,10 +166,13 @@ void Scene::surfaceAt(const Ray& ray, const RayHit& hit, Surface& surface) const
     surface.tangent = {};
     record.curved->surfaceNear(point, surface);
     nameSurface(record, 0, surface);
+    surface.footprint = {};
+    if (arrival.footprint) footprintOnCurved(record, arrival, surface);
 }
 
 void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive,
-                              const Corner& corner, double b1, double b2, Surface& surface) const {
+                              const Corner& corner, double b1, double b2, Surface& surface,
+                              const Arrival& arrival) const {
     const TriangleMesh& mesh = *record.mesh;
     const auto& [v0, e1, e2] = corner;
     surface.position = Vec3f(v0 + (e1 * b1 + e2 * b2));
@@ -172,16 +188,23 @@ void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive
     }
     surface.uv = {};
     surface.tangent = {};
+    surface.footprint = {};
+    if (arrival.footprint)
+        footprintOnTriangle(record, primitive, corner, {f1, f2}, arrival, surface);
     if (!mesh.texcoords.empty()) {
         const auto& at = mesh.texcoordIndices[primitive];
         const Vec2f t0 = mesh.texcoords[at[0]], t1 = mesh.texcoords[at[1]],
                     t2 = mesh.texcoords[at[2]];
         const float f0 = 1.0f - f1 - f2;
         surface.uv = {t0.x * f0 + t1.x * f1 + t2.x * f2, t0.y * f0 + t1.y * f1 + t2.y * f2};
-        if (record.hasMaps)
+        if (record.hasMaps && !arrival.ofShapeOnly) {
+            // Of caustics every facet counts.
+            const bool isFinest = arrival.footprint && arrival.footprint->isWide &&
+                                  castsCaustics(m_materials[record.materialOf(primitive)]);
             applyMaps(record, primitive,
                       {e1, e2, {t1.x - t0.x, t1.y - t0.y}, {t2.x - t0.x, t2.y - t0.y}}, {f1, f2},
-                      surface);
+                      isFinest ? UvFootprint{} : surface.footprint, surface);
+        }
     }
     nameSurface(record, primitive, surface);
 }

@@ -50,7 +50,7 @@ void setTangent(const Vec3f& tangent, Surface& surface) {
 // half a texel behind: the difference of neighbouring texels, which between their middles changes
 // evenly.
 double slopeAlong(float Vec2f::*axis, std::uint32_t texels, const TextureSource& textures,
-                  const MaterialDescription& material, Vec2f uv) {
+                  const MaterialDescription& material, Vec2f uv, const UvFootprint& footprint) {
     const float half = 0.5f / static_cast<float>(std::max(texels, 1u));
     Vec2f before = uv, after = uv;
     before.*axis -= half;
@@ -58,8 +58,8 @@ double slopeAlong(float Vec2f::*axis, std::uint32_t texels, const TextureSource&
     // Not always a texel: far from 0 texture coordinates lie farther apart.
     const float way = after.*axis - before.*axis;
     if (!(way > 0.0f)) return 0.0;
-    const float rise = textures.lookUp(material.bumpTexture, after, 0.0f).r -
-                       textures.lookUp(material.bumpTexture, before, 0.0f).r;
+    const float rise = textures.lookUp(material.bumpTexture, after, footprint).r -
+                       textures.lookUp(material.bumpTexture, before, footprint).r;
     const double slope = static_cast<double>(rise) * static_cast<double>(material.bumpScale) /
                          static_cast<double>(way);
     return std::isfinite(slope) ? slope : 0.0;
@@ -98,7 +98,8 @@ float Scene::smoothness(const ShapeRecord& record, std::uint32_t primitive, Vec2
 }
 
 void Scene::applyMaps(const ShapeRecord& record, std::uint32_t primitive,
-                      const TexturedEdges& edges, Vec2f barycentric, Surface& surface) const {
+                      const TexturedEdges& edges, Vec2f barycentric, const UvFootprint& footprint,
+                      Surface& surface) const {
     const MaterialDescription& material = m_materials[record.materialOf(primitive)];
     const bool needsTangent = asksForTangents(material);
     Vec3f tangent;
@@ -113,14 +114,15 @@ void Scene::applyMaps(const ShapeRecord& record, std::uint32_t primitive,
     }
     if (material.normalTexture != kNoTexture)
         turnByNormalMap(material, tangent, smoothness(record, primitive, barycentric, surface),
-                        surface);
-    if (material.bumpTexture != kNoTexture) turnByBumpMap(material, edges, surface);
+                        footprint, surface);
+    if (material.bumpTexture != kNoTexture) turnByBumpMap(material, edges, footprint, surface);
     if (material.anisotropy > 0.0f) setTangent(tangent, surface);
 }
 
 void Scene::turnByNormalMap(const MaterialDescription& material, const Vec3f& tangent,
-                            float normalLength, Surface& surface) const {
-    const Texel texel = m_materials.textures->lookUp(material.normalTexture, surface.uv, 0.0f);
+                            float normalLength, const UvFootprint& footprint,
+                            Surface& surface) const {
+    const Texel texel = m_materials.textures->lookUp(material.normalTexture, surface.uv, footprint);
     const Vec3f mapped{decodedNormal(texel.r) * material.normalScale,
                        decodedNormal(texel.g) * material.normalScale, decodedNormal(texel.b)};
     const TangentFrame frame =
@@ -130,11 +132,12 @@ void Scene::turnByNormalMap(const MaterialDescription& material, const Vec3f& ta
 }
 
 void Scene::turnByBumpMap(const MaterialDescription& material, const TexturedEdges& edges,
-                          Surface& surface) const {
+                          const UvFootprint& footprint, Surface& surface) const {
     const TextureSource& textures = *m_materials.textures;
     const auto [across, down] = textures.texels(material.bumpTexture);
-    const HeightSlopes slopes{slopeAlong(&Vec2f::x, across, textures, material, surface.uv),
-                              slopeAlong(&Vec2f::y, down, textures, material, surface.uv)};
+    const HeightSlopes slopes{
+        slopeAlong(&Vec2f::x, across, textures, material, surface.uv, footprint),
+        slopeAlong(&Vec2f::y, down, textures, material, surface.uv, footprint)};
     surface.shadingNormal =
         bumpedNormal(surface.shadingNormal, surface.geometricNormal, edges, slopes);
 }

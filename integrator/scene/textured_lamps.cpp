@@ -45,7 +45,7 @@ Rgb Scene::emission(std::uint32_t index, Vec2f uv) const {
     const auto texture = static_cast<std::size_t>(material.emissionTexture);
     const bool isBad = texture < m_hasBadTexels.size() && m_hasBadTexels[texture];
     const Texel t = asLight(isBad ? textures()->lookUpOfLight(material.emissionTexture, uv)
-                                  : textures()->lookUp(material.emissionTexture, uv, 0.0f));
+                                  : textures()->lookUp(material.emissionTexture, uv, {}));
     return material.emission * Rgb(t.r, t.g, t.b);
 }
 

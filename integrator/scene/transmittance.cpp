@@ -61,7 +61,7 @@ float Scene::straightShare(const Ray& ray, const RayHit& hit) const {
     Vec2f uv;
     if (material.opacityTexture != kNoTexture) {
         Surface surface;
-        surfaceAt(ray, hit, surface);
+        surfaceAt(hit, surface, {&ray, nullptr, true});
         uv = surface.uv;
     }
     return 1.0f - opacityAt(m_materials, material, uv);
@@ -72,7 +72,7 @@ float Scene::straightShare(const Ray& ray, const RayHit& hit) const {
 bool Scene::areOne(const Ray& ray, const RayHit& crossing, const RayHit& next) const {
     const auto offsetAndSlope = [&](const RayHit& hit) {
         Surface surface;
-        surfaceAt(ray, hit, surface);
+        surfaceAt(hit, surface, {&ray, nullptr, true});
         return std::pair(surface.offset, std::abs(dot(surface.geometricNormal, ray.direction)));
     };
     const auto [offset, slope] = offsetAndSlope(crossing);
@@ -82,7 +82,7 @@ bool Scene::areOne(const Ray& ray, const RayHit& crossing, const RayHit& next) c
 
 bool Scene::isNone(const Ray& ray, const RayHit& hit) const {
     Surface surface;
-    surfaceAt(ray, hit, surface);
+    surfaceAt(hit, surface, {&ray, nullptr, true});
     return !m_media->resolve(ray.direction, surface);
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "integrator/values/ray.h"
+#include "integrator/values/uv_footprint.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
@@ -25,6 +26,7 @@ struct Surface {
     // the material is none or there are no texture coordinates.
     Vec3f tangent;
     Vec2f uv;
+    UvFootprint footprint;  // of whoever looks at it; see RayFootprint
     std::uint32_t material = 0;
     std::uint32_t shape = 0;
     std::uint32_t primitive = 0;

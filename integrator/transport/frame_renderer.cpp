@@ -138,15 +138,17 @@ SampleRadiance FrameRenderer::Impl::sample(std::uint32_t pass, const PixelCell& 
                                            NearestPhotons& scratch) const {
     const Place place = cell.place(settings.filter, sampler.next2D());
     const Ray ray = camera.ray(place.x, place.y);
+    const RayFootprint footprint = camera.footprint(place.x, place.y, ray);
     if (settings.integrator == IntegratorKind::kPath)
-        return PathIntegrator(*scene, prepared->lights).sample(ray, sampler);
+        return PathIntegrator(*scene, prepared->lights).sample(ray, sampler, footprint);
     const SeenLamps::Shown lamps = prepared->seenLamps.shown(cell.x, cell.y);
     SampleRadiance result =
         PhotonIntegrator(*scene, prepared->lights, prepared->photons.maps(pass), plan.lampSamples)
             .sample({{static_cast<float>(place.x), static_cast<float>(place.y)},
                      ray,
                      camera.pixelBeam(ray),
-                     lamps.paths == 0},
+                     lamps.paths == 0,
+                     footprint},
                     sampler, scratch);
     if (lamps.paths > 0)
         result.emission += prepared->seenLamps.sample(lamps, pass, cell, index, result.rays);

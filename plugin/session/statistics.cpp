@@ -82,13 +82,20 @@ Json bucketJson(const RenderWork& work, const RenderWork::Progress& progress) {
 
 Json memoryJson(const RenderWork& work, const RenderCounters& counters) {
     const MemoryNeed& need = work.memory().need;
-    return {{"sceneBytes", need.scene},
-            {"frameBytes", need.frame},
-            {"mapBytes", counters.peakMapBytes},
-            {"plannedMapBytes", need.maps},
-            {"bucketBytes", need.buckets},
-            {"processBytes", need.process},
-            {"peakResidentBytes", peakResidentBytes()}};
+    return {{"sceneBytes", need.scene},          {"frameBytes", need.frame},
+            {"mapBytes", counters.peakMapBytes}, {"plannedMapBytes", need.maps},
+            {"bucketBytes", need.buckets},       {"plannedTextureBytes", need.textures},
+            {"processBytes", need.process},      {"peakResidentBytes", peakResidentBytes()}};
+}
+
+Json texturesJson(const SceneTextures& textures) {
+    const TextureReads reads = textures.reads();
+    return {{"texels", textures.texels()},
+            {"texelsRead", reads.texelsOnce},
+            {"misses", reads.tiles},
+            {"bytesRead", reads.bytes},
+            {"tilesReadOnce", reads.tilesOnce},
+            {"bytesReadOnce", reads.bytesOnce}};
 }
 
 Json warningsJson(const Scene& scene, RenderWork& work) {
@@ -197,6 +204,7 @@ std::string Render::statisticsJson() const {
     json["counters"]["triangles"] = running->scene().triangleCount();
     json["buckets"] = bucketJson(*running, progress);
     json["memory"] = memoryJson(*running, counters);
+    json["textureCache"] = texturesJson(*m_scene->textures);
     json["plan"] = planJson(running->plan(), counters);
     json["warnings"] = warningsJson(running->scene(), *running);
     json["settings"] = settingsJson(settings());

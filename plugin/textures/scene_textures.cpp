@@ -29,10 +29,33 @@ std::uint64_t SceneTextures::texelBytes() const {
     return bytes + bytes / 3;
 }
 
-Texel SceneTextures::lookUp(std::int32_t index, Vec2f uv, float width) const {
+std::vector<const Texture*> SceneTextures::files() const {
+    std::vector<const Texture*> files;
+    for (const auto& texture : m_textures)
+        if (std::ranges::none_of(files, [&](const Texture* other) {
+                return other->picture.fileName == texture->picture.fileName;
+            }))
+            files.push_back(texture.get());
+    return files;
+}
+
+TextureReads SceneTextures::reads() const {
+    TextureReads sum;
+    for (const Texture* texture : files()) sum += texture->system->reads(texture->picture);
+    return sum;
+}
+
+std::uint64_t SceneTextures::texels() const {
+    std::uint64_t sum = 0;
+    for (const Texture* texture : files())
+        sum += std::uint64_t{texture->picture.width} * texture->picture.height;
+    return sum;
+}
+
+Texel SceneTextures::lookUp(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const {
     Texel texel;
     const Texture& texture = *m_textures[static_cast<std::size_t>(index)];
-    if (!texture.system->lookUp(texture.picture, uv, width, texel))
+    if (!texture.system->lookUp(texture.picture, uv, footprint, texel))
         m_failures.fetch_add(1, std::memory_order_relaxed);
     return texel;
 }

@@ -30,7 +30,11 @@ class SceneTextures final : public TextureSource {
     // Bytes of all their texels, of every level.
     std::uint64_t texelBytes() const;
 
-    Texel lookUp(std::int32_t index, Vec2f uv, float width) const override;
+    // Of all pictures, each file once; texels: of their finest levels.
+    TextureReads reads() const;
+    std::uint64_t texels() const;
+
+    Texel lookUp(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const override;
     Texel lookUpOfLight(std::int32_t index, Vec2f uv) const override;
     BadTexels badTexels(std::int32_t index, const CancelCheck& cancel) const override;
     std::string name(std::int32_t index) const override;
@@ -38,6 +42,9 @@ class SceneTextures final : public TextureSource {
     std::uint64_t failureCount() const override;
 
   private:
+    // Those of different files.
+    std::vector<const Texture*> files() const;
+
     std::vector<std::shared_ptr<const Texture>> m_textures;
     mutable std::atomic<std::uint64_t> m_failures{0};
 };

@@ -25,6 +25,8 @@ constexpr float kFirstMegabytes = 256.0f;  // before a render says
 constexpr float kLeastMegabytes = 64.0f;
 // Pictures that are not tiled are cut into tiles of this size when they are read.
 constexpr int kTilePixels = 64;
+// Along a long and narrow footprint; beyond, it is widened.
+constexpr int kMostProbes = 16;
 
 OIIO::TextureOpt::Wrap toOpenImageIo(Wrap wrap) {
     switch (wrap) {
@@ -61,6 +63,21 @@ Texel toTexel(const std::array<float, 4>& values, int channelCount) {
 Vec2f placeIn(const TexturePicture& picture, Vec2f uv) {
     return {uv.x * picture.uvScale.x + picture.uvOffset.x,
             1.0f - (uv.y * picture.uvScale.y + picture.uvOffset.y)};
+}
+
+// A side of a footprint there; no longer than any texture is looked up over.
+Vec2f sideIn(const TexturePicture& picture, const Vec2f& side) {
+    static constexpr float kLongest = 1e4f;
+    const auto bounded = [](float v) {
+        return std::isfinite(v) ? std::clamp(v, -kLongest, kLongest) : kLongest;
+    };
+    return {bounded(side.x * picture.uvScale.x), bounded(-side.y * picture.uvScale.y)};
+}
+
+// Of such footprints the finest level is looked up, and no probes are needed for it.
+bool isWithinATexel(const TexturePicture& picture, const Vec2f& side) {
+    return std::abs(side.x) * static_cast<float>(picture.width) <= 1.0f &&
+           std::abs(side.y) * static_cast<float>(picture.height) <= 1.0f;
 }
 
 Texel withGain(const TexturePicture& picture, Texel texel) {
@@ -173,22 +190,26 @@ TexturePicture TextureSystem::open(const TextureDescription& description) {
     return picture;
 }
 
-bool TextureSystem::lookUp(const TexturePicture& picture, Vec2f uv, float width,
+bool TextureSystem::lookUp(const TexturePicture& picture, Vec2f uv, const UvFootprint& footprint,
                            Texel& texel) const {
     texel = {0.0f, 0.0f, 0.0f, 0.0f};
     const auto [s, t] = placeIn(picture, uv);
-    if (!std::isfinite(s) || !std::isfinite(t) || !std::isfinite(width)) return false;
+    if (!std::isfinite(s) || !std::isfinite(t)) return false;
     OIIO::TextureOpt options;
     options.swrap = picture.wrapS;
     options.twrap = picture.wrapT;
-    options.mipmode = OIIO::TextureOpt::MipModeTrilinear;
     options.interpmode = OIIO::TextureOpt::InterpBilinear;
-    const float widthS = std::abs(width * picture.uvScale.x);
-    const float widthT = std::abs(width * picture.uvScale.y);
+    options.anisotropic = kMostProbes;
+    Vec2f dx = sideIn(picture, footprint.x), dy = sideIn(picture, footprint.y);
+    options.mipmode = OIIO::TextureOpt::MipModeAniso;
+    if (isWithinATexel(picture, dx) && isWithinATexel(picture, dy)) {
+        dx = dy = {};
+        options.mipmode = OIIO::TextureOpt::MipModeTrilinear;
+    }
     const int channelCount = std::min(picture.channelCount, 4);
     std::array<float, 4> values{};
     const bool good = m_system->texture(picture.handle, m_system->get_perthread_info(), options, s,
-                                        t, widthS, 0.0f, 0.0f, widthT, channelCount, values.data());
+                                        t, dx.x, dx.y, dy.x, dy.y, channelCount, values.data());
     if (!good) {
         m_system->geterror();  // or the texts pile up
         return false;
@@ -232,6 +253,35 @@ bool TextureSystem::lookUpOfLight(const TexturePicture& picture, Vec2f uv, Texel
             texel.a += weight * light.a;
         }
     return true;
+}
+
+TextureReads& TextureReads::operator+=(const TextureReads& other) {
+    tiles += other.tiles;
+    bytes += other.bytes;
+    tilesOnce += other.tilesOnce;
+    bytesOnce += other.bytesOnce;
+    texelsOnce += other.texelsOnce;
+    return *this;
+}
+
+TextureReads TextureSystem::reads(const TexturePicture& picture) const {
+    const OIIO::ustring name(picture.fileName);
+    const auto count = [&](const char* of) {
+        std::int64_t value = 0;
+        if (!m_system->get_texture_info(name, 0, OIIO::ustring(of), OIIO::TypeDesc::INT64, &value))
+            m_system->geterror();  // or the texts pile up
+        return static_cast<std::uint64_t>(std::max<std::int64_t>(value, 0));
+    };
+    int format = OIIO::TypeDesc::FLOAT;
+    m_system->get_texture_info(name, 0, OIIO::ustring("cachedformat"), OIIO::TypeInt, &format);
+    TextureReads reads{count("stat:tilesread"), count("stat:bytesread")};
+    reads.tilesOnce = reads.tiles - std::min(reads.tiles, count("stat:redundant_tiles"));
+    reads.bytesOnce = reads.bytes - std::min(reads.bytes, count("stat:redundant_bytesread"));
+    const OIIO::TypeDesc type(static_cast<OIIO::TypeDesc::BASETYPE>(format));
+    reads.texelsOnce =
+        reads.bytesOnce /
+        std::max<std::size_t>(1, type.size() * static_cast<std::size_t>(picture.channelCount));
+    return reads;
 }
 
 BadTexels TextureSystem::badTexels(const TexturePicture& picture, const CancelCheck& cancel) const {

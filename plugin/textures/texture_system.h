@@ -12,6 +12,7 @@
 
 #include "integrator/materials/texture_source.h"
 #include "integrator/values/cancel_check.h"
+#include "integrator/values/uv_footprint.h"
 #include "integrator/values/vec.h"
 
 namespace pm::plugin {
@@ -50,6 +51,15 @@ struct TexturePicture {
 // Error(kCancelled) soon after cancel is set.
 std::array<std::uint64_t, 2> texelHash(const std::string& fileName, const CancelCheck& cancel);
 
+// What was read of pictures so far, through the cache, by all renders of the same context. Once:
+// not counting again what was read again, as the cache had let go of it.
+struct TextureReads {
+    std::uint64_t tiles = 0, bytes = 0;  // the cache's misses
+    std::uint64_t tilesOnce = 0, bytesOnce = 0, texelsOnce = 0;
+
+    TextureReads& operator+=(const TextureReads& other);
+};
+
 // A texture cache of our own: neither its contents nor its options mix with another user of the
 // same library in this process. Options that change values are all set here, so that what the
 // library takes from the environment has no say.
@@ -69,10 +79,12 @@ class TextureSystem {
     void holdAtMost(std::uint64_t bytes);
 
     // The picture's value at uv, origin bottom left. Bilinear within a level, linear between the
-    // levels of a mip-mapped file; a file without levels is looked up at its only one whatever the
-    // width. One channel is grey, two are grey and alpha; gain and base apply to the colour.
-    // Returns false, and a texel of 0, when the look-up failed or gave no finite number.
-    bool lookUp(const TexturePicture& picture, Vec2f uv, float width, Texel& texel) const;
+    // levels of a mip-mapped file, by several probes along a footprint's longer side; a file
+    // without levels is looked up at its only one whatever the footprint. One channel is grey, two
+    // are grey and alpha; gain and base apply to the colour. Returns false, and a texel of 0, when
+    // the look-up failed or gave no finite number.
+    bool lookUp(const TexturePicture& picture, Vec2f uv, const UvFootprint& footprint,
+                Texel& texel) const;
 
     // The same of a light, at the finest level: each texel without what is no light in it, then
     // interpolated. See TextureSource.
@@ -80,6 +92,8 @@ class TextureSystem {
     // Looks at all texels of the finest level. Throws CallError(IO); Error(kCancelled) soon after
     // cancel is set.
     BadTexels badTexels(const TexturePicture& picture, const CancelCheck& cancel) const;
+
+    TextureReads reads(const TexturePicture& picture) const;
 
   private:
     OIIO::TextureSystem& system();

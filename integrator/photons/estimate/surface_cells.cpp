@@ -58,7 +58,7 @@ bool SurfaceCells::findAlong(const Vec3f& middle, const Vec3f& through, const Ve
     Ray ray{through + direction * cellSize, -direction, 2.0f * cellSize};
     for (int i = 0; i < kMostSurfaces; ++i) {
         Surface surface;
-        if (!m_scene.intersect(ray, surface)) return false;
+        if (!m_scene.meet(ray, surface)) return false;
         position = surface.position;
         normal = dot(surface.geometricNormal, direction) > 0.0f ? surface.geometricNormal
                                                                 : -surface.geometricNormal;

@@ -51,7 +51,7 @@ SeenArea lookFor(const Scene& scene, const PhotonGate& gate, const Vec3f& apex,
                  const Vec3f& inPlane, bool ofGlossy) {
     const Vec3f ray = gate.position + inPlane - apex;
     Surface surface;
-    if (!scene.intersect({apex, ray, kRayReach}, surface)) return {};
+    if (!scene.meet({apex, ray, kRayReach}, surface)) return {};
     const MaterialDescription& material = scene.material(surface.material);
     if (!(ofGlossy ? mayBeGlossy(material) : reflectsDiffusely(material))) return {};
     const Vec3f facing = dot(surface.geometricNormal, ray) < 0.0f ? surface.geometricNormal
@@ -72,7 +72,7 @@ float apexHeight(const Scene& scene, const Vec3f& position, const Vec3f& normal,
     // Off the surface itself, but below a ball as close to where it touches as can be told.
     const Vec3f start = position + normal * scene.liftOfPoints(position);
     Surface above;
-    if (!scene.intersect({start, normal, 2.0f * height}, above)) return height;
+    if (!scene.meet({start, normal, 2.0f * height}, above)) return height;
     return std::min(height, 0.5f * dot(above.position - position, normal));
 }
 

@@ -113,6 +113,7 @@ class PhotonWalk {
         LongChains::Chain chain{};
         Way way{};
         EventCount events{};
+        float width = 0.0f;  // of the footprint that the ray starts from, scene units
     };
     // Parts of one photon that wait to be followed.
     struct Waiting {
@@ -138,15 +139,17 @@ class PhotonWalk {
 
     double walk(Part part, Sampler& sampler, Waiting& waiting, Batch& batch) const {
         PhotonBalance& balance = batch.balance;
-        auto& [ray, flux, chain, way, events] = part;
+        auto& [ray, flux, chain, way, events, width] = part;
         double landed = 0;
         while (true) {
             Surface surface;
             ++balance.rays;
-            if (!m_scene.intersect(ray, surface)) {
+            RayFootprint footprint = m_scene.coneAround(ray.direction, width);
+            if (!m_scene.intersect(ray, surface, &footprint)) {
                 balance.fluxEscaped += channelSum(flux);
                 return landed;
             }
+            width = footprint.width();
             if (m_scene.viewersDiffer() && way.stage == Stage::kStraight &&
                 passesHidden(part, surface, sampler, balance)) {
                 events.add(1.0f);

@@ -73,12 +73,12 @@ void setEnd(const Scene& scene, const GatherEnds& ends, const GatherWay& way, co
 Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray, float cosine,
                       Sampler& sampler) {
     Gathered result;
-    GatherWay way{PathWalk(ray), {}};
+    GatherWay way{PathWalk(ray, scene.coneAround(ray.direction, ends.width)), {}};
     bool atOnce = true;
     while (true) {
         Surface surface;
         ++result.rays;
-        const bool hit = scene.intersect(way.path.ray, surface);
+        const bool hit = scene.intersect(way.path.ray, surface, &way.path.footprint);
         if (hit) way.path.throughput *= scene.leftAlong(way.path.ray, surface);
         addLampsMet(scene, ends, way, hit ? &surface : nullptr, atOnce, result);
         if (!hit) return result;

@@ -27,6 +27,7 @@ struct GatherEnds {
     bool findsAll = false;
     // What sent the ray out, where light of lamps that it meets at once is asked for as well.
     const LastScatter* from = nullptr;
+    float width = 0.0f;  // of the footprint that the ray starts from, scene units
     // But for light of lamps by way of other lobes than broad ones: a ReceivedMap has it.
     bool withoutCaustics = false;
 };

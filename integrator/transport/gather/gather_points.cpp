@@ -127,17 +127,18 @@ void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
     point.screen = {(start(cell.column) + jitter.x) * m_request.spacing,
                     (start(cell.row) + jitter.y) * m_request.spacing};
     point.normal = Vec3f(0.0f);
-    const Ray first =
-        m_camera.ray(static_cast<double>(point.screen.x), static_cast<double>(point.screen.y));
-    followCameraPath(m_scene, first, sampler, [&](const PathStop& stop) {
-        const bool chosen = stop.bsdf.has(Lobe::kDiffuse) && stop.sampler.next1D() < 0.5f;
-        if (!stop.isGathered() && !chosen) return stop.goesOn();
-        const Vec3f& normal = stop.bsdf.facingGeometricNormal();
-        point.position = m_scene.pointUnderRay(stop.surface.position, stop.ray, normal);
-        point.normal = stop.bsdf.facingShadingNormal();
-        tile.origins[cell.inTile()] = {normal, stop.surface.offset};
-        return false;
-    });
+    const auto x = static_cast<double>(point.screen.x), y = static_cast<double>(point.screen.y);
+    const Ray first = m_camera.ray(x, y);
+    followCameraPath(
+        m_scene, first, m_camera.footprint(x, y, first), sampler, [&](const PathStop& stop) {
+            const bool chosen = stop.bsdf.has(Lobe::kDiffuse) && stop.sampler.next1D() < 0.5f;
+            if (!stop.isGathered() && !chosen) return stop.goesOn();
+            const Vec3f& normal = stop.bsdf.facingGeometricNormal();
+            point.position = m_scene.pointUnderRay(stop.surface.position, stop.ray, normal);
+            point.normal = stop.bsdf.facingShadingNormal();
+            tile.origins[cell.inTile()] = {normal, stop.surface.offset, stop.footprint.width()};
+            return false;
+        });
 }
 
 // The point's part of the directions that it shares.
@@ -152,7 +153,8 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
     float clearance = std::numeric_limits<float>::max();
     float lamps = 0;
     Gathered last;
-    const GatherEnds ends{m_sites, m_request.caustics, m_request.rays, m_request.lights};
+    GatherEnds ends{m_sites, m_request.caustics, m_request.rays, m_request.lights};
+    ends.width = origin.width;
     const auto addLast = [&] {
         endGather(ends, last);
         addTo(sum, last.radiance);

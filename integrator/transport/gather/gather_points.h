@@ -125,6 +125,7 @@ class GatherPoints {
     struct Origin {
         Vec3f geometricNormal;  // on the camera's side
         float offset;
+        float width;  // of what the camera's ray covers there
     };
     // What the gather rays of a point found.
     struct Value {

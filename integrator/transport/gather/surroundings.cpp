@@ -21,7 +21,7 @@ constexpr float kGoldenTurn = 0.381966011f;
 
 std::optional<float> Surroundings::distanceAlong(const Vec3f& direction, float farthest) const {
     Surface met;
-    if (!m_scene.intersect({m_position + m_normal * m_offset, direction, farthest}, met))
+    if (!m_scene.meet({m_position + m_normal * m_offset, direction, farthest}, met))
         return std::nullopt;
     return std::max(length(met.position - m_position), m_least);
 }

@@ -87,7 +87,8 @@ bool VirtualLamps::reach(const Ray& ray, const Vec3f& place, float tolerance, Su
                          float& share) const {
     share = 1.0f;
     Ray next = ray;
-    while (m_scene.intersect(next, met)) {
+    RayFootprint footprint = m_scene.coneAround(ray.direction);
+    while (m_scene.intersect(next, met, &footprint)) {
         if (lengthSquared(met.position - place) <= tolerance * tolerance) return true;
         const MaterialDescription& material = m_scene.material(met.material);
         if (!letsThrough(material)) return false;

@@ -6,16 +6,17 @@
 
 namespace pm {
 
-SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler) const {
+SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler,
+                                      const RayFootprint& footprint) const {
     SampleRadiance result;
     PathState state;
-    PathWalk path(ray);
+    PathWalk path(ray, footprint);
     LastScatter last;
     last.direction = ray.direction;
     while (true) {
         Surface surface;
         ++result.rays;
-        if (!m_scene.intersect(path.ray, surface)) {
+        if (!m_scene.intersect(path.ray, surface, &path.footprint)) {
             result.of(state.classify()) +=
                 path.throughput * weightedFarLight(m_scene, m_lights, last);
             return result;

@@ -18,7 +18,9 @@ class PathIntegrator {
     PathIntegrator(const Scene& scene, const LightSampler& lights)
         : m_scene(scene), m_lights(lights) {}
 
-    SampleRadiance sample(const Ray& ray, Sampler& sampler) const;
+    // footprint: of the ray.
+    SampleRadiance sample(const Ray& ray, Sampler& sampler,
+                          const RayFootprint& footprint = {}) const;
 
   private:
     const Scene& m_scene;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "integrator/materials/follow_footprint.h"
+
 namespace pm {
 
 namespace {
@@ -24,6 +26,7 @@ bool PathWalk::scatter(const Surface& surface, const Bsdf& bsdf, const BsdfSampl
         if (sampler.next1D() >= survival) return false;
         throughput *= 1.0f / survival;
     }
+    followFootprint(ray.direction, surface, bsdf, sample, footprint);
     const Viewers viewer = ray.viewer;
     ray = rayFrom(surface, sample.direction);
     if (sample.lobe == Lobe::kStraight) ray.viewer = viewer;

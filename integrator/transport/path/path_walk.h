@@ -7,6 +7,7 @@
 #include "integrator/sampling/event_count.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/scene.h"
+#include "integrator/shapes/ray_footprint.h"
 #include "integrator/shapes/surface.h"
 #include "integrator/values/rgb.h"
 
@@ -29,8 +30,10 @@ struct Carried {
 // A path from the camera on its way from surface to surface, with the ray to follow next.
 struct PathWalk : Carried {
     Ray ray;
+    RayFootprint footprint;  // of the ray
 
-    explicit PathWalk(const Ray& first) : ray(first) {}
+    explicit PathWalk(const Ray& first, const RayFootprint& ofFirst = {})
+        : ray(first), footprint(ofFirst) {}
 
     // Goes on along a sampled direction, by Russian roulette after the first events. False: the
     // path ends here. No random number is drawn where the path is sure to go on. isPart: it divides
@@ -51,9 +54,10 @@ struct PathStop {
     const Ray& ray;  // that led there
     const Surface& surface;
     const Bsdf& bsdf;
-    const Rgb& throughput;  // of the path up to here
-    Lobe next;              // by which the path would leave
-    Sampler& sampler;       // of the path
+    const Rgb& throughput;          // of the path up to here
+    const RayFootprint& footprint;  // at the surface
+    Lobe next;                      // by which the path would leave
+    Sampler& sampler;               // of the path
 
     // Whether indirect light is gathered here: at the first diffuse surface, and where a broad lobe
     // leads on, along which gather rays look for it.
@@ -63,20 +67,22 @@ struct PathStop {
 };
 
 // Follows a path from the camera until visit(PathStop) returns false, or it ends as one of any kind
-// would.
+// would. footprint: of the first ray.
 template <typename Visit>
-void followCameraPath(const Scene& scene, const Ray& first, Sampler& sampler, const Visit& visit) {
-    PathWalk path(first);
+void followCameraPath(const Scene& scene, const Ray& first, const RayFootprint& footprint,
+                      Sampler& sampler, const Visit& visit) {
+    PathWalk path(first, footprint);
     while (true) {
         Surface surface;
-        if (!scene.intersect(path.ray, surface)) return;
+        if (!scene.intersect(path.ray, surface, &path.footprint)) return;
         const Bsdf bsdf(scene.materials(), surface, -path.ray.direction, Transport::kRadiance,
                         path.throughput);
         if (bsdf.isBlackBody()) return;
         BsdfSample sample;
         const float uLobe = sampler.next1D();
         const bool goesOn = bsdf.sample(uLobe, sampler.next2D(), sample);
-        if (!visit(PathStop{path.ray, surface, bsdf, path.throughput, sample.lobe, sampler}) ||
+        if (!visit(PathStop{path.ray, surface, bsdf, path.throughput, path.footprint, sample.lobe,
+                            sampler}) ||
             !goesOn || !path.scatter(surface, bsdf, sample, sampler))
             return;
     }

@@ -72,7 +72,7 @@ bool hasSeveralLobes(const Bsdf& bsdf) {
 SampleRadiance PhotonIntegrator::sample(const View& view, Sampler& sampler,
                                         NearestPhotons& scratch) const {
     SampleRadiance result;
-    Branch branch{PathWalk(view.ray), {}, {}, m_lampSamples};
+    Branch branch{PathWalk(view.ray, view.footprint), {}, {}, m_lampSamples};
     branch.last.direction = view.ray.direction;
     follow(branch, {view, sampler, scratch, result});
     return result;
@@ -130,7 +130,7 @@ void PhotonIntegrator::follow(Branch& branch, const Tree& tree) const {
         ++result.rays;
         const PathClass found = branch.state.classify();
         const bool isFound = isOfMap(branch.state);
-        if (!m_scene.intersect(path.ray, surface)) {
+        if (!m_scene.intersect(path.ray, surface, &path.footprint)) {
             if (!isFound)
                 result.of(found) +=
                     path.throughput * weightedFarLight(m_scene, m_lights, branch.last);
@@ -208,6 +208,7 @@ PhotonIntegrator::StillToFind PhotonIntegrator::addReflected(const Surface& surf
     const Rgb& throughput = branch.path.throughput;
     StillToFind still;
     if (bsdf.has(Lobe::kDiffuse)) still = readMaps(surface, bsdf, branch, tree);
+    still.width = branch.path.footprint.width();
     if (still.indirect && m_maps.lamps)
         sampleCaustics(surface, bsdf, throughput, still.ownRays, tree.sampler, tree.result);
     if (bsdf.reflectsLamps()) {
@@ -334,6 +335,7 @@ void PhotonIntegrator::followBroad(const Surface& surface, const Bsdf& bsdf, con
                           &m_lights,
                           true,
                           findsLamps ? &last : nullptr,
+                          branch.path.footprint.width(),
                           m_maps.received != nullptr};
     Gathered found = finalGather(m_scene, ends, ray, 1.0f, tree.sampler);
     if (!findsLamps) found.lampsStraight = lightAlong(m_scene, m_lights, ray, last, found.rays);
@@ -369,7 +371,8 @@ void PhotonIntegrator::gatherAlong(const Ray& ray, const LastScatter& last, Stil
         result.direct += weight * lightAlong(m_scene, m_lights, ray, last, result.rays);
     if (!still.indirect) return;
     const GatherEnds ends{*m_maps.global, m_maps.lamps, rays,
-                          &m_lights,      false,        findsLamps && !aside ? &last : nullptr};
+                          &m_lights,      false,        findsLamps && !aside ? &last : nullptr,
+                          still.width};
     const Gathered found = finalGather(m_scene, ends, ray, cosine, sampler);
     result.rays += found.rays;
     result.indirect += weight * found.radiance.wide;

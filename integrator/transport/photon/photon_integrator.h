@@ -49,6 +49,7 @@ class PhotonIntegrator {
         Ray ray;
         PixelBeam beam{};           // of no width where caustics may be narrower than any pixel
         bool withSeenLamps = true;  // false where emission is left to paths of SeenLamps
+        RayFootprint footprint{};   // of the ray
     };
     SampleRadiance sample(const View& view, Sampler& sampler, NearestPhotons& scratch) const;
 
@@ -58,6 +59,7 @@ class PhotonIntegrator {
         LampStrategy lamps = LampStrategy::kBoth;
         bool indirect = false;
         std::uint32_t ownRays = 1;  // by how many rays along it
+        float width = 0.0f;         // of the footprint that they start from, scene units
 
         bool any() const { return indirect || lamps == LampStrategy::kBoth; }
     };

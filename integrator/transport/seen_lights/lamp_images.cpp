@@ -10,6 +10,7 @@
 #include <span>
 
 #include "integrator/materials/bsdf.h"
+#include "integrator/materials/follow_footprint.h"
 #include "integrator/transport/path/path_walk.h"
 
 namespace pm {
@@ -106,21 +107,25 @@ std::optional<Linear> fit(std::span<const LampRay> rays, const LightBall& lamp, 
 // What a ray meets.
 struct Arrival {
     Surface surface;
+    RayFootprint footprint;  // there
     bool isSurface;
     std::optional<Bsdf> bsdf;  // of what may have delta lobes
 
-    Arrival(const Scene& scene, const Ray& ray, const Carried& carried)
-        : isSurface(scene.intersect(ray, surface)) {
+    // footprint: of the ray.
+    Arrival(const Scene& scene, const Ray& ray, const RayFootprint& from, const Carried& carried)
+        : footprint(from), isSurface(scene.intersect(ray, surface, &footprint)) {
         if (isSurface && mayHaveDelta(scene.material(surface.material)))
             bsdf.emplace(scene.materials(), surface, -ray.direction, Transport::kRadiance,
                          carried.throughput);
     }
     // By way of a lobe, next: the ray that led here, then the one onwards; false where there is
     // none.
-    bool follow(Lobe lobe, Carried& carried, Ray& next) const {
+    bool follow(Lobe lobe, Carried& carried, Ray& next, RayFootprint& onwards) const {
         BsdfSample sample;
         if (!bsdf || !bsdf->follow(lobe, sample)) return false;
         carried.followLobe(*bsdf, sample);
+        onwards = footprint;
+        followFootprint(next.direction, surface, *bsdf, sample, onwards);
         const Viewers viewer = next.viewer;
         next = rayFrom(surface, sample.direction);
         if (lobe == Lobe::kStraight) next.viewer = viewer;
@@ -132,12 +137,14 @@ struct Arrival {
 std::optional<Ray> rayBy(const Scene& scene, const Camera& camera, std::uint64_t lobes, double x,
                          double y) {
     Ray ray = camera.ray(x, y);
+    RayFootprint footprint = camera.footprint(x, y, ray);
     Carried carried;
     int shift = 0;
     while (lobes >> (shift + 2)) shift += 2;
     for (shift -= 2; shift >= 0; shift -= 2) {
-        const Arrival arrival(scene, ray, carried);
-        if (!arrival.follow(kDeltaLobes[(lobes >> shift) & 3], carried, ray)) return std::nullopt;
+        const Arrival arrival(scene, ray, footprint, carried);
+        if (!arrival.follow(kDeltaLobes[(lobes >> shift) & 3], carried, ray, footprint))
+            return std::nullopt;
     }
     return ray;
 }
@@ -286,24 +293,27 @@ Rgb followLobes(const Scene& scene, const LightSampler& lights, const Camera& ca
                 double y, std::vector<LampRay>& rays) {
     struct Branch {
         Ray ray;
+        RayFootprint footprint;
         std::uint64_t lobes = 1;
         Carried carried{};
         int count = 0;
     };
     Rgb found;
-    std::vector<Branch> waiting{{camera.ray(x, y)}};
+    const Ray first = camera.ray(x, y);
+    std::vector<Branch> waiting{{first, camera.footprint(x, y, first)}};
     while (!waiting.empty()) {
         const Branch branch = waiting.back();
         waiting.pop_back();
         rays.push_back({branch.lobes, x, y, branch.ray});
-        const Arrival arrival(scene, branch.ray, branch.carried);
+        const Arrival arrival(scene, branch.ray, branch.footprint, branch.carried);
         if (arrival.isSurface && arrival.surface.light != kNoLight)
             found += branch.carried.throughput *
                      lights.emittedRadiance(arrival.surface, -branch.ray.direction);
         if (branch.count == kMostLobes) continue;
         for (std::size_t i = 0; i < kDeltaLobes.size(); ++i) {
-            Branch next{branch.ray, branch.lobes << 2 | i, branch.carried, branch.count + 1};
-            if (arrival.follow(kDeltaLobes[i], next.carried, next.ray) &&
+            Branch next{branch.ray, branch.footprint, branch.lobes << 2 | i, branch.carried,
+                        branch.count + 1};
+            if (arrival.follow(kDeltaLobes[i], next.carried, next.ray, next.footprint) &&
                 next.carried.amount() >= kLeastThroughput)
                 waiting.push_back(next);
         }

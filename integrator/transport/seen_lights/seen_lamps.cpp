@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "integrator/materials/bsdf.h"
+#include "integrator/materials/follow_footprint.h"
 
 namespace pm {
 
@@ -127,7 +128,8 @@ Rgb SeenLamps::sample(const Shown& shown, std::uint32_t pass, const PixelCell& c
                 if (image.holds(place.x, place.y)) all += kPathsOfImage / image.area();
             weight = density / all;
         }
-        sum += along(m_camera.ray(place.x, place.y), sampler, rays, effort) *
+        const Ray ray = m_camera.ray(place.x, place.y);
+        sum += along(ray, m_camera.footprint(place.x, place.y, ray), sampler, rays, effort) *
                static_cast<float>(weight);
     };
     const std::uint64_t stream = cell.stream(pass) + 8;
@@ -145,10 +147,10 @@ Rgb SeenLamps::sample(const Shown& shown, std::uint32_t pass, const PixelCell& c
     return sum;
 }
 
-Rgb SeenLamps::along(const Ray& ray, Sampler& sampler, std::uint32_t& rays,
-                     const Effort& effort) const {
+Rgb SeenLamps::along(const Ray& ray, const RayFootprint& footprint, Sampler& sampler,
+                     std::uint32_t& rays, const Effort& effort) const {
     Waiting waiting{effort};
-    waiting.branches[waiting.count++].ray = ray;
+    waiting.branches[waiting.count++] = {ray, footprint};
     Rgb found;
     while (waiting.count > 0) {
         Branch branch = waiting.branches[--waiting.count];
@@ -161,7 +163,7 @@ Rgb SeenLamps::along(const Ray& ray, Sampler& sampler, std::uint32_t& rays,
 // To the next surface, and on from there. False: nothing goes on.
 bool SeenLamps::step(Branch& branch, Waiting& waiting, Sampler& sampler, Rgb& found) const {
     Surface surface;
-    if (!m_scene.intersect(branch.ray, surface)) return false;
+    if (!m_scene.intersect(branch.ray, surface, &branch.footprint)) return false;
     branch.carried.throughput *= m_scene.leftAlong(branch.ray, surface);
     const Vec3f out = -branch.ray.direction;
     if (surface.light != kNoLight)
@@ -211,6 +213,8 @@ bool SeenLamps::goOn(const Branch& from, const Surface& surface, const Bsdf& bsd
         if (!(sampler.next1D() < survival)) return false;
         next.carried.throughput *= 1.0f / survival;
     }
+    next.footprint = from.footprint;
+    followFootprint(from.ray.direction, surface, bsdf, sample, next.footprint);
     const Viewers viewer = from.ray.viewer;
     next.ray = rayFrom(surface, sample.direction);
     if (sample.lobe == Lobe::kStraight) next.ray.viewer = viewer;

@@ -76,14 +76,16 @@ class SeenLamps {
 
     // Radiance of the lamps along a ray. Adds its rays to `rays`.
     Rgb along(const Ray& ray, Sampler& sampler, std::uint32_t& rays) const {
-        return along(ray, sampler, rays, {});
+        return along(ray, {}, sampler, rays, {});
     }
-    Rgb along(const Ray& ray, Sampler& sampler, std::uint32_t& rays, const Effort& effort) const;
+    Rgb along(const Ray& ray, const RayFootprint& footprint, Sampler& sampler, std::uint32_t& rays,
+              const Effort& effort) const;
 
   private:
     // How far a path has come.
     struct Branch {
         Ray ray;
+        RayFootprint footprint{};  // of the ray
         Carried carried{};
         EventCount events{};
     };

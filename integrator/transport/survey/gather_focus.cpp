@@ -54,7 +54,8 @@ void addEndsOfRaysFrom(const Scene& scene, const PathStop& stop, std::vector<End
     for (std::size_t i = 0; i < kRays; ++i) {
         const Vec3f direction =
             normalize(frame.toWorld(sampleCosineHemisphere(stop.sampler.next2D())));
-        followCameraPath(scene, rayFrom(stop.surface, direction), stop.sampler, addEnd);
+        followCameraPath(scene, rayFrom(stop.surface, direction),
+                         scene.coneAround(direction, stop.footprint.width()), stop.sampler, addEnd);
     }
 }
 

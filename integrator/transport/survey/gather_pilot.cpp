@@ -69,7 +69,9 @@ class GatherPilot {
             guided ? m_directions->warp(u) : GatherGuide::Directions::Warped{u, 1.0f};
         const Vec3f direction = normalize(m_frame.toWorld(sampleCosineHemisphere(warped.u)));
         if (!(dot(direction, m_stop.bsdf.facingGeometricNormal()) > 0.0f)) return {};
-        const Rgb radiance = finalGather(m_scene, m_ends, rayFrom(m_stop.surface, direction),
+        GatherEnds ends = m_ends;
+        ends.width = m_stop.footprint.width();
+        const Rgb radiance = finalGather(m_scene, ends, rayFrom(m_stop.surface, direction),
                                          dot(direction, m_frame.normal), sampler)
                                  .radiance.wide;
         return m_stop.throughput * m_stop.bsdf.diffuse() * (radiance / warped.density);
