@@ -17,7 +17,7 @@ namespace pm {
 
 namespace {
 
-bool meet(const Box3d& a, const Box3d& b) {
+bool overlap(const Box3d& a, const Box3d& b) {
     for (int axis = 0; axis < 3; ++axis)
         if (!(a.lo[axis] <= b.hi[axis] && b.lo[axis] <= a.hi[axis])) return false;
     return true;
@@ -73,12 +73,12 @@ class Scene::Media::Search {
     bool matters(const Part& part) const {
         const auto isOther = [&](const Part& other) {
             return (other.shape != part.shape || other.material != part.material) &&
-                   meet(part.box, other.box);
+                   overlap(part.box, other.box);
         };
         if (std::ranges::any_of(m_parts, isOther)) return true;
         if (!absorbs(m_scene.material(part.material))) return false;
         for (std::uint32_t shape = 0; shape < m_boxes.size(); ++shape)
-            if (shape != part.shape && meet(part.box, m_boxes[shape])) return true;
+            if (shape != part.shape && overlap(part.box, m_boxes[shape])) return true;
         if (m_scene.m_shapes[part.shape].materials.size() > 1) return true;
         const Part* const alone = &part;
         return m_scene.m_shapes[part.shape].mesh && look({&alone, 1}).openEdges > 0;
