@@ -13,14 +13,21 @@ namespace pm::host {
 // The one description of a scene: what readers of files fill and what PluginScene hands to the
 // renderer. Plain arrays, no file format and no renderer in it.
 
+// One picture of several that each fill a square of texture coordinates (UDIM).
+struct TileUse {
+    std::uint32_t number{};  // 1001 + column + 10 row
+    std::string file;
+};
+
 // A picture on a material as the file asks for it; value = base + gain * texel.
 struct TextureUse {
-    std::string file;         // as it can be opened
-    std::string place;        // FILE:LINE of the statement that asks for it
-    std::string colourSpace;  // of -colorspace; empty = decided by the rules for files
-    bool isData{};            // never colour-converted
-    bool clamp{};             // else repeated
-    char channel{};           // of -imfchan: r g b m l z, or 0 where nothing is asked for
+    std::string file;            // as it can be opened; of tiles with <UDIM> in its name
+    std::vector<TileUse> tiles;  // those that there are
+    std::string place;           // FILE:LINE of the statement that asks for it
+    std::string colourSpace;     // of -colorspace; empty = decided by the rules for files
+    bool isData{};               // never colour-converted
+    bool clamp{};                // else repeated
+    char channel{};              // of -imfchan: r g b m l z, or 0 where nothing is asked for
     std::array<float, 2> scale{1.0f, 1.0f};
     std::array<float, 2> offset{};
     float base{0.0f};

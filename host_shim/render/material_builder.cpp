@@ -45,8 +45,13 @@ std::array<TextureOfKind, 9> usesOf(const MaterialData& material) {
              {&material.bumpTexture, TextureKind::kData}}};
 }
 
-TextureRequest requestOf(const TextureUse& use, TextureKind kind) {
-    return {use.file, kind, use.colourSpace, use.channel};
+TextureRequest requestOf(const TextureUse& use, const std::string& file, TextureKind kind) {
+    return {file, kind, use.colourSpace, use.channel};
+}
+
+void addRequests(const TextureUse& use, TextureKind kind, std::vector<TextureRequest>& requests) {
+    if (use.tiles.empty()) requests.push_back(requestOf(use, use.file, kind));
+    for (const TileUse& tile : use.tiles) requests.push_back(requestOf(use, tile.file, kind));
 }
 
 }  // namespace
@@ -73,7 +78,7 @@ void MaterialBuilder::prepare(const std::vector<const MaterialData*>& materials)
     std::vector<TextureRequest> requests;
     for (const MaterialData* material : materials)
         for (const auto& [use, kind] : usesOf(*material))
-            if (*use) requests.push_back(requestOf(**use, kind));
+            if (*use) addRequests(**use, kind, requests);
     if (!requests.empty()) preparer().prepare(requests);
 }
 
@@ -99,36 +104,60 @@ void MaterialBuilder::tell(const std::string& file, const BakedTexture& baked) {
 PmrTexture MaterialBuilder::texture(const std::optional<TextureUse>& use, TextureKind kind,
                                     const std::string& of) {
     if (!use) return nullptr;
-    if (use->file.find("<UDIM>") != std::string::npos) {
-        m_warn(Warning::kTexture,
-               fmt::format("{}: {}: texture {}: pictures in tiles are not read; its number is used "
-                           "alone",
-                           use->place, of, use->file));
-        return nullptr;
+    return use->tiles.empty() ? picture(*use, use->file, kind, of) : tiles(*use, kind, of);
+}
+
+PmrTextureDesc MaterialBuilder::lookedUpAs(const TextureUse& use) {
+    auto desc = PMR_INIT(PmrTextureDesc);
+    desc.wrapS = desc.wrapT = use.clamp ? PMR_WRAP_CLAMP : PMR_WRAP_REPEAT;
+    for (std::size_t i = 0; i < 2; ++i) {
+        desc.uvScale[i] = use.scale[i];
+        desc.uvOffset[i] = use.offset[i];
     }
+    // 0 would count as 1.
+    desc.gain = use.gain != 0 ? use.gain : std::numeric_limits<float>::min();
+    desc.base = use.base;
+    return desc;
+}
+
+PmrTexture MaterialBuilder::picture(const TextureUse& use, const std::string& shown,
+                                    TextureKind kind, const std::string& of) {
     BakedTexture baked;
     try {
-        baked = preparer().texture(requestOf(*use, kind));
-        tell(use->file, baked);
+        baked = preparer().texture(requestOf(use, shown, kind));
+        tell(shown, baked);
     } catch (const HostError& error) {
         m_warn(Warning::kTexture,
-               fmt::format("{}: {}: {}; its number is used alone", use->place, of, error.what()));
+               fmt::format("{}: {}: {}; its number is used alone", use.place, of, error.what()));
         return nullptr;
     }
     const std::string file = baked.file.string();
-    auto desc = PMR_INIT(PmrTextureDesc);
+    PmrTextureDesc desc = lookedUpAs(use);
     desc.fileName = file.c_str();
-    desc.wrapS = desc.wrapT = use->clamp ? PMR_WRAP_CLAMP : PMR_WRAP_REPEAT;
-    for (std::size_t i = 0; i < 2; ++i) {
-        desc.uvScale[i] = use->scale[i];
-        desc.uvOffset[i] = use->offset[i];
-    }
-    // 0 would count as 1.
-    desc.gain = use->gain != 0 ? use->gain : std::numeric_limits<float>::min();
-    desc.base = use->base;
     std::ranges::copy(baked.facts.texelHash, desc.texelHash);
+    return make(desc, shown);
+}
+
+PmrTexture MaterialBuilder::tiles(const TextureUse& use, TextureKind kind, const std::string& of) {
+    std::vector<PmrTexture> pictures;
+    std::vector<std::uint32_t> numbers;
+    for (const TileUse& tile : use.tiles)
+        if (const PmrTexture one = picture(use, tile.file, kind, of)) {
+            pictures.push_back(one);
+            numbers.push_back(tile.number);
+        }
+    if (pictures.empty()) return nullptr;
+    PmrTextureDesc desc = lookedUpAs(use);
+    desc.fileName = use.file.c_str();
+    desc.tiles = pictures.data();
+    desc.tileNumbers = numbers.data();
+    desc.tileCount = pictures.size();
+    return make(desc, use.file);
+}
+
+PmrTexture MaterialBuilder::make(const PmrTextureDesc& desc, const std::string& shown) {
     PmrTexture texture = nullptr;
-    m_context.check(m_context.api().createTexture(m_context.handle(), &desc, &texture), use->file);
+    m_context.check(m_context.api().createTexture(m_context.handle(), &desc, &texture), shown);
     m_textures.push_back(texture);
     return texture;
 }

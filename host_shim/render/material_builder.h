@@ -37,6 +37,13 @@ class MaterialBuilder {
     // The same of one picture; null where there is none. of: what it is of, for messages.
     PmrTexture texture(const std::optional<TextureUse>& use, TextureKind kind,
                        const std::string& of);
+    // One picture, or one that stands for all its tiles; null, with a warning, where none can be
+    // read.
+    PmrTexture picture(const TextureUse& use, const std::string& shown, TextureKind kind,
+                       const std::string& of);
+    PmrTexture tiles(const TextureUse& use, TextureKind kind, const std::string& of);
+    PmrTexture make(const PmrTextureDesc& desc, const std::string& shown);
+    static PmrTextureDesc lookedUpAs(const TextureUse& use);
 
   private:
     void tell(const std::string& file, const BakedTexture& baked);

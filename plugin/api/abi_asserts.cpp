@@ -54,7 +54,7 @@ static_assert(offsetof(PmrSphereDesc, size) == 0);
 static_assert(offsetof(PmrSphereDesc, centre) == 8);
 static_assert(offsetof(PmrSphereDesc, radius) == 32);
 
-static_assert(sizeof(PmrTextureDesc) == 64);
+static_assert(sizeof(PmrTextureDesc) == 88);
 static_assert(offsetof(PmrTextureDesc, size) == 0);
 static_assert(offsetof(PmrTextureDesc, fileName) == 8);
 static_assert(offsetof(PmrTextureDesc, wrapS) == 16);
@@ -64,6 +64,9 @@ static_assert(offsetof(PmrTextureDesc, uvOffset) == 32);
 static_assert(offsetof(PmrTextureDesc, gain) == 40);
 static_assert(offsetof(PmrTextureDesc, base) == 44);
 static_assert(offsetof(PmrTextureDesc, texelHash) == 48);
+static_assert(offsetof(PmrTextureDesc, tiles) == 64);
+static_assert(offsetof(PmrTextureDesc, tileNumbers) == 72);
+static_assert(offsetof(PmrTextureDesc, tileCount) == 80);
 
 static_assert(sizeof(PmrMaterialDesc) == 136);
 static_assert(offsetof(PmrMaterialDesc, size) == 0);

@@ -58,10 +58,49 @@ TextureDescription toTexture(const PmrTextureDesc& desc) {
     return texture;
 }
 
+Texture toTiles(const Context& context, const PmrTextureDesc& desc,
+                const TextureDescription& whole) {
+    if (desc.tiles == nullptr || desc.tileNumbers == nullptr)
+        throw argumentError("PmrTextureDesc: tiles or tileNumbers is null");
+    Texture texture{context.textures(), {}, {}};
+    for (std::uint64_t i = 0; i < desc.tileCount; ++i) {
+        const std::string member = fmt::format("PmrTextureDesc: tiles[{}]", i);
+        const auto tile = findTexture(context, desc.tiles[i], member);
+        const std::uint32_t number = desc.tileNumbers[i];
+        if (!tile || !tile->tiles.empty())
+            throw argumentError(member + " is null, or has tiles itself");
+        if (number < 1001 || number > 9999)
+            throw argumentError(fmt::format(
+                "PmrTextureDesc: tileNumbers[{}] is {}; it must be 1001 to 9999", i, number));
+        TexturePicture picture = tile->picture;
+        picture.wrapS = picture.wrapT = OIIO::TextureOpt::WrapClamp;
+        picture.uvScale = whole.uvScale;
+        picture.uvOffset = {whole.uvOffset.x - static_cast<float>((number - 1001) % 10),
+                            whole.uvOffset.y - static_cast<float>((number - 1001) / 10)};
+        picture.gain = whole.gain;
+        picture.base = whole.base;
+        texture.tiles.push_back({number, std::move(picture)});
+    }
+    std::ranges::sort(texture.tiles, {}, &TextureTile::number);
+    if (std::ranges::adjacent_find(texture.tiles, {}, &TextureTile::number) != texture.tiles.end())
+        throw argumentError("PmrTextureDesc: tileNumbers has one twice");
+    const auto texels = [](const TextureTile& tile) {
+        return std::uint64_t{tile.picture.width} * tile.picture.height;
+    };
+    texture.picture = std::ranges::max_element(texture.tiles, {}, texels)->picture;
+    texture.picture.fileName = whole.fileName;
+    texture.picture.uvOffset = whole.uvOffset;
+    return texture;
+}
+
 }  // namespace
 
 std::shared_ptr<TextureObject> makeTexture(std::shared_ptr<Context> context,
                                            const PmrTextureDesc& desc) {
+    if (desc.tileCount > 0) {
+        Texture tiles = toTiles(*context, desc, toTexture(desc));
+        return std::make_shared<TextureObject>(std::move(context), std::move(tiles));
+    }
     TexturePicture picture =
         runLeavable(context->buildCheck(), "opening a texture",
                     [textures = context->textures(), description = toTexture(desc)](

@@ -53,9 +53,12 @@ class TextureObject {
 
     TextureObject(std::shared_ptr<Context> context, TexturePicture picture)
         : m_context(std::move(context)),
-          m_texture(
-              std::make_shared<const Texture>(Texture{m_context->textures(), std::move(picture)})) {
-    }
+          m_texture(std::make_shared<const Texture>(
+              Texture{m_context->textures(), std::move(picture), {}})) {}
+    // Of tiles, at least one.
+    TextureObject(std::shared_ptr<Context> context, Texture texture)
+        : m_context(std::move(context)),
+          m_texture(std::make_shared<const Texture>(std::move(texture))) {}
 
     const std::shared_ptr<Context>& context() const { return m_context; }
     const std::shared_ptr<const Texture>& texture() const { return m_texture; }

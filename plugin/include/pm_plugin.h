@@ -230,6 +230,12 @@ typedef struct PmrTextureDesc {
     /* A checksum of the texels that the host knows, so that the file need not be read whole for the
      * hash of a render; equal texels must have equal ones. Both 0: the library makes its own. */
     uint64_t texelHash[2];
+    /* In place of a picture by fileName, which then only names it: textures that each fill a square
+     * of uv (UDIM). Tile 1001 + c + 10 r fills [c, c+1) x [r, r+1); of it counts the picture alone,
+     * not its wrap, scale, offset, gain and base. Where there is no tile the texel is 0. */
+    const PmrTexture* tiles;
+    const uint32_t* tileNumbers; /* 1001 to 9999, each once */
+    uint64_t tileCount;          /* 0: fileName is the picture */
 } PmrTextureDesc;
 
 #define PMR_MATERIAL_SURFACE 0    /* diffuse, plus a glossy lobe */

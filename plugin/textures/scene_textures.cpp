@@ -17,7 +17,10 @@ std::int32_t SceneTextures::add(const std::shared_ptr<const Texture>& texture) {
 
 std::vector<const TexturePicture*> SceneTextures::pictures() const {
     std::vector<const TexturePicture*> pictures;
-    for (const auto& texture : m_textures) pictures.push_back(&texture->picture);
+    for (const auto& texture : m_textures) {
+        if (texture->tiles.empty()) pictures.push_back(&texture->picture);
+        for (const TextureTile& tile : texture->tiles) pictures.push_back(&tile.picture);
+    }
     return pictures;
 }
 
@@ -29,33 +32,35 @@ std::uint64_t SceneTextures::texelBytes() const {
     return bytes + bytes / 3;
 }
 
-std::vector<const Texture*> SceneTextures::files() const {
-    std::vector<const Texture*> files;
-    for (const auto& texture : m_textures)
-        if (std::ranges::none_of(files, [&](const Texture* other) {
-                return other->picture.fileName == texture->picture.fileName;
+std::vector<const TexturePicture*> SceneTextures::files() const {
+    std::vector<const TexturePicture*> files;
+    for (const TexturePicture* const picture : pictures())
+        if (std::ranges::none_of(files, [&](const TexturePicture* other) {
+                return other->fileName == picture->fileName;
             }))
-            files.push_back(texture.get());
+            files.push_back(picture);
     return files;
 }
 
 TextureReads SceneTextures::reads() const {
     TextureReads sum;
-    for (const Texture* texture : files()) sum += texture->system->reads(texture->picture);
+    // All of a scene are of one context, and so of one cache.
+    for (const TexturePicture* picture : files()) sum += m_textures[0]->system->reads(*picture);
     return sum;
 }
 
 std::uint64_t SceneTextures::texels() const {
     std::uint64_t sum = 0;
-    for (const Texture* texture : files())
-        sum += std::uint64_t{texture->picture.width} * texture->picture.height;
+    for (const TexturePicture* picture : files())
+        sum += std::uint64_t{picture->width} * picture->height;
     return sum;
 }
 
 Texel SceneTextures::lookUp(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const {
     Texel texel;
     const Texture& texture = *m_textures[static_cast<std::size_t>(index)];
-    if (!texture.system->lookUp(texture.picture, uv, footprint, texel))
+    const TexturePicture* const picture = texture.at(uv);
+    if (picture && !texture.system->lookUp(*picture, uv, footprint, texel))
         m_failures.fetch_add(1, std::memory_order_relaxed);
     return texel;
 }
@@ -63,14 +68,22 @@ Texel SceneTextures::lookUp(std::int32_t index, Vec2f uv, const UvFootprint& foo
 Texel SceneTextures::lookUpOfLight(std::int32_t index, Vec2f uv) const {
     Texel texel;
     const Texture& texture = *m_textures[static_cast<std::size_t>(index)];
-    if (!texture.system->lookUpOfLight(texture.picture, uv, texel))
+    const TexturePicture* const picture = texture.at(uv);
+    if (picture && !texture.system->lookUpOfLight(*picture, uv, texel))
         m_failures.fetch_add(1, std::memory_order_relaxed);
     return texel;
 }
 
 BadTexels SceneTextures::badTexels(std::int32_t index, const CancelCheck& cancel) const {
     const Texture& texture = *m_textures[static_cast<std::size_t>(index)];
-    return texture.system->badTexels(texture.picture, cancel);
+    if (texture.tiles.empty()) return texture.system->badTexels(texture.picture, cancel);
+    BadTexels bad;
+    for (const TextureTile& tile : texture.tiles) {
+        const BadTexels of = texture.system->badTexels(tile.picture, cancel);
+        bad.negative += of.negative;
+        bad.notFinite += of.notFinite;
+    }
+    return bad;
 }
 
 std::string SceneTextures::name(std::int32_t index) const {

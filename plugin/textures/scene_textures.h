@@ -43,7 +43,7 @@ class SceneTextures final : public TextureSource {
 
   private:
     // Those of different files.
-    std::vector<const Texture*> files() const;
+    std::vector<const TexturePicture*> files() const;
 
     std::vector<std::shared_ptr<const Texture>> m_textures;
     mutable std::atomic<std::uint64_t> m_failures{0};

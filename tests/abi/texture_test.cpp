@@ -178,6 +178,35 @@ TEST(Textures, AreRegularFiles) {
     std::filesystem::remove_all(folder);
 }
 
+TEST(Textures, TilesAreChecked) {
+    const BoxHost host;
+    const std::string name = writePicture();
+    PmrTextureDesc desc = PMR_INIT(PmrTextureDesc);
+    desc.fileName = name.c_str();
+    PmrTexture picture = nullptr;
+    ASSERT_EQ(PMR_OK, api().createTexture(host.context(), &desc, &picture)) << host.lastError();
+    const PmrTexture both[2] = {picture, picture}, none[2] = {nullptr, picture};
+    const std::uint32_t good[2] = {1002, 1011}, same[2] = {1002, 1002}, low[2] = {1000, 1001};
+    const auto made = [&](const PmrTexture* tiles, const std::uint32_t* numbers) {
+        desc.tiles = tiles;
+        desc.tileNumbers = numbers;
+        desc.tileCount = 2;
+        PmrTexture texture = nullptr;
+        const PmrStatus status = api().createTexture(host.context(), &desc, &texture);
+        if (texture != nullptr) api().releaseTexture(texture);
+        return status;
+    };
+    EXPECT_EQ(PMR_OK, made(both, good)) << host.lastError();
+    EXPECT_EQ(PMR_ERROR_ARGUMENT, made(both, same));
+    EXPECT_NE(std::string::npos, host.lastError().find("twice")) << host.lastError();
+    EXPECT_EQ(PMR_ERROR_ARGUMENT, made(both, low));
+    EXPECT_NE(std::string::npos, host.lastError().find("1001 to 9999")) << host.lastError();
+    EXPECT_EQ(PMR_ERROR_ARGUMENT, made(none, good));
+    EXPECT_EQ(PMR_ERROR_ARGUMENT, made(both, nullptr));
+    api().releaseTexture(picture);
+    std::remove(name.c_str());
+}
+
 }  // namespace
 
 }  // namespace pm::test

@@ -3,13 +3,14 @@
 # SPDX-FileCopyrightText: The pm authors
 """A frame reads a tenth of its textures at most: a room with four pictures of 1024 x 1024 in 160 x 120
 pixels, as many texels a pixel as 4096 x 4096 in 640 x 480. The cache is planned within the memory limit.
-Pictures in tiles are told to be left out.
+Pictures in tiles are looked up by their numbers.
 
 usage: texture_reads_test.py PM_HOST
 """
 import json
 import os
 import pathlib
+import shutil
 import struct
 import subprocess
 import sys
@@ -77,10 +78,30 @@ def main():
             assert cache["bytesRead"] >= cache["bytesReadOnce"] > 0, cache
             planned = statistics["memory"]["plannedTextureBytes"]
             assert 0 < planned <= (1 << 30) / 8, planned
-        tiled = (folder / "room.mtl").read_text(encoding="utf-8").replace("t3.png", "t.<UDIM>.png")
-        (folder / "room.mtl").write_text(tiled, encoding="utf-8")
+        test_tiles(host, folder)
+
+
+def test_tiles(host, folder):
+    """A wall that is tile 1002 is the same as one that has that picture alone; without it, it is black."""
+    text = (folder / "room.mtl").read_text(encoding="utf-8")
+    pictures = {}
+    for name, statement in (("alone", "-clamp on t3.png"), ("tiles", "-o 1 0 0 t.<UDIM>.png"),
+                            ("absent", "-o 2 0 0 t.<UDIM>.png")):  # fmt: skip
+        (folder / "room.mtl").write_text(text.replace("map_Kd t3.png", "map_Kd " + statement), encoding="utf-8")
+        if name == "tiles":
+            shutil.copy(folder / "t0.png", folder / "t.1001.png")
+            shutil.copy(folder / "t3.png", folder / "t.1002.png")
         _, told = render(host, folder)
-        assert "t.<UDIM>.png" in told and "tiles" in told, told
+        assert "warning" not in told, told
+        pictures[name] = shutil.move(folder / "room.exr", folder / f"{name}.exr")
+    same = subprocess.run(["idiff", pictures["alone"], pictures["tiles"]], capture_output=True, text=True)
+    assert same.returncode == 0, same.stdout
+    other = subprocess.run(["idiff", pictures["tiles"], pictures["absent"]], capture_output=True, text=True)
+    assert other.returncode != 0, "the tile is not looked up"
+    (folder / "t.1001.png").unlink()
+    (folder / "t.1002.png").unlink()
+    _, told = render(host, folder)
+    assert "t.<UDIM>.png" in told, told
 
 
 if __name__ == "__main__":
