@@ -131,19 +131,27 @@ inline constexpr float kMostBroadExponent = 45.0f;
 // As wide as a Phong lobe of that exponent: alpha^2 = 2 / (n + 2).
 inline constexpr float kLeastBroadRoughness = 0.454f;
 
-// Whether the material's glossy lobe, where it has one, is so broad that it casts no caustics:
-// light that it scatters is found as diffuse light is. By the number alone, whatever its texture.
-// Glass is never: what goes through it is none of the surface's.
-inline bool isBroad(const MaterialDescription& material) {
-    if (material.kind == MaterialKind::kDielectric) return false;
-    if (hasCoat(material) && material.coatRoughness < kLeastBroadRoughness) return false;
+// Whether all that is glossy of it has at least that roughness of facets, or at most that exponent
+// of a Phong lobe: what lies below layers, and these. By the numbers alone, whatever their
+// textures.
+inline bool isAtLeastAsRough(const MaterialDescription& material, float roughness, float exponent) {
+    if (hasCoat(material) && material.coatRoughness < roughness) return false;
     if ((hasCoat(material) || hasSheen(material)) && !isShinyBelow(material)) return true;
-    // Below a layer a mirror is the least rough that there is.
-    if (hasCoat(material) && material.kind == MaterialKind::kMirror && material.roughness == 0.0f &&
+    const float own =
+        material.kind == MaterialKind::kDielectric ? glassRoughness(material) : material.roughness;
+    // Below a coat a mirror is the least rough that there is.
+    if (hasCoat(material) && material.kind == MaterialKind::kMirror && own == 0.0f &&
         material.glossyExponent == 0.0f)
         return false;
-    return material.roughness > 0.0f ? material.roughness >= kLeastBroadRoughness
-                                     : material.glossyExponent <= kMostBroadExponent;
+    return own > 0.0f ? own >= roughness : material.glossyExponent <= exponent;
+}
+
+// Whether the material's glossy lobe, where it has one, is so broad that it casts no caustics:
+// light that it scatters is found as diffuse light is. Glass is never: what goes through it is none
+// of the surface's.
+inline bool isBroad(const MaterialDescription& material) {
+    return material.kind != MaterialKind::kDielectric &&
+           isAtLeastAsRough(material, kLeastBroadRoughness, kMostBroadExponent);
 }
 
 // From this roughness of facets on, or up to the exponent of a Phong lobe as wide, a ray along a
@@ -151,10 +159,9 @@ inline bool isBroad(const MaterialDescription& material) {
 inline constexpr float kLeastWideRoughness = 0.25f, kMostWideExponent = 510.0f;
 
 // Whether the material's glossy lobe, where it has one, is so wide that it receives caustics as a
-// diffuse one does. Broad ones are, too. By the number alone, whatever its texture.
+// diffuse one does. Broad ones are, too.
 inline bool isWide(const MaterialDescription& material) {
-    return material.roughness > 0.0f ? material.roughness >= kLeastWideRoughness
-                                     : material.glossyExponent <= kMostWideExponent;
+    return isAtLeastAsRough(material, kLeastWideRoughness, kMostWideExponent);
 }
 
 // Whether light that a mirror or glass sends on is spread.

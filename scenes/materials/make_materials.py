@@ -11,6 +11,8 @@ import sys
 
 ROUGHNESS = (0.05, 0.2, 0.4, 0.8)
 ROWS = (  # name, z of the row, statements of its materials
+    ("velvet", 4.2, "Kd 0.25 0.04 0.12\nKs 0 0 0\nNi 1\nPs 1\nillum 2\n"),
+    ("lacquer", 2.9, "Kd 0.1 0.3 0.75\nPm 1\nPc 1\nPcr 0.05\n"),
     ("plastic", 1.6, "Kd 0.6 0.05 0.04\nKs 0.5 0.5 0.5\nNi 1.5\nillum 2\n"),
     ("glass", 0.3, "Tf 1 1 1\nNi 1.5\nillum 7\n"),
     ("silver", -1.0, "Kd 0.97 0.96 0.92\nPm 1\n"),
@@ -21,8 +23,8 @@ OBJ = HEAD + """\
 mtllib materials.mtl
 v -6 0 -4
 v 6 0 -4
-v 6 0 7
-v -6 0 7
+v 6 0 12
+v -6 0 12
 v -6 6 -4
 v 6 6 -4
 v -3.5 5 -1
@@ -65,7 +67,7 @@ def main():
     sidecar = {
         "schema": "pm-sidecar/1",
         "spheres": spheres,
-        "cameras": [{"name": "front", "position": [0, 3.6, 6.5], "lookAt": [0, 0.3, -0.4], "fieldOfView": 34}],
+        "cameras": [{"name": "front", "position": [0, 5.6, 9.8], "lookAt": [0, 0.2, 0.6], "fieldOfView": 33}],
     }
     (folder / "materials.obj").write_text(OBJ, encoding="ascii")
     (folder / "materials.mtl").write_text(mtl, encoding="ascii")

@@ -18,6 +18,13 @@ float passesBelow(const Top& top, float cover, float cosine) {
     return std::max(kLeast, 1.0f - cover * maxChannel(top.albedo(std::max(1e-4f, cosine))));
 }
 
+// Of a layer as it is by default.
+template <LocalReflection Top>
+const LayerPass* usualPass() {
+    static const LayerPass pass([](float cosine) { return passesBelow(Top{}, 1.0f, cosine); });
+    return &pass;
+}
+
 // What a rough lobe below such a layer sends back of even light along a cosine.
 inline Rgb albedoBelow(const GgxReflection& base, const LayerPass& pass, float cosine) {
     const LayerPass::Below below = pass.below(cosine, base.ggx.alpha);
@@ -31,7 +38,7 @@ struct Layered {
     Top top;
     float cover = 1.0f;  // share of the surface where it is
     GgxReflection base;
-    const LayerPass* pass = nullptr;  // of that top and cover
+    const LayerPass* pass = usualPass<Top>();  // of that top and cover
 
     Rgb albedo(float cosine) const {
         return top.albedo(cosine) * cover + albedoBelow(base, *pass, cosine);

@@ -56,7 +56,7 @@ struct Cover {
 // reciprocal. Its reflectance is rho w(out). Source: Kelemen & Szirmay-Kalos, "A Microfacet Based
 // Coupled Specular-Matte BRDF Model", Eurographics 2001.
 struct Undercoat {
-    explicit Undercoat(const Cover& over) : cover(over), mean(over.mean()) {}
+    explicit Undercoat(const Cover& over = {}) : cover(over), mean(over.mean()) {}
 
     Cover cover;
     float mean;  // of what gets through it

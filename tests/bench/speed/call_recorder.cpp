@@ -49,15 +49,15 @@ void recordNearest(const Ray& ray) {
 
 }  // namespace
 
-static_assert(
-    std::is_same_v<decltype(&Scene::intersect), bool (Scene::*)(const Ray&, Surface&) const>);
-bool realIntersect(const Scene*, const Ray&,
-                   Surface&) __asm__("__real__ZNK2pm5Scene9intersectERKNS_3RayERNS_7SurfaceE");
-bool wrapIntersect(const Scene*, const Ray&,
-                   Surface&) __asm__("__wrap__ZNK2pm5Scene9intersectERKNS_3RayERNS_7SurfaceE");
-bool wrapIntersect(const Scene* scene, const Ray& ray, Surface& surface) {
+static_assert(std::is_same_v<decltype(&Scene::intersect),
+                             bool (Scene::*)(const Ray&, Surface&, RayFootprint*) const>);
+bool realIntersect(const Scene*, const Ray&, Surface&, RayFootprint*) __asm__(
+    "__real__ZNK2pm5Scene9intersectERKNS_3RayERNS_7SurfaceEPNS_12RayFootprintE");
+bool wrapIntersect(const Scene*, const Ray&, Surface&, RayFootprint*) __asm__(
+    "__wrap__ZNK2pm5Scene9intersectERKNS_3RayERNS_7SurfaceEPNS_12RayFootprintE");
+bool wrapIntersect(const Scene* scene, const Ray& ray, Surface& surface, RayFootprint* footprint) {
     if (recorded) recordNearest(ray);
-    return realIntersect(scene, ray, surface);
+    return realIntersect(scene, ray, surface, footprint);
 }
 
 static_assert(
