@@ -128,8 +128,8 @@ inline bool isDiffuseAtMost(const MaterialDescription& material) {
 // Half of a Phong lobe's greatest value lies 10 degrees aside, or farther.
 inline constexpr float kMostBroadExponent = 45.0f;
 
-// As wide as a Phong lobe of that exponent: alpha^2 = 2 / (n + 2).
-inline constexpr float kLeastBroadRoughness = 0.454f;
+// The same of facets: they have half of D's greatest value 5 degrees aside.
+inline constexpr float kLeastBroadRoughness = 0.369f;
 
 // Whether all that is glossy of it has at least that roughness of facets, or at most that exponent
 // of a Phong lobe: what lies below layers, and these. By the numbers alone, whatever their

@@ -48,8 +48,10 @@ float alphaOf(float roughness) {
 // Of what is never smooth; a Phong lobe that stands for it is as wide.
 float leastAlphaOf(const MaterialDescription& material, const Numbers& numbers) {
     float roughness = roughnessOf(material, numbers);
+    // D falls to half at .6436 alpha, which moves what is reflected twice as far, and a Phong lobe
+    // at the root of 2 ln 2 / n.
     if (!(roughness > 0.0f) && material.glossyExponent > 0.0f)
-        roughness = std::sqrt(std::sqrt(2.0f / (material.glossyExponent + 2.0f)));
+        roughness = std::min(1.0f, std::sqrt(std::sqrt(0.837f / material.glossyExponent)));
     roughness = std::max(kLeastRoughness, roughness);
     return roughness * roughness;
 }
