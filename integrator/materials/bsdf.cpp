@@ -98,8 +98,11 @@ float Bsdf::arrival() const {
     return visitMostly(m_lobes.diffuse, [&](const auto& model) { return model.arrival(m_at); });
 }
 
-bool Bsdf::arrivesEvenly() const {
-    return std::holds_alternative<Lambertian>(m_lobes.diffuse);
+std::optional<Admission> Bsdf::admission() const {
+    if (std::holds_alternative<Lambertian>(m_lobes.diffuse)) return Admission{};
+    const auto* const below = std::get_if<Undercoat>(&m_lobes.diffuse);
+    if (!below || !below->cover.isBoundaryAlone()) return std::nullopt;
+    return Admission{below->cover.boundary, below->mean};
 }
 
 Rgb Bsdf::reflectedOf(const Rgb& irradiance) const {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <variant>
 
 #include "integrator/materials/lobe_kinds.h"
@@ -70,8 +71,9 @@ class Bsdf {
     // What light from `out` counts for in the irradiance of which that is, beside light of the
     // mean.
     float arrival() const;
-    // Whether that is the same from all sides.
-    bool arrivesEvenly() const;
+    // That of light from anywhere, where it does not depend on where it leaves to and is so simple;
+    // none elsewhere.
+    std::optional<Admission> admission() const;
     // The same of an irradiance.
     Rgb reflectedOf(const Rgb& irradiance) const;
     // All that is reflected or transmitted, for the albedo layer.

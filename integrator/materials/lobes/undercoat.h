@@ -23,6 +23,19 @@ struct CoatAlbedo {
     GgxReflection lobe() const { return {{alpha}, {Fresnel::Curve::kSchlick, Rgb(f0)}}; }
 };
 
+// What a boundary lets in from a direction, over its mean: by so much light from there counts more
+// or less than in plain irradiance. As made, the same from everywhere.
+struct Admission {
+    CoatAlbedo boundary;
+    float mean = 1.0f;
+
+    bool isEven() const { return boundary.f0 == 0.0f; }
+    // cosine: to the shading normal.
+    float from(float cosine) const {
+        return isEven() ? 1.0f : (1.0f - boundary.at(std::clamp(cosine, 0.0f, 1.0f))) / mean;
+    }
+};
+
 // What lies over a diffuse lobe: the boundary of plastic, and a layer on top.
 struct Cover {
     CoatAlbedo boundary;  // f0 0: there is none
@@ -32,9 +45,11 @@ struct Cover {
     float sheenRoughness = 1.0f;
     const LayerPass* pass = nullptr;  // of the layer, where both are
 
+    bool isBoundaryAlone() const { return coatShare == 0.0f && sheen == 0.0f; }
+
     // Share of even light along a cosine that gets through all.
     float passes(float cosine) const {
-        if (coatShare == 0.0f && sheen == 0.0f) return 1.0f - boundary.at(cosine);
+        if (isBoundaryAlone()) return 1.0f - boundary.at(cosine);
         cosine = std::max(1e-4f, cosine);
         const float top = coatShare > 0.0f
                               ? coatShare * coat.at(cosine)
@@ -44,7 +59,7 @@ struct Cover {
     }
     // Its mean over directions, each by its cosine.
     float mean() const {
-        if (coatShare == 0.0f && sheen == 0.0f) return 1.0f - boundary.mean();
+        if (isBoundaryAlone()) return 1.0f - boundary.mean();
         constexpr int kSteps = 24;
         return meanOverCosines([&](float cosine) { return passes(cosine); }, kSteps);
     }

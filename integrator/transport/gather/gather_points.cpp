@@ -133,10 +133,14 @@ void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
         m_scene, first, m_camera.footprint(x, y, first), sampler, [&](const PathStop& stop) {
             const bool chosen = stop.bsdf.has(Lobe::kDiffuse) && stop.sampler.next1D() < 0.5f;
             if (!stop.isGathered() && !chosen) return stop.goesOn();
+            const std::optional<Admission> admission = stop.bsdf.admission();
+            if (!admission) return false;
             const Vec3f& normal = stop.bsdf.facingGeometricNormal();
             point.position = m_scene.pointUnderRay(stop.surface.position, stop.ray, normal);
             point.normal = stop.bsdf.facingShadingNormal();
-            tile.origins[cell.inTile()] = {normal, stop.surface.offset, stop.footprint.width()};
+            point.admits = admission->isEven() ? kEven : stop.surface.material;
+            tile.origins[cell.inTile()] = {normal, stop.surface.offset, stop.footprint.width(),
+                                           *admission};
             return false;
         });
 }
@@ -168,7 +172,7 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
         Gathered found = followGather(
             m_scene, ends, m_scene.rayOnwards(point.position, geometricNormal, direction),
             dot(direction, point.normal), sampler);
-        found.scale(weight);
+        found.scale(weight * origin.admission.from(dot(direction, point.normal)));
         rays += found.rays;
         if (!found.hitAny) {
             if (m_scene.seesFarLight(direction)) lamps += weight;
@@ -205,7 +209,7 @@ Rgb GatherPoints::sampleCaustics(const Point& point, const Origin& origin, const
                     part);
     const VirtualLamps::Place place{point.position,
                                     point.position + origin.geometricNormal * origin.offset,
-                                    point.normal, origin.geometricNormal};
+                                    point.normal, origin.geometricNormal, origin.admission};
     return m_request.caustics->sampled(place, m_request.rays, sampler.next1D());
 }
 
@@ -315,7 +319,9 @@ std::size_t GatherPoints::findNear(const Place& place, std::array<Near, kMostNea
             const float dx = point.screen.x - place.screen.x;
             const float dy = point.screen.y - place.screen.y;
             const float screen = (dx * dx + dy * dy) * inverse;
-            if (screen >= 1.0f || dot(point.normal, place.shadingNormal) < kNormalCosine) continue;
+            if (screen >= 1.0f || point.admits != place.admits ||
+                dot(point.normal, place.shadingNormal) < kNormalCosine)
+                continue;
             const Vec3f away = point.position - place.position;
             const float height = dot(away, place.geometricNormal);
             const float distanceSquared = lengthSquared(away);

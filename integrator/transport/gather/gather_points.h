@@ -60,12 +60,15 @@ class GatherPoints {
         // As of GatherEnds.
         const LightSampler* lights = nullptr;
     };
+    static constexpr std::uint32_t kEven = 0xffffffffu;
     // A place that a camera path came to.
     struct Place {
         Vec2f screen;  // where the path left the camera, pixels
         Vec3f position;
         Vec3f shadingNormal, geometricNormal;  // unit, on the side that the path came to
         float offset = 0.0f;  // along the geometric one, to where rays leave from; scene units
+        // Whose surface it is, where that lets in more from one side than another; else kEven.
+        std::uint32_t admits = kEven;
     };
     struct Estimate {
         TwoRadii irradiance;     // W m^-2
@@ -118,14 +121,16 @@ class GatherPoints {
   private:
     struct Point {
         Vec3f position;
-        Vec3f normal;  // shading, on the camera's side; 0 where there is no point
-        Vec2f screen;  // pixels
+        Vec3f normal;          // shading, on the camera's side; 0 where there is no point
+        Vec2f screen;          // pixels
+        std::uint32_t admits;  // as of Place
     };
     // Where the gather rays leave from.
     struct Origin {
         Vec3f geometricNormal;  // on the camera's side
         float offset;
         float width;  // of what the camera's ray covers there
+        Admission admission;
     };
     // What the gather rays of a point found.
     struct Value {

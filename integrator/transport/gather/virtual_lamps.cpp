@@ -122,7 +122,8 @@ Rgb VirtualLamps::irradianceBy(const Lamp& lamp, const Place& place,
     const auto gather = static_cast<float>(gatherRays);
     const float own = static_cast<float>(raysBeside(gatherRays)) * lamp.density;
     // density * own / (own + gather * density), also where the density is beyond all floats.
-    return lamp.flux * bsdf.diffuse() * share *
+    return lamp.flux * bsdf.diffuse() *
+           (share * place.admission.from(height / std::sqrt(squared))) *
            (facing > 0.0f ? own / (own / density + gather) : 0.0f);
 }
 

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "integrator/materials/lobes/undercoat.h"
 #include "integrator/photons/estimate/irradiance_sites.h"
 #include "integrator/photons/map/photon_map.h"
 #include "integrator/scene/scene.h"
@@ -31,6 +32,7 @@ class VirtualLamps {
         Vec3f position;
         Vec3f start;                           // rays leave from here, off the surface
         Vec3f shadingNormal, geometricNormal;  // unit, on the side that light comes to
+        Admission admission{};                 // of the surface there
     };
 
     // caustics: photons of diffuse surfaces reached by way of other lobes. They, scene and patches

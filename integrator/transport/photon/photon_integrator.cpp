@@ -256,11 +256,13 @@ PhotonIntegrator::StillToFind PhotonIntegrator::readMaps(const Surface& surface,
     StillToFind still;
     GatherPoints::Estimate indirect;
     const Vec3f& normal = bsdf.facingGeometricNormal();
-    const GatherPoints::Place place{tree.view.screen, surface.position, bsdf.facingShadingNormal(),
-                                    normal, surface.offset};
-    // What is kept is of light from all sides alike.
-    const bool kept =
-        m_maps.points && bsdf.arrivesEvenly() && m_maps.points->estimate(place, indirect);
+    // What is kept knows where light came from by the surface's admission alone.
+    const std::optional<Admission> admission = bsdf.admission();
+    const bool isEven = !admission || admission->isEven();
+    const GatherPoints::Place place{
+        tree.view.screen, surface.position, bsdf.facingShadingNormal(),
+        normal,           surface.offset,   isEven ? GatherPoints::kEven : surface.material};
+    const bool kept = m_maps.points && admission && m_maps.points->estimate(place, indirect);
     result.rays += indirect.rays;
     if (kept) {
         add(indirect.irradiance, reflected, result.indirect, result);
@@ -354,7 +356,8 @@ void PhotonIntegrator::sampleCaustics(const Surface& surface, const Bsdf& bsdf,
                                       SampleRadiance& result) const {
     const Vec3f& up = bsdf.facingGeometricNormal();
     const VirtualLamps::Place place{surface.position, surface.position + up * surface.offset,
-                                    bsdf.facingShadingNormal(), up};
+                                    bsdf.facingShadingNormal(), up,
+                                    bsdf.admission().value_or(Admission{})};
     result.rays += VirtualLamps::raysBeside(rays);
     result.indirect +=
         bsdf.reflectedOf(throughput) * m_maps.lamps->sampled(place, rays, sampler.next1D());

@@ -120,6 +120,23 @@ std::shared_ptr<const Scene> room() {
 
 // Regions of the frame: bias allowed 2 % of the frame's mean, as estimates' discs reach round
 // corners and blur caustics.
+// Light that comes flat over a floor of plastic from a wall, which a spot lights: half of it is
+// reflected by the boundary. Points that are kept know that.
+TEST(RoughSurfaces, KeptPointsKnowWhatPlasticLetsIn) {
+    SceneMaker maker;
+    maker.quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, maker.material(coated(0.5f, Rgb(0.8f))));
+    maker.quad({-5, 0, -1}, {0, 0, 2}, {0, 1.5, 0}, maker.diffuse(Rgb(0.8f)));
+    maker.spot({-3, 2.5, 0}, {-2, -1.8, 0}, Rgb(20.0f), 0.2, 0);
+    maker.camera({0, 4, 0.01}, {0, 0, 0}, {0, 0, -1}, 30);
+    RenderSettings settings = smallFrame(8, 8, IntegratorKind::kPath, 64, 4);
+    const MeasuredLayers path = measure(maker.build(), settings);
+    settings.integrator = IntegratorKind::kPhoton;
+    settings.passes = 16;
+    settings.photons = 100'000;
+    const MeasuredLayers photon = measure(maker.build(), settings);
+    EXPECT_TRUE(agree(photon.indirect, path.indirect, 0.02));
+}
+
 TEST(RoughSurfaces, PhotonsAndPathsAgree) {
     const auto scene = room();
     std::vector<Rect> regions;
