@@ -124,8 +124,13 @@ bool Scene::CoincidentFaces::hidesOther(const Scene& scene, const Face& face, co
     if (rank == Rank::kSheet && ofOther > rank) return true;
     if (ofOther != rank) return false;
     if (areNeighbours(scene, face, other)) return false;
-    // Media decide what is on both sides of all together.
-    if (rank == Rank::kGlass) return !scene.m_media && !areOfPane(scene, face, other);
+    // Media know what is on both sides of all together, but between faces that look the same way a
+    // layer is lost.
+    if (rank == Rank::kGlass)
+        return !areOfPane(scene, face, other) &&
+               (!scene.m_media ||
+                dot(scene.m_shapes[face.shape].facet(face.primitive).normal,
+                    scene.m_shapes[other.shape].facet(other.primitive).normal) > 0.0f);
     if (rank == Rank::kSheet) return !areCutAlike(scene, face, other);
     return rank != Rank::kShining ||
            dot(scene.m_shapes[face.shape].facet(face.primitive).normal,

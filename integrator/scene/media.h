@@ -12,11 +12,11 @@
 namespace pm {
 
 // Which medium is where, in scenes whose bodies of glass and water overlap, touch or stand in each
-// other, or absorb with something inside them. A body is all faces of one material that together
-// are closed, walls of cavities among them; where several are, the one of the highest priority is
-// there, of equal ones that with the smaller box, of these the later. What is there is found by a
-// ray from the place, so that it does not matter how a path came: cameras, lights and kept points
-// need know nothing of it. Threads: const functions from any, at once.
+// other, or absorb with something inside them. A body is a closed shape of one material, or open
+// ones that are closed together, with the walls of cavities in it; where several are, the one of
+// the highest priority is there, of equal ones that with the smaller box, of these the later. What
+// is there is found by a ray from the place, so that it does not matter how a path came: cameras,
+// lights and kept points need know nothing of it. Threads: const functions from any, at once.
 //
 // A face of a body with the same medium on both sides is none: rays go on. Between a body and one
 // that stands in it, a gap of vacuum narrower than kGap of the inner one's box is none either. So

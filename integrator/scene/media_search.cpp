@@ -8,6 +8,8 @@
 #include <functional>
 #include <iterator>
 #include <map>
+#include <optional>
+#include <span>
 
 #include "integrator/scene/closed_body.h"
 #include "integrator/scene/media.h"
@@ -44,11 +46,11 @@ class Scene::Media::Search {
         return std::ranges::any_of(m_parts, &Part::matters);
     }
 
-    void addBodies(Media& media) {
+    void addAllBodies(Media& media) {
         media.m_ofShape.resize(m_scene.m_shapes.size());
         std::map<std::uint32_t, std::vector<const Part*>> byMaterial;
         for (const Part& part : m_parts) byMaterial[part.material].push_back(&part);
-        for (const auto& [material, parts] : byMaterial) addBody(material, parts, media);
+        for (const auto& [material, parts] : byMaterial) addBodies(material, parts, media);
     }
 
   private:
@@ -104,39 +106,55 @@ class Scene::Media::Search {
         }
     }
 
-    // Parts that are closed, and those that are closed together.
-    void addBody(std::uint32_t material, const std::vector<const Part*>& parts, Media& media) {
-        std::vector<const Part*> closed, open;
-        double volume = 0;
+    // Parts that are closed are a body each; those that are open may be one together. What is
+    // turned inside out is the wall of a cavity in another.
+    void addBodies(std::uint32_t material, const std::vector<const Part*>& parts, Media& media) {
+        std::vector<const Part*> open, walls;
         for (const Part* const part : parts) {
-            if (!m_scene.m_shapes[part->shape].mesh) {
-                closed.push_back(part);
-                const Vec3d size = part->box.size();
-                volume += size.x * size.y * size.z;
-                continue;
-            }
-            const BodyShape shape = look({&part, 1});
-            (shape.openEdges == 0 ? closed : open).push_back(part);
-            if (shape.openEdges == 0) volume += shape.volume;
+            const bool isCurved = !m_scene.m_shapes[part->shape].mesh;
+            const BodyShape shape = isCurved ? BodyShape{0, 1.0} : look({&part, 1});
+            if (shape.openEdges > 0)
+                open.push_back(part);
+            else if (shape.volume > 0)
+                addBody(material, {&part, 1}, media);
+            else
+                walls.push_back(part);
         }
         if (!open.empty()) {
             const BodyShape together = look(open);
-            if (together.openEdges == 0) {
-                closed.insert(closed.end(), open.begin(), open.end());
-                volume += together.volume;
-            } else {
+            if (together.openEdges > 0)
                 tell(open, fmt::format("is open ({} edges)", together.openEdges));
-            }
+            else if (together.volume > 0)
+                addBody(material, open, media);
+            else
+                walls.insert(walls.end(), open.begin(), open.end());
         }
-        if (closed.empty()) return;
-        if (!(volume > 0)) return tell(closed, "is turned inside out");
-        const auto body = static_cast<std::uint32_t>(media.m_bodies.size());
+        for (const Part* const wall : walls)
+            if (!addWall(material, *wall, media)) tell({wall}, "is turned inside out");
+    }
+
+    void addBody(std::uint32_t material, std::span<const Part* const> parts, Media& media) {
         Box3d box;
-        for (const Part* const part : closed) {
-            media.m_ofShape[part->shape].push_back(body);
+        for (const Part* const part : parts) {
+            media.m_ofShape[part->shape].push_back(
+                static_cast<std::uint32_t>(media.m_bodies.size()));
             box.grow(part->box);
         }
         media.m_bodies.push_back({material, m_scene.material(material).priority, box});
+    }
+
+    // To the smallest body of the material that it is in. False: there is none.
+    bool addWall(std::uint32_t material, const Part& wall, Media& media) const {
+        const Body own{material, 0, wall.box};
+        std::optional<std::uint32_t> best;
+        for (std::uint32_t i = 0; i < media.m_bodies.size(); ++i) {
+            const Body& body = media.m_bodies[i];
+            if (body.material == material && body.holds(own) &&
+                (!best || body.size() < media.m_bodies[*best].size()))
+                best = i;
+        }
+        if (best) media.m_ofShape[wall.shape].push_back(*best);
+        return best.has_value();
     }
 
     void tell(const std::vector<const Part*>& parts, const std::string& what) {
@@ -166,7 +184,7 @@ std::unique_ptr<const Scene::Media> Scene::Media::find(const Scene& scene,
     Search search(scene, notices, cancel);
     if (!hasAny || !search.findParts()) return nullptr;
     auto media = std::unique_ptr<Media>(new Media(scene));
-    search.addBodies(*media);
+    search.addAllBodies(*media);
     if (media->m_bodies.empty()) return nullptr;
     return media;
 }

@@ -51,7 +51,7 @@ constexpr std::array kMaterialRows = {
                       {Kind::kFloats, offsetof(PmrMaterialDesc, glossyExponent)},
                       {memberPlace<&M::glossyExponent>()}},
     MaterialParameter{{.name = "ior",
-                       .help = "Dielectric: index of refraction inside relative to outside; 0 = "
+                       .help = "Dielectric: index of refraction against vacuum; 0 = "
                                "1.5.",
                        .maximum = kNoEnd,
                        .excludesMinimum = true,

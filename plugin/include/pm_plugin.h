@@ -240,7 +240,7 @@ typedef struct PmrTextureDesc {
 
 #define PMR_MATERIAL_SURFACE 0    /* diffuse, plus a glossy lobe */
 #define PMR_MATERIAL_MIRROR 1     /* glossy colour as reflectance */
-#define PMR_MATERIAL_DIELECTRIC 2 /* smooth boundary of a medium of index ior; front = outside */
+#define PMR_MATERIAL_DIELECTRIC 2 /* boundary of a medium of index ior; front = outside */
 
 /* A texture multiplies the number beside it. All reflectances in [0,1]. Materials are two-sided
  * but for emission, which leaves the front. */
@@ -248,11 +248,11 @@ typedef struct PmrMaterialDesc {
     uint64_t size;
     const char* name; /* for messages; may be null */
     int32_t kind;
-    int32_t fresnel;      /* perfect mirrors: 1 = Schlick's Fresnel from the glossy colour */
-    float diffuse[3];     /* SURFACE: Lambertian reflectance */
-    float glossy[3];      /* SURFACE: reflectance of the Phong lobe at normal incidence; MIRROR */
-    float glossyExponent; /* SURFACE: exponent of the Phong lobe, >= 0; MIRROR: 0 = perfect */
-    float ior; /* DIELECTRIC: index of refraction inside relative to outside, > 0; 0 = 1.5 */
+    int32_t fresnel;       /* perfect mirrors: 1 = Schlick's Fresnel from the glossy colour */
+    float diffuse[3];      /* SURFACE: Lambertian reflectance */
+    float glossy[3];       /* SURFACE: reflectance of the Phong lobe at normal incidence; MIRROR */
+    float glossyExponent;  /* SURFACE: exponent of the Phong lobe, >= 0; MIRROR: 0 = perfect */
+    float ior;             /* DIELECTRIC: index of refraction against vacuum, > 0; 0 = 1.5 */
     float transmission[3]; /* DIELECTRIC: tint at each transmission */
     float emission[3];     /* radiance of the front, W m^-2 sr^-1 */
     float transparency;    /* share of light that passes straight through (cut-outs); 0 = opaque */

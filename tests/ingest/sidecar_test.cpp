@@ -173,7 +173,7 @@ TEST(Sidecar, RefusesWithPlaceValueAndWhatIsAllowed) {
          "lights[0].direction has no direction; it must not be 0,0,0"},
         {R"("lights": 3)", "lights is 3; it must be a list"},
         {R"("lamps": [])",
-         "it has a 'lamps'; allowed are $schema, schema, instances, spheres, lights, environment, "
+         "it has a 'lamps'; allowed are $schema, schema, instances, spheres, materials, lights, environment, "
          "sky, cameras"},
         {R"("sky": {"azimuth": 0, "elevation": 0})",
          "sky.elevation is 0; it must be in (0, 90] degrees"},
@@ -265,7 +265,7 @@ TEST(Sidecar, MaterialsHaveParametersByName) {
     EXPECT_EQ(values[0].numbers, (std::vector<double>{0.1, 0.2, 0.3}));
     EXPECT_EQ(values[1].numbers, std::vector<double>{2});
     EXPECT_EQ(values[2].text, "dielectric");
-    EXPECT_EQ(values[1].place, "s.pm.json: materials.n.priority");
+    EXPECT_EQ(values[1].place, "s.pm.json: materials['n']['priority']");
 }
 
 TEST(Sidecar, WrittenGuessesAreReadAgain) {

@@ -13,6 +13,12 @@ MaterialDescription glass(float ior) {
     return m;
 }
 
+MaterialDescription air() {
+    MaterialDescription m = glass(1.0f);
+    m.priority = 1;
+    return m;
+}
+
 MaterialDescription mirror(float reflectance) {
     MaterialDescription m;
     m.kind = MaterialKind::kMirror;

@@ -11,6 +11,8 @@
 namespace pm::test {
 
 MaterialDescription glass(float ior = 1.5f);
+// In a body of glass.
+MaterialDescription air();
 MaterialDescription mirror(float reflectance = 0.9f);
 
 // A room of 2 x 2 x 2 around the origin, open towards the camera on +z: white, with a red wall on

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "integrator/materials/lobes/undercoat.h"
+#include "integrator/materials/bsdf.h"
 #include "integrator/photons/estimate/irradiance_sites.h"
 #include "integrator/photons/map/photon_map.h"
 #include "integrator/scene/scene.h"

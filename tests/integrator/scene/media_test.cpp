@@ -133,6 +133,20 @@ TEST(Media, AirInGlassIsABodyOfItsOwn) {
                            Rgb(static_cast<float>(through({{1.5}, {1}, {1.5}}))), 1e-3));
 }
 
+// Glass in air in glass: of equal priorities the smaller is there.
+TEST(Media, GlassInAirInGlass) {
+    SceneMaker maker;
+    const auto glass = maker.material(medium(1.5f, 1)), air = maker.material(medium(1.0f, 1));
+    slab(maker, 0, 4, glass);
+    slab(maker, 0.5, 3.5, air, 2.5);
+    slab(maker, 1, 3, glass, 2);
+    addLampAndCamera(maker);
+    for (const auto integrator : kIntegrators)
+        EXPECT_TRUE(agrees(seen(maker, integrator),
+                           Rgb(static_cast<float>(through({{1.5}, {1}, {1.5}, {1}, {1.5}}))),
+                           1e-3));
+}
+
 // What lies in water is seen through it, and so it is by a camera in the water; shadow rays lose
 // what the water takes.
 TEST(Media, WhatLiesInWaterIsSeenThroughIt) {
