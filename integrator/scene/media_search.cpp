@@ -129,8 +129,8 @@ class Scene::Media::Search {
             else
                 walls.insert(walls.end(), open.begin(), open.end());
         }
-        for (const Part* const wall : walls)
-            if (!addWall(material, *wall, media)) tell({wall}, "is turned inside out");
+        std::erase_if(walls, [&](const Part* wall) { return addWall(material, *wall, media); });
+        tell(walls, "is turned inside out");
     }
 
     void addBody(std::uint32_t material, std::span<const Part* const> parts, Media& media) {
