@@ -173,6 +173,11 @@ Look look(const std::shared_ptr<const Scene>& scene, const LookSize& size) {
     return lookAt(scene, size, size.regions(), firstSeed(), Photons::kFirst);
 }
 
+Look lookAtTwin(const std::shared_ptr<const Scene>& ofPhotons,
+                const std::shared_ptr<const Scene>& ofPaths, const LookSize& size) {
+    return {look(ofPhotons, size).photon, look(ofPaths, size).path};
+}
+
 void lookAgain(const std::shared_ptr<const Scene>& scene, const LookSize& size, const Look& first,
                const std::string& name) {
     const std::vector<Rect> regions = size.regions();

@@ -42,6 +42,9 @@ struct Look {
 };
 
 Look look(const std::shared_ptr<const Scene>& scene, const LookSize& size);
+// Photons of one scene against paths of another, which is to be told from it.
+Look lookAtTwin(const std::shared_ptr<const Scene>& ofPhotons,
+                const std::shared_ptr<const Scene>& ofPaths, const LookSize& size);
 
 // Fails where a layer of the frame is 4 standard errors off, or more.
 void expectFrameAgrees(const Look& frame, const std::string& what);

@@ -133,6 +133,31 @@ TEST(GlossyReceivers, BallsFromRoughToClearGlass) {
     });
 }
 
+// Parallel light by way of a mirror is that of a sun behind it, without any blur: at 60 degrees, so
+// that cosines tell.
+TEST(GlossyReceivers, ParallelLightByAMirror) {
+    const Vec3d down{-0.8660254, -0.5, 0};
+    for (const float roughness : {0.2f, 0.35f, 0.7f}) {
+        SCOPED_TRACE(fmt::format("roughness {}", roughness));
+        const auto floor = [&] {
+            SceneMaker maker;
+            maker.quad({-3, 0, 2}, {6, 0, 0}, {0, 0, -4}, maker.material(metal(roughness)));
+            maker.camera({-3, 2.2, 0.4}, {0, 0, 0}, {0, 1, 0}, 8);
+            return maker;
+        };
+        SceneMaker byMirror = floor(), straight = floor();
+        byMirror.quad({1.5, 0, -2}, {0, 0, 4}, {0, 2.5, 0}, byMirror.material(mirror(1.0f)));
+        byMirror.sun({-down.x, down.y, down.z}, Rgb(2.0f), 0);
+        straight.sun(down, Rgb(2.0f), 0);
+        const Measured caustic =
+            rendered(byMirror.build(), IntegratorKind::kPhoton, 8, 3).back().caustic;
+        const Measured direct =
+            rendered(straight.build(), IntegratorKind::kPath, 4, 4).back().beauty;
+        EXPECT_GT(direct.mean[1], 1e-3);
+        EXPECT_TRUE(agree(caustic, direct, 0.01));
+    }
+}
+
 // No path finds the caustic of a point. Of a small ball of the same flux it does; that the camera
 // sees the ball in the glass is left out.
 TEST(GlossyReceivers, CausticsOfPoints) {
