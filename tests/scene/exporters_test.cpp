@@ -48,8 +48,7 @@ class Exporters : public HostTest {
 };
 
 // By Blender 3.4, against Cycles: plastic of 4 %, metal, a lamp that shines at the ceiling as well.
-// What the lobe can't do is left out: it doesn't rise at flat angles (side walls and ceiling), and
-// rough metal is a quarter too dark (two regions).
+// Both are noisy, of so few samples; of more, nearly all regions are within 5 %.
 TEST_F(Exporters, BlendersRoomLooksAsInCycles) {
     const fs::path folder = kCases / "blender_export";
     if (!fs::exists(folder)) GTEST_SKIP() << "no optional data at " << folder.string();
@@ -61,16 +60,15 @@ TEST_F(Exporters, BlendersRoomLooksAsInCycles) {
     int near = 0;
     for (std::size_t i = 0; i < right.size(); ++i) {
         const double off = ours[i] / right[i] - 1;
-        const bool isMetal = i == 6 * kRegions + 3 || i == 7 * kRegions + 3;
-        EXPECT_LT(std::fabs(off), isMetal ? 0.35 : 0.17) << "row " << i / 8 << ", column " << i % 8;
+        EXPECT_LT(std::fabs(off), 0.17) << "row " << i / 8 << ", column " << i % 8;
         near += std::fabs(off) < 0.05 ? 1 : 0;
         sum += ours[i];
         sumRight += right[i];
     }
     std::cout << fmt::format("frame {:+.1f} %, {} of 64 regions within 5 %\n",
                              100 * (sum / sumRight - 1), near);
-    EXPECT_NEAR(sum / sumRight, 1, 0.05);
-    EXPECT_GE(near, 20);
+    EXPECT_NEAR(sum / sumRight, 1, 0.025);
+    EXPECT_GE(near, 40);
 }
 
 const Arguments kAbove{"--eye", "0,1,3",  "--look-at", "0,0,0",    "--fov",
