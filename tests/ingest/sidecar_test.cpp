@@ -173,7 +173,8 @@ TEST(Sidecar, RefusesWithPlaceValueAndWhatIsAllowed) {
          "lights[0].direction has no direction; it must not be 0,0,0"},
         {R"("lights": 3)", "lights is 3; it must be a list"},
         {R"("lamps": [])",
-         "it has a 'lamps'; allowed are $schema, schema, instances, spheres, materials, lights, environment, "
+         "it has a 'lamps'; allowed are $schema, schema, instances, spheres, materials, lights, "
+         "environment, "
          "sky, cameras"},
         {R"("sky": {"azimuth": 0, "elevation": 0})",
          "sky.elevation is 0; it must be in (0, 90] degrees"},

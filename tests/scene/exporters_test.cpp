@@ -55,7 +55,7 @@ TEST_F(Exporters, BlendersRoomLooksAsInCycles) {
     const std::vector<double> right = regionsOf(readExr(folder / "cycles.exr"));
     const std::vector<double> ours = regionsOf(
         renderExr("room", {(folder / "room.obj").string(), "--eye", "0,1.5,6", "--look-at",
-                           "0,1.5,0", "--fov", "35", "--size", "64x48", "--passes", "2"}));
+                           "0,1.5,0", "--fov", "35", "--size", "64x48", "--passes", "8"}));
     double sum = 0, sumRight = 0;
     int near = 0;
     for (std::size_t i = 0; i < right.size(); ++i) {
