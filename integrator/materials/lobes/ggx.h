@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 
 #include "integrator/sampling/warps.h"
@@ -59,5 +60,19 @@ struct Ggx {
     // How far a normal leans, squared, where the stretch is taken back.
     float spread2(const Vec3f& h) const { return square(h.x / stretch) + square(h.y * stretch); }
 };
+
+// Calls visit(in, weight, cosine) for reflections of light that leaves along a direction, by
+// `count` facets that are seen from there, spread evenly: where it comes from, above the surface;
+// how much of it is not masked on that side; and the cosine at the facet. Weights over count add to
+// what white facets reflect of even light.
+template <typename Visit>
+void forEachReflection(const Ggx& ggx, const Vec3f& out, std::uint32_t count, const Visit& visit) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+        const Vec3f h = ggx.sampleVisible(out, spreadPoint(i));
+        const float seen = dot(out, h);
+        const Vec3f in = h * (2.0f * seen) - out;
+        if (in.z > 0.0f) visit(in, ggx.maskingOfBoth(out, in) / ggx.masking(out), seen);
+    }
+}
 
 }  // namespace pm

@@ -19,15 +19,10 @@ GgxShares integrate(float cosine, float alpha) {
     const Ggx ggx{alpha};
     const Vec3f out{std::sqrt(1.0f - cosine * cosine), 0.0f, cosine};
     double normal = 0, grazing = 0;
-    for (std::uint32_t i = 0; i < kNormals; ++i) {
-        const Vec3f h = ggx.sampleVisible(out, spreadPoint(i));
-        const float seen = dot(out, h);
-        const Vec3f in = h * (2.0f * seen) - out;
-        if (!(in.z > 0.0f)) continue;
-        const float weight = ggx.maskingOfBoth(out, in) / ggx.masking(out);
+    forEachReflection(ggx, out, kNormals, [&](const Vec3f&, float weight, float seen) {
         normal += static_cast<double>(weight);
         grazing += static_cast<double>(weight * schlickWeight(std::min(seen, 1.0f)));
-    }
+    });
     return {static_cast<float>(normal / kNormals), static_cast<float>(grazing / kNormals)};
 }
 

@@ -32,15 +32,10 @@ Arrivals arrivalsAt(float cosine, float alpha) {
     const Ggx ggx{alpha};
     const Vec3f out{std::sqrt(1.0f - cosine * cosine), 0.0f, cosine};
     double sum = 0;
-    for (std::uint32_t i = 0; i < kNormals; ++i) {
-        const Vec3f h = ggx.sampleVisible(out, spreadPoint(i));
-        const float seen = dot(out, h);
-        const Vec3f in = h * (2.0f * seen) - out;
-        if (!(in.z > 0.0f)) continue;
-        const float weight = ggx.maskingOfBoth(out, in) / ggx.masking(out);
+    forEachReflection(ggx, out, kNormals, [&](const Vec3f& in, float weight, float seen) {
         arrivals.once.push_back({cellOfCosine(in.z), weight, schlickWeight(std::min(seen, 1.0f))});
         sum += static_cast<double>(weight);
-    }
+    });
     const GgxAlbedo& table = GgxAlbedo::table();
     const float missing = table.at(cosine, alpha).missing();
     const float mean = table.mean(alpha).missing();

@@ -16,11 +16,9 @@ namespace {
 float missingOf(const Ggx& ggx, const Vec3f& out) {
     constexpr std::uint32_t kNormals = 256;
     double sum = 0;
-    for (std::uint32_t i = 0; i < kNormals; ++i) {
-        const Vec3f h = ggx.sampleVisible(out, spreadPoint(i));
-        const Vec3f in = h * (2.0f * dot(out, h)) - out;
-        if (in.z > 0.0f) sum += static_cast<double>(ggx.maskingOfBoth(out, in) / ggx.masking(out));
-    }
+    forEachReflection(ggx, out, kNormals, [&](const Vec3f&, float weight, float) {
+        sum += static_cast<double>(weight);
+    });
     return std::max(0.0f, 1.0f - static_cast<float>(sum / kNormals));
 }
 
