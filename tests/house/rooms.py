@@ -11,6 +11,7 @@ PARTS = ("integrator", "scheduler", "plugin", "host_shim")
 # fmt: off
 MAY_INCLUDE = {
     "integrator/values": "",
+    "integrator/caches": "",
     "integrator/cameras": "values",
     "integrator/geometry": "values",
     "integrator/photons/map": "values",
