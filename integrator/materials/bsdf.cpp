@@ -119,6 +119,14 @@ Rgb Bsdf::evaluate(Lobe lobe, const Vec3f& in) const {
     return std::visit(by, m_lobes.glossy);
 }
 
+Rgb Bsdf::evaluateSmooth(const Vec3f& in) const {
+    LobePoint at = m_at;
+    at.ng = at.nd;
+    return visitMostly(m_lobes.diffuse, [&](const auto& model) {
+        return model.evaluate(at, reflectance(Lobe::kDiffuse), in);
+    });
+}
+
 float Bsdf::pdfSolidAngle(Lobe lobe, const Vec3f& in) const {
     if (!has(lobe)) return 0.0f;
     const float choice = m_followsAll ? 1.0f : m_probability[index(lobe)];

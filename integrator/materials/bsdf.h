@@ -62,6 +62,9 @@ class Bsdf {
 
     // f |cos| of a lobe that is not delta, for light from `in` (unit, away from the surface).
     Rgb evaluate(Lobe lobe, const Vec3f& in) const;
+    // The same of the diffuse lobe by the shading normal alone, also where `in` is beyond the
+    // horizon of the geometric normal.
+    Rgb evaluateSmooth(const Vec3f& in) const;
     // Density with which sample() takes that lobe and that direction, or, after followAll(), with
     // which the lobe's own direction is that; sr^-1.
     float pdfSolidAngle(Lobe lobe, const Vec3f& in) const;

@@ -24,6 +24,7 @@
 #include "integrator/scene/scene_description.h"
 #include "integrator/shapes/bump_map.h"
 #include "integrator/shapes/ray_footprint.h"
+#include "integrator/shapes/smooth_point.h"
 #include "integrator/shapes/surface.h"
 #include "integrator/values/notice.h"
 
@@ -56,6 +57,10 @@ class Scene {
     // counts once, faces that rays can't tell apart as one. What bends light lets none through; the
     // medium that the ray starts in absorbs.
     Rgb transmittance(const Ray& ray) const;
+
+    // The point of the curved surface that a triangle with normals stands for, over a point of the
+    // triangle, and the normal there, on the same side as `side`. False: it stands for itself.
+    bool smoothPoint(const Surface& surface, const Vec3f& side, SmoothPoint& smooth) const;
 
     // The same as a ray that starts at `origin`, any distance away, along the unit direction; but
     // it starts where it comes near the core, where nothing is in between: a float far away has no

@@ -42,8 +42,8 @@ void addLampsMet(const Scene& scene, const GatherEnds& ends, const GatherWay& wa
 void addLampsSampled(const Scene& scene, const GatherEnds& ends, const GatherWay& way,
                      const Surface& surface, const Bsdf& bsdf, Sampler& sampler, Gathered& result) {
     if (!bsdf.has(bsdf.glossyLobe()) || !GatherWay::isAsked(ends, bsdf.glossyLobe())) return;
-    const DirectRadiance direct = estimateDirect(scene, *ends.lights, surface, bsdf,
-                                                 LampStrategy::kNone, 1, sampler, result.rays);
+    const DirectRadiance direct = estimateDirect(
+        scene, *ends.lights, surface, bsdf, LampStrategy::kNone, false, 1, sampler, result.rays);
     const Rgb light = way.path.throughput * direct.glossy;
     result.radiance += {light, light};
 }

@@ -25,9 +25,36 @@ struct Question {
     const Surface& surface;
     const Bsdf& bsdf;
     LampStrategy diffuse;
+    bool isSeen;
     std::uint32_t samples;
     Vec3f side;  // normal of that from which light is asked for
 };
+
+// A shadow ray to the same light from another place.
+Ray shadowRayFrom(const Vec3f& origin, const Ray& ray) {
+    if (!std::isfinite(ray.tMax)) return {origin, ray.direction, ray.tMax, ray.viewer};
+    const Vec3f end = ray.origin + ray.direction * ray.tMax;
+    return {origin, (end - origin) * (1.0f / ray.tMax), ray.tMax, ray.viewer};
+}
+
+// Light from beyond the horizon of a face that stands for part of a curved surface, which sees it.
+// No other strategy finds it. Photons and all paths that have been diffuse before know the faces
+// alone: with them the light that goes on is the same by every estimator.
+Rgb fromBeyondFace(const Question& asked, const LightSample& light, std::uint32_t& rays) {
+    const Bsdf& bsdf = asked.bsdf;
+    SmoothPoint smooth;
+    if (!(dot(bsdf.facingShadingNormal(), light.direction) > 0.0f) ||
+        !asked.scene.smoothPoint(asked.surface, asked.side, smooth) ||
+        !(dot(smooth.normal, light.direction) > 0.0f))
+        return {};
+    const Rgb value = bsdf.evaluateSmooth(light.direction);
+    if (isBlack(value)) return {};
+    ++rays;
+    const Vec3f origin = Vec3f(smooth.position) + smooth.normal * asked.surface.offset;
+    return value * light.radiance *
+           asked.scene.transmittance(shadowRayFrom(origin, light.shadowRay)) *
+           (1.0f / light.pdfSolidAngle);
+}
 
 // By one of the lamp samples, to be divided by their number.
 DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, std::uint32_t& rays) {
@@ -38,6 +65,11 @@ DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, st
     if (!asked.lights.sample(chosen, asked.surface, light) || !(light.pdfSolidAngle > 0.0f))
         return result;
     if (bsdf.goesThrough() && !(dot(light.direction, asked.side) > 0.0f)) return result;
+    if (asked.isSeen && !bsdf.goesThrough() && asked.diffuse != LampStrategy::kNone &&
+        bsdf.has(Lobe::kDiffuse) && !(dot(light.direction, asked.side) > 0.0f)) {
+        result.diffuse = fromBeyondFace(asked, light, rays);
+        return result;
+    }
     const auto contribution = [&](Lobe lobe) {
         if (!bsdf.has(lobe)) return Rgb{};
         const Rgb value = bsdf.evaluate(lobe, light.direction);
@@ -79,8 +111,10 @@ DirectRadiance sumOfSamples(const Question& asked, const Sampler& sampler, std::
 
 DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
                               const Surface& surface, const Bsdf& bsdf, LampStrategy diffuse,
-                              std::uint32_t samples, Sampler& sampler, std::uint32_t& rays) {
-    Question asked{scene, lights, surface, bsdf, diffuse, samples, bsdf.facingGeometricNormal()};
+                              bool isSeen, std::uint32_t samples, Sampler& sampler,
+                              std::uint32_t& rays) {
+    Question asked{scene,   lights, surface, bsdf,
+                   diffuse, isSeen, samples, bsdf.facingGeometricNormal()};
     DirectRadiance sum;
     const auto add = [&] {
         if (!lights.empty()) {

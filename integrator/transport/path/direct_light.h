@@ -47,6 +47,7 @@ struct PathState {
             firstIsDiffuse = diffuse;
         }
     }
+    bool hasMetNoDiffuse() const { return since == Since::kNone; }
     PathClass classify() const {
         if (isCausticOnWide) return PathClass::kCaustic;
         if (since == Since::kNone) return anyGlossy ? PathClass::kDirect : PathClass::kEmission;
@@ -102,12 +103,14 @@ enum class LampStrategy : std::uint8_t {
 
 // Next-event estimation for both lobes: the mean of `samples` lamp samples, a power of two, with a
 // shadow ray each; weighted against finding the same light by sampling the lobe once, for the
-// diffuse lobe as `diffuse` says. Draws from one dimension of `sampler`, from two where light comes
-// through the surface as well. Counts its rays in `rays`.
-// Source: Veach 1997, section 9.2 (several samples of one strategy).
+// diffuse lobe as `diffuse` says. isSeen: no diffuse lobe has been on the path so far; then coarse
+// smooth meshes end in shadow where the surface that they stand for does, see smoothPoint(). Draws
+// from one dimension of `sampler`, from two where light comes through the surface as well. Counts
+// its rays in `rays`. Source: Veach 1997, section 9.2 (several samples of one strategy).
 DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
                               const Surface& surface, const Bsdf& bsdf, LampStrategy diffuse,
-                              std::uint32_t samples, Sampler& sampler, std::uint32_t& rays);
+                              bool isSeen, std::uint32_t samples, Sampler& sampler,
+                              std::uint32_t& rays);
 
 // The sample that led from one surface to the next, as far as the weight of light found there
 // needs. What lets it go straight on between them does not count.

@@ -28,8 +28,9 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler,
         recordFirstHit(surface, bsdf, result);
         if (bsdf.isBlackBody()) return result;
         if (bsdf.reflectsLamps()) {
-            const DirectRadiance direct = estimateDirect(
-                m_scene, m_lights, surface, bsdf, LampStrategy::kBoth, 1, sampler, result.rays);
+            const DirectRadiance direct =
+                estimateDirect(m_scene, m_lights, surface, bsdf, LampStrategy::kBoth,
+                               state.hasMetNoDiffuse(), 1, sampler, result.rays);
             PathState byDiffuse = state, byGlossy = state;
             byDiffuse.scatter(Lobe::kDiffuse);
             byGlossy.scatter(bsdf.glossyLobe(), bsdf.isWide(bsdf.glossyLobe()));

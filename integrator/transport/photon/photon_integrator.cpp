@@ -212,9 +212,9 @@ PhotonIntegrator::StillToFind PhotonIntegrator::addReflected(const Surface& surf
     if (still.indirect && m_maps.lamps)
         sampleCaustics(surface, bsdf, throughput, still.ownRays, tree.sampler, tree.result);
     if (bsdf.reflectsLamps()) {
-        const DirectRadiance direct =
-            estimateDirect(m_scene, m_lights, surface, bsdf, still.lamps, branch.lampSamples,
-                           tree.sampler, tree.result.rays);
+        const DirectRadiance direct = estimateDirect(
+            m_scene, m_lights, surface, bsdf, still.lamps, branch.state.hasMetNoDiffuse(),
+            branch.lampSamples, tree.sampler, tree.result.rays);
         PathState byDiffuse = branch.state, byGlossy = branch.state;
         byDiffuse.scatter(Lobe::kDiffuse);
         byGlossy.scatter(bsdf.glossyLobe(), bsdf.isWide(bsdf.glossyLobe()));

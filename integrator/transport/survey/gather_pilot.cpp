@@ -58,7 +58,7 @@ class GatherPilot {
         std::uint32_t rays = 0;
         const Rgb direct =
             estimateDirect(m_scene, lights, m_stop.surface, m_stop.bsdf,
-                           LampStrategy::kNextEventOnly, kLampSamples, m_stop.sampler, rays)
+                           LampStrategy::kNextEventOnly, true, kLampSamples, m_stop.sampler, rays)
                 .diffuse;
         return m_stop.throughput * direct;
     }

@@ -39,8 +39,8 @@ struct Lit {
 Rgb estimate(const Scene& scene, const LightSampler& lights, const Surface& surface,
              const Bsdf& bsdf, Sampler sampler) {
     std::uint32_t rays = 0;
-    const DirectRadiance direct =
-        estimateDirect(scene, lights, surface, bsdf, LampStrategy::kBoth, kSet, sampler, rays);
+    const DirectRadiance direct = estimateDirect(scene, lights, surface, bsdf, LampStrategy::kBoth,
+                                                 true, kSet, sampler, rays);
     return direct.diffuse + direct.glossy;
 }
 
