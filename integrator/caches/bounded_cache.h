@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "integrator/caches/cache_watch.h"
+
 namespace pm {
 
 // What a cache had to do so far.
@@ -70,12 +72,23 @@ class BoundedCache {
         Slot& slot = m_slots[key];
         const std::uint32_t state = slot.state.fetch_add(1, std::memory_order_acquire);
         // Only a second use counts: a scan of many values evicts itself first.
-        if (!(state & kReady) && claim(slot))
+        const bool missed = !(state & kReady) && claim(slot);
+        if (missed)
             fill(slot, key, make);
         else if (!slot.used.load(std::memory_order_relaxed))
             slot.used.store(true, std::memory_order_relaxed);
+        if (CacheWatch* const watch = CacheWatch::current())
+            watch->asked(
+                {m_number, static_cast<std::uint32_t>(key), slot.value->memoryBytes(), missed});
         return Pin(&slot);
     }
+
+    // Whether its value is there now, and so would be no miss.
+    bool holds(std::size_t key) const {
+        return (m_slots[key].state.load(std::memory_order_relaxed) & kReady) != 0;
+    }
+    // As CacheWatch knows it.
+    std::uint32_t number() const { return m_number; }
 
     std::uint64_t budget() const { return m_budget.load(std::memory_order_relaxed); }
     // Evicts at once where it is less than what is held.
@@ -159,6 +172,7 @@ class BoundedCache {
         }
     }
 
+    const std::uint32_t m_number = CacheWatch::newCache();
     std::vector<Slot> m_slots;
     std::atomic<std::uint64_t> m_budget;
     std::atomic<std::size_t> m_hand{0};

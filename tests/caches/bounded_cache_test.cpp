@@ -107,6 +107,31 @@ TEST(BoundedCache, ThreadsThatAskTogetherHaveOneValue) {
     EXPECT_EQ(made, 1);
 }
 
+TEST(BoundedCache, WatchesAreToldOfTheirOwnThread) {
+    struct Watch : CacheWatch {
+        std::vector<CacheAsked> all;
+        void asked(const CacheAsked& what) override { all.push_back(what); }
+    } watch;
+    BoundedCache<Counted> cache(8, 1000);
+    cache.get(1, make);
+    {
+        const CacheWatch::Scope scope(&watch);
+        cache.get(1, make);
+        cache.get(2, make);
+        std::jthread([&] { cache.get(3, make); });
+    }
+    cache.get(4, make);
+    ASSERT_EQ(watch.all.size(), 2u);
+    EXPECT_EQ(watch.all[0].key, 1u);
+    EXPECT_FALSE(watch.all[0].missed);
+    EXPECT_EQ(watch.all[1].key, 2u);
+    EXPECT_TRUE(watch.all[1].missed);
+    EXPECT_EQ(watch.all[1].bytes, 100u);
+    EXPECT_EQ(watch.all[1].cache, cache.number());
+    EXPECT_TRUE(cache.holds(4));
+    EXPECT_FALSE(cache.holds(5));
+}
+
 // Each thread goes its own way over all keys, with two values pinned at a time.
 TEST(BoundedCache, ThrashingThreadsFindTheirValues) {
     constexpr std::size_t kKeys = 61, kThreads = 6;
