@@ -9,8 +9,8 @@ namespace pm::host {
 void BucketTimes::finished(const PmrBucketInfo& info) {
     const std::size_t count = std::max(info.bucketCount, info.bucketIndex + 1);
     if (m_buckets.size() < count) m_buckets.resize(count);
-    m_buckets[info.bucketIndex] = {info.rectangle, info.bucketIndex, info.seconds,
-                                   info.timedPasses};
+    m_buckets[info.bucketIndex] = {info.rectangle, info.bucketIndex, info.seconds, info.timedPasses,
+                                   info.cacheBytes};
 }
 
 std::vector<BucketTimes::Bucket> BucketTimes::timed() const {

@@ -17,7 +17,12 @@ class BucketTimes {
         std::uint32_t index{};        // its place in the bucket order
         double seconds{};             // of all passes that were timed
         std::uint32_t timedPasses{};  // those that were rendered here
-        double secondsPerPass() const { return timedPasses == 0 ? 0 : seconds / timedPasses; }
+        std::uint64_t cacheBytes{};   // that bounded caches missed, of all of these
+        double perPass(double ofAll) const { return timedPasses == 0 ? 0 : ofAll / timedPasses; }
+        double secondsPerPass() const { return perPass(seconds); }
+        double cacheMibPerPass() const {
+            return perPass(static_cast<double>(cacheBytes) / (1 << 20));
+        }
     };
 
     void finished(const PmrBucketInfo& info);

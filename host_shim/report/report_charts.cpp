@@ -87,9 +87,9 @@ std::string polyline(const Curve& curve, const LogAxis& x, const LogAxis& y) {
            dots;
 }
 
-// Each bucket's seconds a pass, at 1/shrink of the window.
-Plane bucketPlane(const std::vector<BucketTimes::Bucket>& buckets, const PixelRect& window,
-                  int shrink) {
+// Each bucket's quantity, at 1/shrink of the window.
+Plane bucketPlane(const std::vector<BucketTimes::Bucket>& buckets, const BucketQuantity& quantity,
+                  const PixelRect& window, int shrink) {
     Plane plane{
         (window.width() + shrink - 1) / shrink, (window.height() + shrink - 1) / shrink, {}};
     plane.values.assign(static_cast<std::size_t>(plane.width) * plane.height, 0.0f);
@@ -103,7 +103,7 @@ Plane bucketPlane(const std::vector<BucketTimes::Bucket>& buckets, const PixelRe
             for (int x = within(r.x0, window.x0, plane.width);
                  x < within(r.x1, window.x0, plane.width); ++x)
                 plane.values[static_cast<std::size_t>(y) * plane.width + x] =
-                    static_cast<float>(bucket.secondsPerPass());
+                    static_cast<float>((bucket.*quantity.of)());
     }
     return plane;
 }
@@ -150,7 +150,8 @@ std::string errorChart(const std::vector<Curve>& curves, std::optional<double> l
     return text + "</svg>\n";
 }
 
-std::string bucketMap(const std::vector<BucketTimes::Bucket>& buckets, const PixelRect& window,
+std::string bucketMap(const std::vector<BucketTimes::Bucket>& buckets,
+                      const BucketQuantity& quantity, const PixelRect& window,
                       std::size_t mostBytes) {
     constexpr double kMostPixels = 1e6;
     constexpr std::size_t kMostPoints = 20'000;
@@ -158,10 +159,12 @@ std::string bucketMap(const std::vector<BucketTimes::Bucket>& buckets, const Pix
     const int shrink = std::max(
         1,
         static_cast<int>(std::ceil(std::sqrt(static_cast<double>(window.area()) / kMostPixels))));
-    double slowest = 0;
-    for (const auto& bucket : buckets) slowest = std::max(slowest, bucket.secondsPerPass());
+    double most = 0;
+    for (const auto& bucket : buckets) most = std::max(most, (bucket.*quantity.of)());
+    if (!(most > 0)) return {};
     const EmbeddedPicture heat = embedded(
-        heatMap(bucketPlane(buckets, window, shrink), 0, static_cast<float>(slowest)), mostBytes);
+        heatMap(bucketPlane(buckets, quantity, window, shrink), 0, static_cast<float>(most)),
+        mostBytes);
     const std::size_t step = (buckets.size() + kMostPoints - 1) / kMostPoints;
     std::string points;
     for (std::size_t i = 0; i < buckets.size(); i += step) {
@@ -170,9 +173,10 @@ std::string bucketMap(const std::vector<BucketTimes::Bucket>& buckets, const Pix
                               (r.y0 + r.y1) / 2.0 - window.y0);
     }
     std::string text = fmt::format(
-        "<svg id=\"bucket-curve\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" role=\"img\" "
-        "aria-label=\"time of the buckets and their order\">\n",
-        heat.shownWidth, heat.shownHeight, window.width(), window.height());
+        "<svg id=\"{}\" width=\"{}\" height=\"{}\" viewBox=\"0 0 {} {}\" role=\"img\" "
+        "aria-label=\"{} of the buckets and their order\">\n",
+        quantity.id, heat.shownWidth, heat.shownHeight, window.width(), window.height(),
+        quantity.name);
     text += fmt::format(
         "<image width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" href=\"{}\"/>\n",
         window.width(), window.height(), heat.dataUri);
@@ -180,7 +184,8 @@ std::string bucketMap(const std::vector<BucketTimes::Bucket>& buckets, const Pix
         "<polyline fill=\"none\" stroke=\"#fff\" stroke-width=\"1.5\" stroke-opacity=\"0.8\" "
         "vector-effect=\"non-scaling-stroke\" points=\"{}\"/>\n</svg>\n",
         points);
-    text += scaleHtml("0 s a pass", fmt::format("{:.3g} s", slowest));
+    text += scaleHtml(fmt::format("0 {} a pass", quantity.unit),
+                      fmt::format("{:.3g} {}", most, quantity.unit));
     if (step > 1) text += paragraph(fmt::format("The line joins every {}th bucket.", step));
     return text;
 }

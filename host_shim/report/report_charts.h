@@ -24,9 +24,18 @@ struct Curve {
 };
 std::string errorChart(const std::vector<Curve>& curves, std::optional<double> limit);
 
-// Seconds a pass of each bucket as a heat map, and a line through the buckets' centres in their
-// order. window: what the picture shows. Empty without buckets.
-std::string bucketMap(const std::vector<BucketTimes::Bucket>& buckets, const PixelRect& window,
+// What a heat map shows of buckets, a pass.
+struct BucketQuantity {
+    std::string id;    // of the drawing, in the page
+    std::string name;  // "time"
+    std::string unit;  // "s"
+    double (BucketTimes::Bucket::*of)() const;
+};
+
+// That of each bucket as a heat map, and a line through the buckets' centres in their order.
+// window: what the picture shows. Empty without buckets, or where all have none of it.
+std::string bucketMap(const std::vector<BucketTimes::Bucket>& buckets,
+                      const BucketQuantity& quantity, const PixelRect& window,
                       std::size_t mostBytes);
 
 }  // namespace pm::host

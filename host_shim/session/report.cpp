@@ -271,7 +271,9 @@ std::string Report::bucketsHtml(const std::string& onePixelCommand) const {
     auto buckets = m_bucketTimes.timed();
     PixelRect window = m_window;
     if (window.empty()) window = around(buckets);  // a render that failed: as far as it came
-    const std::string map = bucketMap(buckets, window, kMapBytes);
+    using Bucket = BucketTimes::Bucket;
+    const std::string map = bucketMap(
+        buckets, {"bucket-curve", "time", "s", &Bucket::secondsPerPass}, window, kMapBytes);
     if (map.empty() && !m_bucketSamples.dataUri.empty())
         return section(
             "buckets", "Buckets",
@@ -287,6 +289,14 @@ std::string Report::bucketsHtml(const std::string& onePixelCommand) const {
         map + paragraph(fmt::format("{} buckets, {:.3g} thread seconds from their starts to their "
                                     "ends; the line joins them in their order.",
                                     buckets.size(), all)));
+    const std::string missed =
+        bucketMap(buckets, {"bucket-misses", "cache misses", "MiB", &Bucket::cacheMibPerPass},
+                  window, kMapBytes);
+    if (!missed.empty())
+        html +=
+            section("misses", "Misses",
+                    missed + paragraph("What bounded caches of geometry and photons had to make "
+                                       "or read for each bucket."));
     return html + slowestHtml(std::move(buckets), all, onePixelCommand);
 }
 

@@ -78,8 +78,7 @@ class BoundedCache {
         else if (!slot.used.load(std::memory_order_relaxed))
             slot.used.store(true, std::memory_order_relaxed);
         if (CacheWatch* const watch = CacheWatch::current())
-            watch->asked(
-                {m_number, static_cast<std::uint32_t>(key), slot.value->memoryBytes(), missed});
+            watch->asked({m_number, key, slot.value->memoryBytes(), missed, CacheWatch::user()});
         return Pin(&slot);
     }
 

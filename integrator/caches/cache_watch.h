@@ -3,17 +3,23 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <cstdint>
 #include <utility>
 
 namespace pm {
 
+// What a thread is at while it asks.
+enum class CacheUser : std::uint8_t { kCamera, kShadow, kBounce, kGather, kPhoton };
+inline constexpr std::size_t kCacheUsers = 5;
+
 // One look-up of a cache.
 struct CacheAsked {
     std::uint32_t cache = 0;  // as CacheWatch::newCache() numbered it
-    std::uint32_t key = 0;
+    std::uint64_t key = 0;
     std::uint64_t bytes = 0;  // of the value
     bool missed = false;      // it had to be made
+    CacheUser user = CacheUser::kCamera;
 };
 
 // Is told of all that the threads it watches ask caches for. Threads: each thread has a watch of
@@ -35,7 +41,26 @@ class CacheWatch {
         CacheWatch* m_before;
     };
 
+    // What the thread does from here on while it lives; nothing on a thread without a watch.
+    class As {
+      public:
+        explicit As(CacheUser user) {
+            if (t_current) m_before = std::exchange(t_user, user);
+            m_isWatched = t_current != nullptr;
+        }
+        ~As() {
+            if (m_isWatched) t_user = m_before;
+        }
+        As(const As&) = delete;
+        As& operator=(const As&) = delete;
+
+      private:
+        bool m_isWatched;
+        CacheUser m_before = CacheUser::kCamera;
+    };
+
     static CacheWatch* current() { return t_current; }
+    static CacheUser user() { return t_user; }
     // A number that no other cache of this process has.
     static std::uint32_t newCache() {
         static std::atomic<std::uint32_t> next{0};
@@ -44,6 +69,7 @@ class CacheWatch {
 
   private:
     static inline thread_local CacheWatch* t_current = nullptr;
+    static inline thread_local CacheUser t_user = CacheUser::kCamera;
 };
 
 }  // namespace pm

@@ -193,7 +193,7 @@ static_assert(offsetof(PmrRectangle, y0) == 4);
 static_assert(offsetof(PmrRectangle, x1) == 8);
 static_assert(offsetof(PmrRectangle, y1) == 12);
 
-static_assert(sizeof(PmrBucketInfo) == 64);
+static_assert(sizeof(PmrBucketInfo) == 80);
 static_assert(offsetof(PmrBucketInfo, size) == 0);
 static_assert(offsetof(PmrBucketInfo, rectangle) == 8);
 static_assert(offsetof(PmrBucketInfo, bucketIndex) == 24);
@@ -204,6 +204,8 @@ static_assert(offsetof(PmrBucketInfo, sampleCount) == 40);
 static_assert(offsetof(PmrBucketInfo, seconds) == 48);
 static_assert(offsetof(PmrBucketInfo, timedPasses) == 56);
 static_assert(offsetof(PmrBucketInfo, reserved) == 60);
+static_assert(offsetof(PmrBucketInfo, cacheMisses) == 64);
+static_assert(offsetof(PmrBucketInfo, cacheBytes) == 72);
 
 static_assert(sizeof(PmrRenderDesc) == 64);
 static_assert(offsetof(PmrRenderDesc, size) == 0);

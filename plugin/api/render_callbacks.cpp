@@ -23,6 +23,8 @@ PmrBucketInfo toInfo(const BucketInfo& bucket) {
     info.sampleCount = bucket.sampleCount;
     info.seconds = bucket.seconds;
     info.timedPasses = bucket.timedPasses;
+    info.cacheMisses = bucket.cacheMisses;
+    info.cacheBytes = bucket.cacheBytes;
     return info;
 }
 

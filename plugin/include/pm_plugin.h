@@ -453,6 +453,8 @@ typedef struct PmrBucketInfo {
     uint32_t timedPasses; /* those that this render made: none in bucketStarted and for what came
                              from a checkpoint */
     uint32_t reserved;
+    uint64_t cacheMisses; /* of bounded caches, for all these passes: what had to be made or read */
+    uint64_t cacheBytes;  /* its bytes; textures are not in it */
 } PmrBucketInfo;
 
 #define PMR_CALLBACKS_THREAD 0

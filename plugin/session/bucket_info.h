@@ -18,6 +18,8 @@ struct BucketInfo {
     std::uint64_t sampleCount = 0;  // camera samples in this bucket and pass
     double seconds = 0;             // wall time, drawn to rendered, of all passes that follow
     std::uint32_t timedPasses = 0;  // those that this render made
+    // Of bounded caches, for all of these passes: values that had to be made or read, their bytes.
+    std::uint64_t cacheMisses = 0, cacheBytes = 0;
 };
 
 }  // namespace pm::plugin

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "integrator/transport/frame_renderer.h"
+#include "plugin/session/bucket_misses.h"
 #include "plugin/session/bucket_shelf.h"
 #include "plugin/session/event_queue.h"
 #include "plugin/session/progress_clock.h"
@@ -65,6 +66,7 @@ class BucketPasses {
     const Frame m_frame;
     BucketShelf m_shelf;
     BucketErrors m_errors;
+    BucketMisses m_misses;
     std::vector<Scratch> m_scratch;  // one a worker
 };
 

@@ -172,6 +172,9 @@ void RenderWork::deliverBucket(PassRun& run, const RenderedBucket& bucket) {
     BucketTime& time = m_bucketTimes[bucket.cell];
     info.seconds = time.seconds += bucket.seconds;
     info.timedPasses = ++time.passes;
+    const BucketMisses::Count missed = m_bucketMisses->of(bucket.cell);
+    info.cacheMisses = missed.misses;
+    info.cacheBytes = missed.bytes;
     run.events.bucketFinished(info);
     const ProgressClock::Reading reading =
         m_clock.buckets(run.pass, static_cast<double>(++run.done) / bucketCount());
@@ -202,8 +205,9 @@ double RenderWork::renderBuckets(std::uint32_t pass, const Cancel& cancel, Event
     work.started = [&](std::uint32_t cell, const Rect& rect) {
         events.bucketStarted(bucketInfo(cell, rect, pass));
     };
-    work.render = [&](std::uint32_t, const Rect& rect, const Rect& atom, int worker,
+    work.render = [&](std::uint32_t cell, const Rect& rect, const Rect& atom, int worker,
                       std::span<float> buffer) {
+        const BucketMisses::Counting counting(*m_bucketMisses, cell);
         renderAtom(rect, atom, pass, worker, buffer, cancel);
     };
     work.deliver = [&](const RenderedBucket& bucket) { deliverBucket(run, bucket); };

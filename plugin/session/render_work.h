@@ -16,6 +16,7 @@
 #include "integrator/values/error.h"
 #include "integrator/values/stopwatch.h"
 #include "plugin/session/bucket_info.h"
+#include "plugin/session/bucket_misses.h"
 #include "plugin/session/bucket_passes.h"
 #include "plugin/session/error_curve.h"
 #include "plugin/session/event_queue.h"
@@ -155,10 +156,11 @@ class RenderWork {
     ChannelLayout m_layout;
     RenderPhotons m_photons;  // outlives who reads from it:
     std::unique_ptr<FrameRenderer> m_renderer;
-    std::shared_ptr<FrameStore> m_frame;      // the whole one
-    std::unique_ptr<BucketPasses> m_buckets;  // or, by buckets, these, and no pieces
-    std::vector<Scratch> m_scratch;           // one a worker
-    std::vector<BucketTime> m_bucketTimes;    // by cell, each its worker's; pass by pass
+    std::shared_ptr<FrameStore> m_frame;           // the whole one
+    std::unique_ptr<BucketPasses> m_buckets;       // or, by buckets, these, and no pieces
+    std::vector<Scratch> m_scratch;                // one a worker
+    std::vector<BucketTime> m_bucketTimes;         // by cell, each its worker's; pass by pass
+    std::unique_ptr<BucketMisses> m_bucketMisses;  // pass by pass
     ProgressClock m_clock;
     WarningLog m_warnings;
 

@@ -117,7 +117,11 @@ TEST(BoundedCache, WatchesAreToldOfTheirOwnThread) {
     {
         const CacheWatch::Scope scope(&watch);
         cache.get(1, make);
-        cache.get(2, make);
+        {
+            const CacheWatch::As as(CacheUser::kGather);
+            cache.get(2, make);
+        }
+        EXPECT_EQ(CacheWatch::user(), CacheUser::kCamera);
         std::jthread([&] { cache.get(3, make); });
     }
     cache.get(4, make);
@@ -126,6 +130,7 @@ TEST(BoundedCache, WatchesAreToldOfTheirOwnThread) {
     EXPECT_FALSE(watch.all[0].missed);
     EXPECT_EQ(watch.all[1].key, 2u);
     EXPECT_TRUE(watch.all[1].missed);
+    EXPECT_EQ(watch.all[1].user, CacheUser::kGather);
     EXPECT_EQ(watch.all[1].bytes, 100u);
     EXPECT_EQ(watch.all[1].cache, cache.number());
     EXPECT_TRUE(cache.holds(4));
