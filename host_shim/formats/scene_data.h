@@ -32,7 +32,7 @@ struct TextureUse {
     std::array<float, 2> offset{};
     float base{0.0f};
     float gain{1.0f};
-    float strength{1.0f};  // of a normal map; of a bump map: scene units of a height of 1
+    float strength{1.0f};  // of a normal map; of heights: scene units of a height of 1
 };
 
 // A parameter of a material by its name, as docs/parameters.md lists them: numbers, or a text.
@@ -70,8 +70,9 @@ struct MaterialData {
     float transparency{};
     std::optional<TextureUse> diffuseTexture, glossyTexture, glossyExponentTexture,
         roughnessTexture, transmissionTexture, emissionTexture, opacityTexture,
-        normalTexture,  // in tangent space
-        bumpTexture;    // heights
+        normalTexture,        // in tangent space
+        bumpTexture,          // heights
+        displacementTexture;  // heights of a cage's limit surface
 
     std::vector<NamedValue> byName;  // in place of what else is here
 

@@ -12,7 +12,8 @@ std::vector<std::filesystem::path> filesOf(const SceneData& scene) {
         for (const auto* use :
              {&material.diffuseTexture, &material.glossyTexture, &material.glossyExponentTexture,
               &material.roughnessTexture, &material.transmissionTexture, &material.emissionTexture,
-              &material.opacityTexture, &material.normalTexture, &material.bumpTexture}) {
+              &material.opacityTexture, &material.normalTexture, &material.bumpTexture,
+              &material.displacementTexture}) {
             if (*use) files.emplace_back((*use)->file);
         }
     }

@@ -33,7 +33,7 @@ void store(const Rgb3& colour, float largest, float (&target)[3]) {
 
 using TextureOfKind = std::pair<const std::optional<TextureUse>*, TextureKind>;
 
-std::array<TextureOfKind, 9> usesOf(const MaterialData& material) {
+std::array<TextureOfKind, 10> usesOf(const MaterialData& material) {
     return {{{&material.diffuseTexture, TextureKind::kColour},
              {&material.glossyTexture, TextureKind::kColour},
              {&material.glossyExponentTexture, TextureKind::kData},
@@ -42,7 +42,8 @@ std::array<TextureOfKind, 9> usesOf(const MaterialData& material) {
              {&material.emissionTexture, TextureKind::kColour},
              {&material.opacityTexture, TextureKind::kMask},
              {&material.normalTexture, TextureKind::kVector},
-             {&material.bumpTexture, TextureKind::kData}}};
+             {&material.bumpTexture, TextureKind::kData},
+             {&material.displacementTexture, TextureKind::kData}}};
 }
 
 TextureRequest requestOf(const TextureUse& use, const std::string& file, TextureKind kind) {
@@ -237,6 +238,8 @@ void MaterialBuilder::setByName(const MaterialData& material, PmrMaterial handle
         setNumber("normalScale", material.normalTexture->strength);
     if (setTexture("bumpTexture", material.bumpTexture, TextureKind::kData))
         setNumber("bumpScale", material.bumpTexture->strength);
+    if (setTexture("displacementTexture", material.displacementTexture, TextureKind::kData))
+        setNumber("displacementScale", material.displacementTexture->strength);
     if (material.coat > 0) {
         setNumber("coat", material.coat);
         setNumber("coatRoughness", material.coatRoughness);

@@ -278,6 +278,10 @@ std::size_t LimitSurface::edgeCount() const {
     return m_impl->input.topology().edgeCount();
 }
 
+std::pair<std::uint32_t, std::uint32_t> LimitSurface::edge(std::uint32_t index) const {
+    return m_impl->input.topology().edge(index);
+}
+
 bool LimitSurface::hasSurface(std::uint32_t face) const {
     return m_impl->factory.FaceHasLimitSurface(static_cast<Far::Index>(face));
 }
@@ -349,6 +353,35 @@ LimitSurface::Sample LimitSurface::Evaluator::evaluate(const double* uv) const {
         sample.texcoord = {static_cast<float>(t[0]), static_cast<float>(t[1])};
     }
     return sample;
+}
+
+LimitSurface::ChartSample LimitSurface::Evaluator::evaluateChart(
+    const std::array<double, 2>& uv) const {
+    const State& state = *m_state;
+    double p[3], du[3], dv[3];
+    state.surface.Evaluate(uv.data(), state.patchPoints.data(), 3, p, du, dv);
+    ChartSample sample{
+        {p[0], p[1], p[2]}, {du[0], du[1], du[2]}, {dv[0], dv[1], dv[2]}, {}, {}, {}};
+    if (state.limit->input.hasTexcoords())
+        state.texcoordSurface.Evaluate(uv.data(), state.texcoordPatchPoints.data(), 2,
+                                       sample.texcoord.data(), sample.alongU.data(),
+                                       sample.alongV.data());
+    return sample;
+}
+
+bool LimitSurface::Evaluator::isBicubic() const {
+    return m_state->surface.IsRegular() && m_state->surface.GetFaceSize() == 4;
+}
+
+// Every patch of the surface is a mean of its points with weights that are not negative.
+Box3d LimitSurface::Evaluator::hull() const {
+    Box3d box;
+    const std::vector<double>& points = m_state->patchPoints;
+    for (std::size_t i = 0; i + 2 < points.size(); i += 3) {
+        const Vec3d point{points[i], points[i + 1], points[i + 2]};
+        box.grow({point, point});
+    }
+    return box;
 }
 
 }  // namespace pm

@@ -4,13 +4,16 @@
 // shows nothing of it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "integrator/geometry/polygon_mesh.h"
 #include "integrator/geometry/subdivision.h"
+#include "integrator/values/box.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
@@ -45,6 +48,12 @@ class LimitSurface {
         Vec2f texcoord;  // (0, 0) without texture coordinates
     };
 
+    // The same with what texture coordinates change by along u and v; zeros without any.
+    struct ChartSample {
+        Vec3d position, tangentU, tangentV;
+        std::array<double, 2> texcoord{}, alongU{}, alongV{};
+    };
+
     class Evaluator {
       public:
         explicit Evaluator(const LimitSurface& surface);
@@ -55,6 +64,11 @@ class LimitSurface {
         void select(std::uint32_t face);
         // The point at (u, v), a pair of a SamplePattern, of the selected face.
         Sample evaluate(const double* uv) const;
+        ChartSample evaluateChart(const std::array<double, 2>& uv) const;
+
+        // Of the selected face: whether it is one bicubic patch, and a box that holds its surface.
+        bool isBicubic() const;
+        Box3d hull() const;
 
       private:
         struct State;
@@ -69,6 +83,8 @@ class LimitSurface {
     LimitSurface& operator=(const LimitSurface&) = delete;
 
     std::size_t edgeCount() const;
+    // The two vertices of an edge, the lower one first.
+    std::pair<std::uint32_t, std::uint32_t> edge(std::uint32_t index) const;
     // False for holes, and for faces at a boundary that is not interpolated.
     bool hasSurface(std::uint32_t face) const;
     bool hasTexcoords() const;

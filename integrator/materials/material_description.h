@@ -56,6 +56,9 @@ struct MaterialDescription {
     float normalScale = 1.0f;               // of the components along the surface
     std::int32_t bumpTexture = kNoTexture;  // heights
     float bumpScale = 1.0f;                 // scene units of a height of 1
+    // Heights by which limit surfaces are displaced along their normal.
+    std::int32_t displacementTexture = kNoTexture;
+    float displacementScale = 1.0f;  // scene units of a height of 1
 };
 
 // Whether light loses on its way inside.

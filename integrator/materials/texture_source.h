@@ -61,6 +61,13 @@ class TextureSource {
     // cancel is set.
     virtual BadTexels badTexels(std::int32_t, const CancelCheck&) const { return {}; }
 
+    // The least and the largest first channel of all texels of the finest level, and of what lies
+    // outside of the picture. A source that doesn't know says 0 and 1. Throws Error(kCancelled)
+    // soon after cancel is set.
+    virtual std::array<float, 2> extremes(std::int32_t, const CancelCheck&) const {
+        return {0.0f, 1.0f};
+    }
+
     // What a user knows texture `index` by.
     virtual std::string name(std::int32_t index) const { return std::to_string(index); }
 

@@ -9,6 +9,7 @@
 #include <deque>
 #include <vector>
 
+#include "integrator/rays/group_shape.h"
 #include "integrator/rays/ray_device.h"
 #include "integrator/rays/ray_query.h"
 #include "integrator/rays/shared_mesh_impl.h"
@@ -74,6 +75,7 @@ struct RayTracer::Impl {
     RTCScene scene = nullptr;
     // Deques: Embree keeps pointers to their elements.
     std::deque<UserCurved> curved;
+    std::deque<GroupShape> groups;
     std::deque<ExactTriangles> exact;
     std::deque<std::vector<std::array<std::uint32_t, 3>>> othersThanExact;
     std::deque<Transform> transforms;
@@ -129,6 +131,15 @@ std::uint32_t RayTracer::addCurved(const CurvedShape& shape, Viewers seenBy) {
     return m_impl->added(id, nullptr);
 }
 
+std::uint32_t RayTracer::addGroups(const LimitGroups& groups, Viewers seenBy) {
+    m_impl->groups.push_back({&groups});
+    const std::uint32_t id = attachUserGeometry<GroupShape, GroupShape>(
+        m_impl->device->handle(), m_impl->scene, m_impl->groups.back(), groups.groupCount(),
+        seenBy);
+    m_impl->device->check("adding a limit surface");
+    return m_impl->added(id, nullptr);
+}
+
 std::uint32_t RayTracer::addInstance(std::shared_ptr<const SharedMesh> mesh,
                                      const Transform& toScene, Viewers seenBy) {
     RTCGeometry geometry = rtcNewGeometry(m_impl->device->handle(), RTC_GEOMETRY_TYPE_INSTANCE);
@@ -159,6 +170,7 @@ bool RayTracer::intersect(const Ray& ray, RayHit& hit) const {
     fill(rayHit, ray);
     RayQuery query(ray, m_impl->placements);
     rtcIntersect1(m_impl->scene, &query.context, &rayHit);
+    if (query.thrown) std::rethrow_exception(query.thrown);
     if (rayHit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
     const std::uint32_t instance = rayHit.hit.instID[0];
     hit = {instance == RTC_INVALID_GEOMETRY_ID ? rayHit.hit.geomID : instance, rayHit.hit.primID,
@@ -172,6 +184,7 @@ bool RayTracer::occluded(const Ray& ray) const {
     fill(rtcRay, ray);
     RayQuery query(ray, m_impl->placements);
     rtcOccluded1(m_impl->scene, &query.context, &rtcRay);
+    if (query.thrown) std::rethrow_exception(query.thrown);
     return rtcRay.tfar < 0.0f;
 }
 

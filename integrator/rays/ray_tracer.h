@@ -14,6 +14,7 @@
 #include "integrator/rays/exact_triangle.h"
 #include "integrator/rays/shared_mesh.h"
 #include "integrator/shapes/curved_shape.h"
+#include "integrator/tessellation/limit_groups.h"
 #include "integrator/values/cancel_check.h"
 #include "integrator/values/ray.h"
 #include "integrator/values/transform.h"
@@ -21,9 +22,10 @@
 
 namespace pm {
 
-// Nearest hits and visibility among triangle meshes and spheres, by Embree in its robust mode.
-// Every ray is checked first for what would end the process inside Embree: NaN, infinity, distances
-// beyond kLargestCoordinate; such a ray meets nothing, and as a shadow ray it is occluded.
+// Nearest hits and visibility among triangle meshes, limit surfaces and spheres, by Embree in its
+// robust mode. Every ray is checked first for what would end the process inside Embree: NaN,
+// infinity, distances beyond kLargestCoordinate; such a ray meets nothing, and as a shadow ray it
+// is occluded.
 class RayTracer {
   public:
     static constexpr float kLargestCoordinate = 1e18f;
@@ -45,6 +47,9 @@ class RayTracer {
                                std::span<const ExactTriangle> exact = {},
                                Viewers seenBy = kAllRays);
     std::uint32_t addCurved(const CurvedShape& shape, Viewers seenBy = kAllRays);
+    // groups: must stay until destruction. A ray that meets a group's box makes it, or waits for
+    // it; what that throws goes on to who asked.
+    std::uint32_t addGroups(const LimitGroups& groups, Viewers seenBy = kAllRays);
     // mesh: of this tracer's instruction set. toScene: object to scene, of any scale but 0.
     std::uint32_t addInstance(std::shared_ptr<const SharedMesh> mesh, const Transform& toScene,
                               Viewers seenBy = kAllRays);
@@ -65,8 +70,7 @@ class RayTracer {
             ray, [](void* user, const RayHit& hit) { return (*static_cast<Plain*>(user))(hit); },
             &stops);
     }
-    // Calls visit(hit) for every triangle that the ray meets beyond tMin, in no order. Spheres are
-    // left out.
+    // Calls visit(hit) for every triangle of a mesh that the ray meets beyond tMin, in no order.
     template <typename Visit>
     void forEachHit(const Ray& ray, float tMin, const Visit& visit) const {
         auto visitAll = [&](const RayHit& hit) {

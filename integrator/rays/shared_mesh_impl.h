@@ -20,16 +20,16 @@ struct SharedMesh::Impl {
 };
 
 // Attaches what is intersected by functions of ours; shape must outlive the scene. Returns the
-// geometry's number.
-template <typename Kind>
+// geometry's number. Functions: where those for Embree are.
+template <typename Kind, typename Functions = UserGeometry<Kind>>
 std::uint32_t attachUserGeometry(RTCDevice device, RTCScene scene, Kind& shape,
                                  std::size_t primitives, Viewers seenBy = kAllRays) {
     RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
     rtcSetGeometryUserPrimitiveCount(geometry, static_cast<std::uint32_t>(primitives));
     rtcSetGeometryUserData(geometry, &shape);
-    rtcSetGeometryBoundsFunction(geometry, UserGeometry<Kind>::bounds, nullptr);
-    rtcSetGeometryIntersectFunction(geometry, UserGeometry<Kind>::intersect);
-    rtcSetGeometryOccludedFunction(geometry, UserGeometry<Kind>::occluded);
+    rtcSetGeometryBoundsFunction(geometry, Functions::bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry, Functions::intersect);
+    rtcSetGeometryOccludedFunction(geometry, Functions::occluded);
     rtcSetGeometryMask(geometry, seenBy);
     rtcCommitGeometry(geometry);
     const std::uint32_t id = rtcAttachGeometry(scene, geometry);

@@ -58,8 +58,11 @@ class Scene::Media::Search {
         const ShapeRecord& record = m_scene.m_shapes[shape];
         m_cancel.throwIfSet("looking for media");
         std::vector<Part> here;
-        const std::size_t count = record.mesh ? record.mesh->triangles.size() : 1;
-        for (std::uint32_t i = 0; i < count; ++i) {
+        const std::size_t count = record.mesh     ? record.mesh->triangles.size()
+                                  : record.groups ? record.groups->groupCount()
+                                                  : 1;
+        for (std::uint32_t at = 0; at < count; ++at) {
+            const std::uint32_t i = record.groups ? record.groups->firstTriangle(at) : at;
             Box3d box;
             record.bounds(i, box.lo, box.hi);
             m_boxes[shape].grow(box);
@@ -83,7 +86,7 @@ class Scene::Media::Search {
             if (shape != part.shape && overlap(part.box, m_boxes[shape])) return true;
         if (m_scene.m_shapes[part.shape].materials.size() > 1) return true;
         const Part* const alone = &part;
-        return m_scene.m_shapes[part.shape].mesh && look({&alone, 1}).openEdges > 0;
+        return !m_scene.m_shapes[part.shape].curved && look({&alone, 1}).openEdges > 0;
     }
 
     BodyShape look(std::span<const Part* const> parts) const {
@@ -97,6 +100,16 @@ class Scene::Media::Search {
     void visitFaces(const Part& part,
                     const std::function<void(const std::array<Vec3d, 3>&)>& visit) const {
         const ShapeRecord& record = m_scene.m_shapes[part.shape];
+        // The cage is closed where its limit is.
+        if (record.groups) {
+            const auto turned = [&](const std::array<Vec3d, 3>& t) {
+                visit(record.mirrored ? std::array{t[0], t[2], t[1]} : t);
+            };
+            for (std::uint32_t slot = 0; slot < record.materials.size(); ++slot)
+                if (record.materials[slot] == part.material)
+                    record.groups->forEachCageTriangle(slot, turned);
+            return;
+        }
         for (std::uint32_t i = 0; i < record.mesh->triangles.size(); ++i) {
             if (record.materialOf(i) != part.material) continue;
             const Corner c = record.corner(i);
@@ -111,7 +124,7 @@ class Scene::Media::Search {
     void addBodies(std::uint32_t material, const std::vector<const Part*>& parts, Media& media) {
         std::vector<const Part*> open, walls;
         for (const Part* const part : parts) {
-            const bool isCurved = !m_scene.m_shapes[part->shape].mesh;
+            const bool isCurved = m_scene.m_shapes[part->shape].curved.has_value();
             const BodyShape shape = isCurved ? BodyShape{0, 1.0} : look({&part, 1});
             if (shape.openEdges > 0)
                 open.push_back(part);

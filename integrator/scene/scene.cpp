@@ -99,7 +99,7 @@ bool Scene::findFlat(const CancelCheck& cancel) const {
         return true;
     };
     for (const ShapeRecord& record : m_shapes)
-        if (!record.mesh && reflects(record, 0)) return false;
+        if (!record.mesh && (record.groups || reflects(record, 0))) return false;
     forEachTriangle([&](const Vec3d& v0, const Vec3d& v1, const Vec3d& v2) {
         const Vec3d n = cross(v1 - v0, v2 - v0);
         normal += dot(n, normal) < 0 ? -n : n;
@@ -124,10 +124,16 @@ std::uint64_t Scene::memoryBytes() const {
     std::uint64_t bytes = m_tracer.memoryBytes();
     std::set<const TriangleMesh*> instanced;
     std::set<const Tangents*> withTangents;
+    std::set<const LimitShape*> limits;
     for (const ShapeRecord& record : m_shapes) {
         bytes += sizeof(ShapeRecord);
         if (record.tangents && withTangents.insert(record.tangents.get()).second)
             bytes += record.tangents->memoryBytes();
+        if (record.groups) {
+            bytes += record.groups->memoryBytes();
+            if (limits.insert(&record.groups->shape()).second)
+                bytes += record.groups->shape().memoryBytes();
+        }
         if (record.placement) {
             if (!instanced.insert(record.mesh.get()).second) continue;
             bytes += record.mesh->rayTracing

@@ -26,6 +26,7 @@
 #include "integrator/shapes/ray_footprint.h"
 #include "integrator/shapes/smooth_point.h"
 #include "integrator/shapes/surface.h"
+#include "integrator/tessellation/limit_groups.h"
 #include "integrator/values/notice.h"
 
 namespace pm {
@@ -187,11 +188,24 @@ class Scene {
     // Of a shape that is no mesh: whether it is a sphere, and a ball that holds it, which then is
     // that.
     bool isSphere(std::uint32_t shape) const;
+    // Balls that together hold a shape that is no mesh, one after another.
+    std::uint32_t partCount(std::uint32_t shape) const;
+    SphereShape ballAroundPart(std::uint32_t shape, std::uint32_t part) const;
     SphereShape ballAround(std::uint32_t shape) const;
 
     const std::vector<Notice>& notices() const { return m_notices; }
     const std::string& isa() const { return m_tracer.isa(); }
     std::uint64_t memoryBytes() const;
+    // Of the triangles that limit surfaces are cut into where rays meet them: what may be held at
+    // once, and what would be held if all were. The picture is the same. Threads: any.
+    void setGroupBudget(std::uint64_t bytes) const {
+        if (m_groupCache) m_groupCache->setBudget(bytes);
+    }
+    std::uint64_t groupBudget() const { return m_groupCache ? m_groupCache->budget() : 0; }
+    std::uint64_t groupBytes() const { return m_groupBytes; }
+    CacheCounts groupCounts() const {
+        return m_groupCache ? m_groupCache->counts() : CacheCounts{};
+    }
     std::uint64_t triangleCount() const { return m_triangleCount; }
     // Mean over the triangles, scene units squared; 0 of none.
     double meanTriangleArea() const {
@@ -210,6 +224,7 @@ class Scene {
         Vec3d vertex, e1, e2;
     };
     struct Facet;
+    struct Attributes;
     // A ray that meets a surface, and its footprint, null where nobody asks for it.
     struct Arrival {
         const Ray* ray;
@@ -238,7 +253,7 @@ class Scene {
     void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, const Corner& corner,
                            double b1, double b2, Surface& surface,
                            const Arrival& arrival = {nullptr, nullptr, false}) const;
-    void footprintOnTriangle(const ShapeRecord& shape, std::uint32_t primitive,
+    void footprintOnTriangle(const MaterialDescription& material, const Attributes& attributes,
                              const Corner& corner, Vec2f at, const Arrival& arrival,
                              Surface& surface) const;
     void footprintOnCurved(const ShapeRecord& shape, const Arrival& arrival,
@@ -248,13 +263,14 @@ class Scene {
                      const CancelCheck& cancel);
     // Turns the shading normal by the material's maps, and sets the tangent where it is asked for.
     // footprint: over which maps are looked up.
-    void applyMaps(const ShapeRecord& shape, std::uint32_t primitive, const TexturedEdges& edges,
-                   Vec2f barycentric, const UvFootprint& footprint, Surface& surface) const;
+    void applyMaps(const ShapeRecord& shape, std::uint32_t primitive, const Attributes& attributes,
+                   const TexturedEdges& edges, Vec2f barycentric, const UvFootprint& footprint,
+                   Surface& surface) const;
     void turnByNormalMap(const MaterialDescription& material, const Vec3f& tangent,
                          float normalLength, const UvFootprint& footprint, Surface& surface) const;
     void turnByBumpMap(const MaterialDescription& material, const TexturedEdges& edges,
                        const UvFootprint& footprint, Surface& surface) const;
-    static float smoothness(const ShapeRecord& shape, std::uint32_t primitive, Vec2f barycentric,
+    static float smoothness(const Attributes& attributes, Vec2f barycentric,
                             const Surface& surface);
     // Of a texture of lights; gives notice the first time.
     bool findBadTexels(std::int32_t texture, const CancelCheck& cancel);
@@ -268,7 +284,10 @@ class Scene {
     SceneDescription m_description;
     MaterialTables m_tables;
     Materials m_materials{m_description.materials, m_description.textures.get(), &m_tables};
+    std::vector<std::unique_ptr<const HeightField>> m_heights;  // of the materials that displace
     std::vector<ShapeRecord> m_shapes;
+    std::unique_ptr<GroupCache> m_groupCache;  // null where nothing is cut on demand
+    std::uint64_t m_groupBytes = 0;
     std::vector<Light> m_lights;
     std::vector<LampTriangle> m_lampTriangles;  // of the lights
     std::vector<LampTexture> m_lampTextures;

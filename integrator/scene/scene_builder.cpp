@@ -12,6 +12,7 @@
 
 #include "integrator/materials/opacity.h"
 #include "integrator/scene/coincident_faces.h"
+#include "integrator/scene/limit_shapes.h"
 #include "integrator/scene/media.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/scene_core.h"
@@ -37,11 +38,14 @@ class Scene::Builder {
     Builder(Scene& scene, const CancelCheck& cancel) : m_scene(scene), m_cancel(cancel) {}
 
     void run() {
+        cutWhereNeeded(m_scene.m_description, m_cancel);
         checkInstances();
+        findHeights();
         findBounds();
         countUses();
         for (const InstanceDescription& instance : m_scene.m_description.instances)
             addShape(instance);
+        shareGroupCache();
         findHuge();
         m_scene.m_isFlat = m_scene.findFlat(m_cancel);
         m_scene.m_hasSheets = findSheets();
@@ -117,6 +121,9 @@ class Scene::Builder {
         if (const auto* mesh = std::get_if<std::shared_ptr<const TriangleMesh>>(&instance.shape)) {
             for (const std::uint32_t slot : (*mesh)->materials) slots = std::max(slots, slot + 1);
         }
+        if (const auto* limit = std::get_if<std::shared_ptr<const LimitShape>>(&instance.shape))
+            for (const std::uint32_t slot : (*limit)->cage().mesh.faceMaterials)
+                slots = std::max(slots, slot + 1);
         if (instance.materials.size() < slots)
             throw Error(Status::kInvalidScene,
                         fmt::format("instance '{}' has {} materials; its mesh uses {} slots",
@@ -149,6 +156,46 @@ class Scene::Builder {
                found->second * mesh.triangles.size() >= kLeastInstanced && !isFlattened(instance);
     }
 
+    // Of the materials that have some; those on what can't be displaced are told.
+    void findHeights() {
+        const SceneDescription& d = m_scene.m_description;
+        m_scene.m_heights.resize(d.materials.size());
+        for (const InstanceDescription& instance : d.instances) {
+            const auto* limit = std::get_if<std::shared_ptr<const LimitShape>>(&instance.shape);
+            for (const std::uint32_t index : instance.materials) {
+                const MaterialDescription& material = m_scene.material(index);
+                if (material.displacementTexture == kNoTexture || !d.textures) continue;
+                if (!limit || !(*limit)->surface().hasTexcoords()) {
+                    tellNotDisplaced(instance, material);
+                    continue;
+                }
+                auto& heights = m_scene.m_heights[index];
+                if (!heights)
+                    heights = std::make_unique<TextureHeights>(*d.textures, material, m_cancel);
+            }
+        }
+    }
+
+    void tellNotDisplaced(const InstanceDescription& instance,
+                          const MaterialDescription& material) {
+        m_scene.m_notices.push_back(
+            {NoticeCode::kNotCovered,
+             fmt::format(
+                 "instance '{}' is no limit surface with texture coordinates that is cut on "
+                 "demand: the displacement of its material '{}' is left out",
+                 instance.name, material.name)});
+    }
+
+    // Of a limit shape's slots; null where they are not displaced.
+    std::vector<const HeightField*> heightsOf(const InstanceDescription& instance,
+                                              const LimitShape& shape) const {
+        std::vector<const HeightField*> heights;
+        if (!shape.surface().hasTexcoords()) return heights;
+        for (const std::uint32_t material : instance.materials)
+            heights.push_back(m_scene.m_heights[material].get());
+        return heights;
+    }
+
     // With the box of each triangle and sphere, world; of an instanced mesh with that of all.
     template <typename Visit>
     void forEachBox(const Visit& visit) {
@@ -170,6 +217,14 @@ class Scene::Builder {
                     }
                     visit(box);
                 }
+            } else if (const auto* limit =
+                           std::get_if<std::shared_ptr<const LimitShape>>(&instance.shape)) {
+                double highest = 0.0;
+                for (const HeightField* const heights : heightsOf(instance, **limit))
+                    if (heights)
+                        for (const double end : heights->range())
+                            highest = std::max(highest, std::abs(end));
+                visit(boxAround(**limit, transform, highest));
             } else {
                 const bool hasTexture = false;
                 visit(
@@ -216,12 +271,49 @@ class Scene::Builder {
                 placeMesh(*mesh, instance.transform, record);
             else
                 addMesh(*mesh, instance.transform, record);
+        } else if (const auto* limit =
+                       std::get_if<std::shared_ptr<const LimitShape>>(&instance.shape)) {
+            addLimit(*limit, instance, record);
         } else {
             record.curved.emplace(instance.shape, instance.transform, m_scene.m_centre,
                                   hasTexture(m_scene.material(record.materials[0])), instance.name);
         }
         m_scene.prepareMaps(record, instance, m_cancel);
         m_scene.m_shapes.push_back(std::move(record));
+    }
+
+    void addLimit(const std::shared_ptr<const LimitShape>& shape,
+                  const InstanceDescription& instance, ShapeRecord& record) {
+        Transform toScene = instance.transform;
+        for (int axis = 0; axis < 3; ++axis)
+            toScene[static_cast<std::size_t>(4 * axis + 3)] -= m_scene.m_centre[axis];
+        record.groups = std::make_unique<LimitGroups>(
+            shape, toScene, heightsOf(instance, *shape),
+            ruleOf(m_scene.m_description, instance, m_scene.m_centre), m_cancel);
+        m_groupCount += record.groups->groupCount();
+        m_scene.m_triangleCount += record.groups->triangleCount();
+        m_triangleCountOfGroups += record.groups->triangleCount();
+        // As far as a guide to how fine the scene is goes.
+        for (std::uint32_t slot = 0; slot < record.materials.size(); ++slot)
+            record.groups->forEachCageTriangle(slot, [&](const std::array<Vec3d, 3>& t) {
+                goOn();
+                m_scene.m_triangleArea += 0.5 * length(cross(t[1] - t[0], t[2] - t[0]));
+            });
+    }
+
+    // One for all limit surfaces of the scene.
+    void shareGroupCache() {
+        if (m_groupCount == 0) return;
+        // What a triangle takes in a group, measured over groups of about 1000.
+        constexpr std::uint64_t kBytesPerTriangle = 64;
+        m_scene.m_groupBytes = m_triangleCountOfGroups * kBytesPerTriangle;
+        m_scene.m_groupCache = std::make_unique<GroupCache>(m_groupCount, kUsualGroupBudget);
+        std::size_t firstKey = 0;
+        for (ShapeRecord& record : m_scene.m_shapes) {
+            if (!record.groups) continue;
+            record.groups->keepIn(*m_scene.m_groupCache, firstKey);
+            firstKey += record.groups->groupCount();
+        }
     }
 
     void placeMesh(const std::shared_ptr<const TriangleMesh>& mesh, Transform transform,
@@ -294,10 +386,17 @@ class Scene::Builder {
     }
 
     // Calls visit(shape, triangle, its longest edge) for all triangles but instanced ones,
-    // visit(shape, 0, diameter) for spheres.
+    // visit(shape, 0, diameter) for spheres; of groups once each, with about their triangles' size.
     template <typename Visit>
     void forEachSize(const Visit& visit) {
         for (ShapeRecord& record : m_scene.m_shapes) {
+            if (record.groups) {
+                for (std::uint32_t i = 0; i < record.groups->groupCount(); ++i)
+                    visit(record, record.groups->firstTriangle(i),
+                          length(record.groups->box(i).size()) /
+                              std::sqrt(record.groups->trianglesOf(i)));
+                continue;
+            }
             if (!record.mesh) {
                 visit(record, 0u, record.curved->size());
                 continue;
@@ -374,7 +473,8 @@ class Scene::Builder {
                 }
             }
         };
-        const auto needless = findNeedlessCopies(m_scene.m_triangleCount, forEachFace);
+        const auto needless =
+            findNeedlessCopies(m_scene.m_triangleCount - m_triangleCountOfGroups, forEachFace);
         if (needless.empty()) return;
         for (const PlacedFace& face : needless)
             m_scene.m_shapes[face.shape].leaveOut(face.primitive);
@@ -392,6 +492,10 @@ class Scene::Builder {
         leaveOutCopies();
         for (std::uint32_t shape = 0; shape < m_scene.m_shapes.size(); ++shape) {
             const ShapeRecord& record = m_scene.m_shapes[shape];
+            if (record.groups) {
+                m_scene.m_tracer.addGroups(*record.groups, seenBy(shape));
+                continue;
+            }
             if (!record.mesh && record.visible.empty()) {
                 m_scene.m_tracer.addCurved(*record.curved, seenBy(shape));
                 continue;
@@ -414,7 +518,7 @@ class Scene::Builder {
     void lookForCloseSpheres() {
         std::vector<GlassSphere> spheres;
         for (const ShapeRecord& record : m_scene.m_shapes)
-            if (!record.mesh && record.curved->sphere() &&
+            if (record.curved && record.curved->sphere() &&
                 m_scene.material(record.materials[0]).kind == MaterialKind::kDielectric)
                 spheres.push_back({record.curved->sphere()->sphere().centre,
                                    record.curved->sphere()->sphere().radius});
@@ -523,6 +627,8 @@ class Scene::Builder {
         }
     }
 
+    // Bytes; a render divides its memory anew.
+    static constexpr std::uint64_t kUsualGroupBudget = std::uint64_t{512} << 20;
     static constexpr double kPiDouble = 3.14159265358979323846;
     Scene& m_scene;
     CancelCheck m_cancel;
@@ -530,6 +636,8 @@ class Scene::Builder {
     std::unordered_map<const TriangleMesh*, std::size_t> m_uses;
     // Of instanced ones, in their own space.
     std::unordered_map<const TriangleMesh*, double> m_areas, m_margins;
+    std::size_t m_groupCount = 0;
+    std::uint64_t m_triangleCountOfGroups = 0;
 };
 
 Scene::Scene(SceneDescription description, const std::string& isa, const CancelCheck& cancel)

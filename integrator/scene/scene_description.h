@@ -18,6 +18,10 @@
 
 namespace pm {
 
+// When a cage is cut into triangles: all of it before rays are traced, or each part of it where one
+// meets it. kAuto: on demand what is displaced, or too large to be cut whole.
+enum class TessellationTime { kAuto, kOnDemand, kWhole };
+
 struct InstanceDescription {
     Shape shape;
     Transform transform = kIdentityTransform;
@@ -25,6 +29,11 @@ struct InstanceDescription {
     std::string name;
     std::uint32_t id = 0;
     Viewers hiddenFrom = 0;
+    // Of a limit shape: pieces of every edge of its cage; 0: by the camera, or the cage's own rate
+    // without one.
+    std::uint32_t tessellationRate = 0;
+    // For whoever makes a shape of a cage: which one.
+    TessellationTime tessellation = TessellationTime::kAuto;
 };
 
 struct SceneDescription {

@@ -38,19 +38,16 @@ float acrossSeam(float difference) {
 
 }  // namespace
 
-void Scene::footprintOnTriangle(const ShapeRecord& record, std::uint32_t primitive,
+void Scene::footprintOnTriangle(const MaterialDescription& material, const Attributes& attributes,
                                 const Corner& corner, Vec2f at, const Arrival& arrival,
                                 Surface& surface) const {
-    const TriangleMesh& mesh = *record.mesh;
     RayFootprint& footprint = *arrival.footprint;
     footprint.arrive(*arrival.ray, surface.position, surface.geometricNormal);
-    const MaterialDescription& material = m_materials[record.materialOf(primitive)];
     const Vec2f x = sharesOf(footprint.x.origin, corner.e1, corner.e2),
                 y = sharesOf(footprint.y.origin, corner.e1, corner.e2);
-    if (!mesh.normals.empty() && mayHaveDelta(material)) {
-        const auto& of = mesh.normalIndices[primitive];
-        const Vec3f n0 = record.normal(of[0]), along1 = record.normal(of[1]) - n0,
-                    along2 = record.normal(of[2]) - n0;
+    if (attributes.hasNormals && mayHaveDelta(material)) {
+        const Vec3f n0 = attributes.normals[0], along1 = attributes.normals[1] - n0,
+                    along2 = attributes.normals[2] - n0;
         const Vec3f n = n0 + along1 * at.x + along2 * at.y;
         const float size = std::copysign(length(n), dot(n, surface.shadingNormal));
         if (size != 0.0f)
@@ -59,9 +56,9 @@ void Scene::footprintOnTriangle(const ShapeRecord& record, std::uint32_t primiti
                 side->normal = turn - surface.shadingNormal * dot(turn, surface.shadingNormal);
             }
     }
-    if (mesh.texcoords.empty() || !isFiltered(footprint, material)) return;
-    const auto& of = mesh.texcoordIndices[primitive];
-    const Vec2f t0 = mesh.texcoords[of[0]], t1 = mesh.texcoords[of[1]], t2 = mesh.texcoords[of[2]];
+    if (!attributes.hasTexcoords || !isFiltered(footprint, material)) return;
+    const Vec2f t0 = attributes.texcoords[0], t1 = attributes.texcoords[1],
+                t2 = attributes.texcoords[2];
     const auto onto = [&](const Vec2f& share) -> Vec2f {
         return {(t1.x - t0.x) * share.x + (t2.x - t0.x) * share.y,
                 (t1.y - t0.y) * share.x + (t2.y - t0.y) * share.y};

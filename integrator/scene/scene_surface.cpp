@@ -154,7 +154,7 @@ void Scene::surfaceAt(const RayHit& hit, Surface& surface, const Arrival& arriva
     const ShapeRecord& record = m_shapes[hit.shape];
     surface.shape = hit.shape;
     const Ray& ray = *arrival.ray;
-    if (record.mesh) {
+    if (!record.curved) {
         const Corner corner = record.corner(hit.primitive);
         double b1, b2;
         barycentrics(ray, corner.vertex, corner.e1, corner.e2, b1, b2);
@@ -173,35 +173,32 @@ void Scene::surfaceAt(const RayHit& hit, Surface& surface, const Arrival& arriva
 void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive,
                               const Corner& corner, double b1, double b2, Surface& surface,
                               const Arrival& arrival) const {
-    const TriangleMesh& mesh = *record.mesh;
+    const Attributes attributes = record.attributes(primitive);
     const auto& [v0, e1, e2] = corner;
     surface.position = Vec3f(v0 + (e1 * b1 + e2 * b2));
     const Facet facet = record.facet(primitive, corner);
     surface.offset = surfaceOffset(surface.position, facet.reach);
     surface.geometricNormal = surface.shadingNormal = facet.normal;
     const auto f1 = static_cast<float>(b1), f2 = static_cast<float>(b2);
-    if (!mesh.normals.empty()) {
-        const auto& at = mesh.normalIndices[primitive];
-        surface.shadingNormal =
-            interpolateNormal(record.normal(at[0]), record.normal(at[1]), record.normal(at[2]), f1,
-                              f2, surface.geometricNormal);
+    if (attributes.hasNormals) {
+        const auto& [n0, n1, n2] = attributes.normals;
+        surface.shadingNormal = interpolateNormal(n0, n1, n2, f1, f2, surface.geometricNormal);
     }
     surface.uv = {};
     surface.tangent = {};
     surface.footprint = {};
     if (arrival.footprint)
-        footprintOnTriangle(record, primitive, corner, {f1, f2}, arrival, surface);
-    if (!mesh.texcoords.empty()) {
-        const auto& at = mesh.texcoordIndices[primitive];
-        const Vec2f t0 = mesh.texcoords[at[0]], t1 = mesh.texcoords[at[1]],
-                    t2 = mesh.texcoords[at[2]];
+        footprintOnTriangle(m_materials[record.materialOf(primitive)], attributes, corner, {f1, f2},
+                            arrival, surface);
+    if (attributes.hasTexcoords) {
+        const auto& [t0, t1, t2] = attributes.texcoords;
         const float f0 = 1.0f - f1 - f2;
         surface.uv = {t0.x * f0 + t1.x * f1 + t2.x * f2, t0.y * f0 + t1.y * f1 + t2.y * f2};
         if (record.hasMaps && !arrival.ofShapeOnly) {
             // Of caustics every facet counts.
             const bool isFinest = arrival.footprint && arrival.footprint->isWide &&
                                   castsCaustics(m_materials[record.materialOf(primitive)]);
-            applyMaps(record, primitive,
+            applyMaps(record, primitive, attributes,
                       {e1, e2, {t1.x - t0.x, t1.y - t0.y}, {t2.x - t0.x, t2.y - t0.y}}, {f1, f2},
                       isFinest ? UvFootprint{} : surface.footprint, surface);
         }
@@ -240,11 +237,25 @@ SphereShape Scene::sphere(std::uint32_t shape) const {
 }
 
 bool Scene::isSphere(std::uint32_t shape) const {
-    return m_shapes[shape].curved->sphere() != nullptr;
+    const std::optional<CurvedShape>& curved = m_shapes[shape].curved;
+    return curved && curved->sphere() != nullptr;
 }
 
 SphereShape Scene::ballAround(std::uint32_t shape) const {
-    return m_shapes[shape].curved->ball();
+    const ShapeRecord& record = m_shapes[shape];
+    if (!record.groups) return record.curved->ball();
+    const Box3d& box = record.groups->box();
+    return {box.middle(), 0.5 * length(box.size())};
+}
+
+std::uint32_t Scene::partCount(std::uint32_t shape) const {
+    return m_shapes[shape].groups ? m_shapes[shape].groups->groupCount() : 1;
+}
+
+SphereShape Scene::ballAroundPart(std::uint32_t shape, std::uint32_t part) const {
+    if (!m_shapes[shape].groups) return ballAround(shape);
+    const Box3d& box = m_shapes[shape].groups->box(part);
+    return {box.middle(), 0.5 * length(box.size())};
 }
 
 }  // namespace pm

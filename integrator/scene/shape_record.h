@@ -11,6 +11,7 @@
 #include "integrator/shapes/curved_shape.h"
 #include "integrator/shapes/placement.h"
 #include "integrator/shapes/tangents.h"
+#include "integrator/tessellation/limit_groups.h"
 
 namespace pm {
 
@@ -26,9 +27,24 @@ struct Scene::Facet {
     Facet(const Corner& corner, bool mirrored, bool exact = false);
 };
 
+// What a triangle's corners have, in the scene's own coordinates.
+struct Scene::Attributes {
+    std::array<Vec3f, 3> normals{};
+    std::array<Vec2f, 3> texcoords{};
+    std::array<Vec3f, 3> tangents{};  // of limit surfaces; where u grows
+    bool hasNormals = false, hasTexcoords = false;
+
+    // Whether the texture is seen mirrored from the front, as the winding says.
+    bool isMirrored() const {
+        const auto& [a, b, c] = texcoords;
+        return (b.x - a.x) * (c.y - a.y) < (b.y - a.y) * (c.x - a.x);
+    }
+};
+
 // One instance made ready: vertices in the scene's own coordinates.
 struct Scene::ShapeRecord {
-    std::shared_ptr<const TriangleMesh> mesh;  // null for what is curved
+    std::shared_ptr<const TriangleMesh> mesh;  // null for what is curved or cut on demand
+    std::unique_ptr<LimitGroups> groups;       // of what is cut on demand
     // Of a mesh that rays meet where its instances have it; else its vertices and all that follows
     // of them are kept, moved to the scene.
     std::optional<Placement> placement;
@@ -40,7 +56,7 @@ struct Scene::ShapeRecord {
     // The triangles, without area those that no ray is to meet; empty where rays meet all there is.
     std::vector<TriangleMesh::Corners> visible;
     bool mirrored = false;                       // the transform turns the winding round
-    std::optional<CurvedShape> curved;           // without a mesh
+    std::optional<CurvedShape> curved;           // without a mesh or groups
     std::vector<std::uint32_t> materials;        // of each slot
     std::vector<std::int32_t> lightOfPrimitive;  // empty when nothing here emits
     std::uint32_t instanceId = 0;
@@ -48,6 +64,8 @@ struct Scene::ShapeRecord {
     std::shared_ptr<const Tangents> tangents;  // in the mesh's space; null where none asks for them
 
     std::uint32_t materialOf(std::uint32_t primitive) const {
+        if (groups && groups->groupCount() > 0)
+            return materials[groups->slot(groups->groupOf(primitive))];
         return mesh ? materials[mesh->materials.empty() ? 0 : mesh->materials[primitive]]
                     : materials[0];
     }
@@ -58,7 +76,19 @@ struct Scene::ShapeRecord {
             std::ranges::lower_bound(exact, primitive, {}, &ExactTriangle::primitive);
         return found != exact.end() && found->primitive == primitive ? &*found : nullptr;
     }
+    // Calls visit(group, triangle's number in it) with a primitive of groups held.
+    template <typename Visit>
+    auto inGroup(std::uint32_t primitive, const Visit& visit) const {
+        const std::uint32_t group = groups->groupOf(primitive);
+        return visit(*groups->pin(group), primitive - groups->firstTriangle(group));
+    }
     Corner corner(std::uint32_t primitive) const {
+        if (groups)
+            return inGroup(primitive, [](const TriangleGroup& group, std::uint32_t triangle) {
+                const Vec3d v0(group.point(triangle, 0).position);
+                return Corner{v0, Vec3d(group.point(triangle, 1).position) - v0,
+                              Vec3d(group.point(triangle, 2).position) - v0};
+            });
         if (const ExactTriangle* const found = exactOf(primitive))
             return {found->corners[0], found->corners[1] - found->corners[0],
                     found->corners[2] - found->corners[0]};
@@ -73,16 +103,45 @@ struct Scene::ShapeRecord {
     Vec3f normal(std::uint32_t index) const {
         return placement ? placement->normals.apply(mesh->normals[index]) : normals[index];
     }
+    Attributes attributes(std::uint32_t primitive) const {
+        Attributes found;
+        if (groups)
+            return inGroup(primitive, [&](const TriangleGroup& group, std::uint32_t triangle) {
+                found.hasNormals = true;
+                found.hasTexcoords = groups->hasTexcoords();
+                for (std::size_t i = 0; i < 3; ++i) {
+                    const TriangleGroup::Point& point = group.point(triangle, i);
+                    found.normals[i] = point.normal;
+                    found.texcoords[i] = point.texcoord;
+                    found.tangents[i] = point.tangent;
+                }
+                return found;
+            });
+        found.hasNormals = !mesh->normals.empty();
+        found.hasTexcoords = !mesh->texcoords.empty();
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (found.hasNormals) found.normals[i] = normal(mesh->normalIndices[primitive][i]);
+            if (found.hasTexcoords)
+                found.texcoords[i] = mesh->texcoords[mesh->texcoordIndices[primitive][i]];
+        }
+        return found;
+    }
     Facet facet(std::uint32_t primitive) const { return facet(primitive, corner(primitive)); }
     // of: its corner.
     Facet facet(std::uint32_t primitive, const Corner& of) const {
-        if (!placement) return facets[primitive];
+        if (!placement && !groups) return facets[primitive];
         Facet facet(of, mirrored);
         facet.reach += reachOfPlacement;
         return facet;
     }
-    // Of a triangle, or the sphere.
+    // Of a triangle, the group that it is in, or the sphere.
     void bounds(std::uint32_t primitive, Vec3d& lo, Vec3d& hi) const {
+        if (groups) {
+            const Box3d& box = groups->box(groups->groupOf(primitive));
+            lo = box.lo;
+            hi = box.hi;
+            return;
+        }
         if (!mesh) {
             const Box3d box = curved->bounds();
             lo = box.lo;
@@ -99,6 +158,7 @@ struct Scene::ShapeRecord {
     }
     // Fills `visible`.
     void leaveOutInvisible(const Scene& scene) {
+        if (groups) return;  // what has such a material is cut as a whole
         const auto isOne = [&](std::uint32_t index) { return isInvisible(scene.material(index)); };
         if (std::ranges::none_of(materials, isOne)) return;
         if (mesh)

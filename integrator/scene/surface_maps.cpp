@@ -73,7 +73,8 @@ void Scene::prepareMaps(ShapeRecord& record, const InstanceDescription& instance
         return std::ranges::any_of(instance.materials,
                                    [&](std::uint32_t m) { return is(material(m)); });
     };
-    const bool hasCoordinates = record.mesh && !record.mesh->texcoords.empty();
+    const bool hasCoordinates = record.groups ? record.groups->hasTexcoords()
+                                              : record.mesh && !record.mesh->texcoords.empty();
     if (!hasCoordinates) {
         if (any(hasReliefMap))
             m_notices.push_back(
@@ -84,26 +85,27 @@ void Scene::prepareMaps(ShapeRecord& record, const InstanceDescription& instance
         return;
     }
     record.hasMaps = any(hasReliefMap) || any(asksForTangents);
-    if (any(asksForTangents)) record.tangents = Tangents::of(*record.mesh, cancel);
+    if (record.mesh && any(asksForTangents)) record.tangents = Tangents::of(*record.mesh, cancel);
 }
 
 // The length of the normal as it is interpolated; 1 where there is none, or it is not used.
-float Scene::smoothness(const ShapeRecord& record, std::uint32_t primitive, Vec2f barycentric,
-                        const Surface& surface) {
-    if (record.mesh->normals.empty() || surface.shadingNormal == surface.geometricNormal)
-        return 1.0f;
-    const auto& at = record.mesh->normalIndices[primitive];
-    return length(interpolated({record.normal(at[0]), record.normal(at[1]), record.normal(at[2])},
-                               barycentric));
+float Scene::smoothness(const Attributes& attributes, Vec2f barycentric, const Surface& surface) {
+    if (!attributes.hasNormals || surface.shadingNormal == surface.geometricNormal) return 1.0f;
+    return length(interpolated(attributes.normals, barycentric));
 }
 
 void Scene::applyMaps(const ShapeRecord& record, std::uint32_t primitive,
-                      const TexturedEdges& edges, Vec2f barycentric, const UvFootprint& footprint,
-                      Surface& surface) const {
+                      const Attributes& attributes, const TexturedEdges& edges, Vec2f barycentric,
+                      const UvFootprint& footprint, Surface& surface) const {
     const MaterialDescription& material = m_materials[record.materialOf(primitive)];
     const bool needsTangent = asksForTangents(material);
     Vec3f tangent;
-    if (needsTangent) {
+    if (needsTangent && record.groups) {
+        tangent = interpolated(attributes.tangents, barycentric);
+        const double size = length(Vec3d(tangent));
+        if (size > 0) tangent = Vec3f(Vec3d(tangent) / size);
+        surface.isTextureMirrored = attributes.isMirrored() != record.mirrored;
+    } else if (needsTangent) {
         const Transform& transform = m_description.instances[surface.shape].transform;
         const Tangents& of = *record.tangents;
         const auto at = [&](std::size_t corner) {
@@ -113,8 +115,8 @@ void Scene::applyMaps(const ShapeRecord& record, std::uint32_t primitive,
         surface.isTextureMirrored = of.isMirrored(primitive) != record.mirrored;
     }
     if (material.normalTexture != kNoTexture)
-        turnByNormalMap(material, tangent, smoothness(record, primitive, barycentric, surface),
-                        footprint, surface);
+        turnByNormalMap(material, tangent, smoothness(attributes, barycentric, surface), footprint,
+                        surface);
     if (material.bumpTexture != kNoTexture) turnByBumpMap(material, edges, footprint, surface);
     if (material.anisotropy > 0.0f) setTangent(tangent, surface);
 }

@@ -3,6 +3,7 @@
 #include "integrator/shapes/curved_shape.h"
 
 #include <type_traits>
+#include <variant>
 
 #include "integrator/values/error.h"
 
@@ -15,10 +16,10 @@ CurvedKind place(const Shape& shape, const Transform& toWorld, const Vec3d& orig
     return std::visit(
         [&](const auto& kind) -> CurvedKind {
             using Given = std::decay_t<decltype(kind)>;
-            if constexpr (std::is_same_v<Given, std::shared_ptr<const TriangleMesh>>)
-                throw Error(Status::kInternal, "a mesh is no curved shape");
-            else
+            if constexpr (requires { typename Given::Placed; })
                 return typename Given::Placed(kind, toWorld, origin, hasTexture, name);
+            else
+                throw Error(Status::kInternal, "a mesh is no curved shape");
         },
         shape);
 }

@@ -5,6 +5,7 @@
 #include <memory>
 #include <variant>
 
+#include "integrator/geometry/limit_shape.h"
 #include "integrator/geometry/polygon_mesh.h"
 #include "integrator/shapes/sphere.h"
 
@@ -12,8 +13,9 @@ namespace pm {
 
 // What stands somewhere in a scene, and the kinds that are no meshes where they stand. A new kind:
 // a file of its own with its description and what CurvedShape asks of it, and a word in each of
-// these lines.
-using Shape = std::variant<std::shared_ptr<const TriangleMesh>, SphereShape>;
+// these lines. A limit shape is cut into triangles where and when rays meet it.
+using Shape = std::variant<std::shared_ptr<const TriangleMesh>, std::shared_ptr<const LimitShape>,
+                           SphereShape>;
 using CurvedKind = std::variant<PlacedSphere>;
 
 }  // namespace pm

@@ -34,8 +34,8 @@ struct ObjectTable {
 
 template <typename Kinds>
 struct NamesOf;
-template <typename Mesh, typename... Curved>
-struct NamesOf<std::variant<Mesh, Curved...>> {
+template <typename Mesh, typename Limit, typename... Curved>
+struct NamesOf<std::variant<Mesh, Limit, Curved...>> {
     static constexpr std::array<const char*, sizeof...(Curved)> kNames = {Curved::kName...};
 };
 

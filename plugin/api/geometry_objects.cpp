@@ -29,6 +29,9 @@ constexpr std::uint64_t kIndicesOfALargeMesh = 1'000'000;
 constexpr std::uint64_t kIndicesOfALargeCage = 256;
 constexpr std::uint32_t kMaxHostTessellationRate = 64;
 constexpr std::uint32_t kDefaultTessellationRate = 4;
+// A cage that would make more bytes of triangles than this is cut on demand. A fixed number, as
+// what memory there is must not change the picture.
+constexpr std::uint64_t kMostCutWhole = std::uint64_t{512} << 20;
 
 void checkArray(const void* array, std::uint64_t count, const char* name) {
     if (count > kMaxElements)
@@ -150,11 +153,21 @@ void reportRepairs(const Context& context, const MeshRepairs& repairs) {
     report(repairs.ignoredCreases, "creases lie on no edge and were ignored");
 }
 
-std::shared_ptr<MeshObject> finishMesh(std::shared_ptr<Context> context, BuiltMesh built,
+// A cage, cut whole or, where limit is not null, not at all.
+struct CutCage {
+    BuiltMesh built;
+    std::shared_ptr<const CageSource> source;
+    std::shared_ptr<const LimitShape> limit;
+};
+
+std::shared_ptr<MeshObject> finishMesh(std::shared_ptr<Context> context, CutCage cut,
                                        std::uint64_t slotCount) {
-    reportRepairs(*context, built.repairs);
-    Shape shape = std::make_shared<const TriangleMesh>(std::move(built.mesh));
-    return std::make_shared<MeshObject>(std::move(context), std::move(shape), slotCount);
+    if (cut.limit) cut.built.repairs.ignoredCreases = cut.limit->surface().ignoredCreases();
+    reportRepairs(*context, cut.built.repairs);
+    Shape shape = std::make_shared<const TriangleMesh>(std::move(cut.built.mesh));
+    if (cut.limit) shape = std::move(cut.limit);
+    return std::make_shared<MeshObject>(std::move(context), std::move(shape), slotCount,
+                                        std::move(cut.source));
 }
 
 std::uint32_t checkedRate(std::uint32_t rate) {
@@ -234,6 +247,10 @@ SubdivisionCage toCage(const PmrCageDesc& desc, const PmrMeshDesc& meshDesc,
     return cage;
 }
 
+bool isTooLargeToCut(const SubdivisionCage& cage, int rate) {
+    return tessellationSize(cage, rate).bytes > kMostCutWhole;
+}
+
 void refuseTooLarge(const SubdivisionCage& cage, int rate) {
     constexpr std::uint64_t kFitsAnywhere = 16 << 20;  // asking the system takes longer than that
     const TessellationSize size = tessellationSize(cage, rate);
@@ -259,7 +276,7 @@ std::shared_ptr<MeshObject> makeMesh(std::shared_ptr<Context> context, const Pmr
     BuiltMesh built = desc.indexCount < kIndicesOfALargeMesh
                           ? cut(cancel)
                           : runLeavable(cancel, "cutting faces into triangles", std::move(cut));
-    return finishMesh(std::move(context), std::move(built), slotCount);
+    return finishMesh(std::move(context), {std::move(built), nullptr, nullptr}, slotCount);
 }
 
 std::shared_ptr<MeshObject> makeCage(std::shared_ptr<Context> context, const PmrCageDesc& desc) {
@@ -273,12 +290,20 @@ std::shared_ptr<MeshObject> makeCage(std::shared_ptr<Context> context, const Pmr
     const bool isSmall = meshDesc.indexCount < kIndicesOfALargeCage;
     const CancelCheck check = context->buildCheck();
     auto cut = [cage = toCage(desc, meshDesc, check), rate,
-                threads = isSmall ? 1 : context->threads()](const CancelCheck& cancel) {
+                threads = isSmall ? 1 : context->threads()](const CancelCheck& cancel) mutable {
+        CutCage result;
+        if (isTooLargeToCut(cage, rate)) {
+            result.source = std::make_shared<const CageSource>(std::move(cage), rate);
+            result.limit = result.source->limit();
+            return result;
+        }
         refuseTooLarge(cage, rate);
         WorkerArena arena(threads);
-        return arena.execute([&] { return tessellate(cage, rate, cancel); });
+        result.built = arena.execute([&] { return tessellate(cage, rate, cancel); });
+        result.source = std::make_shared<const CageSource>(std::move(cage), rate);
+        return result;
     };
-    BuiltMesh built = isSmall ? cut(check) : runLeavable(check, "tessellating", std::move(cut));
-    return finishMesh(std::move(context), std::move(built), slotCount);
+    CutCage result = isSmall ? cut(check) : runLeavable(check, "tessellating", std::move(cut));
+    return finishMesh(std::move(context), std::move(result), slotCount);
 }
 }  // namespace pm::plugin

@@ -26,6 +26,13 @@ constexpr Place<I> kHiddenFrom = {memberPlace<&I::hiddenFrom>().put,
                                   [](Hasher& hasher, const I& instance) {
                                       if (instance.hiddenFrom != 0) hasher.add(instance.hiddenFrom);
                                   }};
+// Likewise.
+constexpr Place<I> kTessellationRate = {memberPlace<&I::tessellationRate>().put,
+                                        [](Hasher& hasher, const I& instance) {
+                                            if (instance.tessellationRate == 0) return;
+                                            hasher.add("tessellationRate");
+                                            hasher.add(instance.tessellationRate);
+                                        }};
 // The host's handles have become numbers of the scene's materials.
 constexpr Place<I> kMaterials = {
     nullptr, [](Hasher& hasher, const I& instance) { hashValue(hasher, instance.materials); }};
@@ -51,6 +58,28 @@ constexpr std::array kInstanceRows = {
                        .defaultText = "0"},
                       {Kind::kUint32, offsetof(PmrInstanceDesc, hiddenFrom)},
                       {kHiddenFrom}},
+    InstanceParameter{
+        {.name = "tessellation",
+         .help =
+             "When a cage is cut into triangles: onDemand each part of it where a ray meets it, "
+             "whole before any ray; auto: on demand what is displaced or very large.",
+         .type = Type::kChoice,
+         .maximum = 2,
+         .defaultText = "auto",
+         .choices = "auto,onDemand,whole",
+         .changesPixels = false,  // the shape that it chooses is hashed
+         .isLater = true},
+        {},
+        {unseenPlace<&I::tessellation>()}},
+    InstanceParameter{{.name = "tessellationRate",
+                       .help = "Of a cage cut on demand: pieces of each of its edges; 0: by its "
+                               "place in the picture.",
+                       .type = Type::kInteger,
+                       .maximum = 1024,
+                       .defaultText = "0",
+                       .isLater = true},
+                      {},
+                      {kTessellationRate}},
     InstanceParameter{{.name = "id",
                        .help = "A number of the host's.",
                        .type = Type::kInteger,

@@ -15,6 +15,19 @@ using Kind = StructPlace::Kind;
 using Type = ParameterType;
 using M = MaterialDescription;
 
+// Nothing of what is not displaced: such scenes keep the checksums that they have had.
+constexpr Place<M> kDisplacement = {texturePlace<&M::displacementTexture>().put,
+                                    [](Hasher& hasher, const M& material) {
+                                        if (material.displacementTexture == kNoTexture) return;
+                                        hasher.add("displacement");
+                                        hasher.add(material.displacementTexture);
+                                    }};
+constexpr Place<M> kDisplacementScale = {memberPlace<&M::displacementScale>().put,
+                                         [](Hasher& hasher, const M& material) {
+                                             if (material.displacementTexture != kNoTexture)
+                                                 hasher.add(material.displacementScale);
+                                         }};
+
 constexpr std::array kMaterialRows = {
     MaterialParameter{{.name = "kind",
                        .help = "surface: diffuse, plus a glossy lobe; mirror: glossy is its "
@@ -275,6 +288,22 @@ constexpr std::array kMaterialRows = {
                        .isLater = true},
                       {},
                       {memberPlace<&M::bumpScale>()}},
+    MaterialParameter{{.name = "displacementTexture",
+                       .help = "Heights by which the limit surfaces of cages with texture "
+                               "coordinates are displaced along their normal.",
+                       .type = Type::kTexture,
+                       .isLater = true},
+                      {},
+                      {kDisplacement}},
+    MaterialParameter{{.name = "displacementScale",
+                       .help = "What a height of 1 is.",
+                       .unit = "scene units",
+                       .minimum = -1e6,
+                       .maximum = 1e6,
+                       .defaultText = "1",
+                       .isLater = true},
+                      {},
+                      {kDisplacementScale}},
 };
 
 }  // namespace

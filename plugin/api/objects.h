@@ -11,7 +11,9 @@
 #include <string>
 #include <utility>
 
+#include "integrator/geometry/limit_shape.h"
 #include "integrator/scene/scene_description.h"
+#include "integrator/values/kept.h"
 #include "plugin/api/context.h"
 #include "plugin/api/handle_table.h"
 #include "plugin/api/parameter_reader.h"
@@ -20,21 +22,46 @@
 
 namespace pm::plugin {
 
+// A cage as a host gave it. Threads: any.
+class CageSource {
+  public:
+    CageSource(SubdivisionCage cage, int rate) : m_cage(std::move(cage)), m_rate(rate) {}
+    // To be cut on demand; made once. Errors: those of LimitShape.
+    std::shared_ptr<const LimitShape> limit() const {
+        return m_limit.get<LimitShape>(
+            [](const LimitShape&) { return true; },
+            [&] { return std::make_shared<const LimitShape>(m_cage, m_rate); });
+    }
+
+  private:
+    SubdivisionCage m_cage;
+    int m_rate;
+    Kept m_limit;
+};
+
 class MeshObject {
   public:
     static constexpr ObjectKind kKind = ObjectKind::kMesh;
 
-    MeshObject(std::shared_ptr<Context> context, Shape shape, std::uint64_t slotCount)
-        : m_context(std::move(context)), m_shape(std::move(shape)), m_slotCount(slotCount) {}
+    // cage: null of what is none.
+    MeshObject(std::shared_ptr<Context> context, Shape shape, std::uint64_t slotCount,
+               std::shared_ptr<const CageSource> cage = nullptr)
+        : m_context(std::move(context)),
+          m_shape(std::move(shape)),
+          m_slotCount(slotCount),
+          m_cage(std::move(cage)) {}
 
     const std::shared_ptr<Context>& context() const { return m_context; }
+    // Of a cage: cut whole, or to be cut on demand where it is very large.
     const Shape& shape() const { return m_shape; }
+    const std::shared_ptr<const CageSource>& cage() const { return m_cage; }
     std::uint64_t slotCount() const { return m_slotCount; }
 
   private:
     std::shared_ptr<Context> m_context;
     Shape m_shape;
     std::uint64_t m_slotCount;
+    std::shared_ptr<const CageSource> m_cage;
 };
 
 // Copy, check and triangulate; a cage is tessellated on the context's threads. Warnings go to the

@@ -118,6 +118,7 @@ void SceneObject::addInstance(const PmrInstanceDesc& desc) {
     values.putInto(instance);
     instance.materials = materialsOf(desc, *mesh);
     m_description.instances.push_back(std::move(instance));
+    m_cages.push_back(mesh->cage());
 }
 
 void SceneObject::addLight(const PmrLightDesc& desc) {
@@ -190,9 +191,24 @@ void SceneObject::setParameter(const PmrParameterDesc& desc) {
     }
 }
 
+// Of the instances that are cages: what is to be cut on demand.
+void SceneObject::chooseShapes(SceneDescription& description) const {
+    for (std::size_t i = 0; i < m_cages.size(); ++i) {
+        InstanceDescription& instance = description.instances[i];
+        const bool isDisplaced =
+            std::ranges::any_of(instance.materials, [&](std::uint32_t material) {
+                return description.materials[material].displacementTexture != kNoTexture;
+            });
+        const bool isOnDemand = instance.tessellation == TessellationTime::kOnDemand ||
+                                (instance.tessellation == TessellationTime::kAuto && isDisplaced);
+        if (m_cages[i] && isOnDemand) instance.shape = m_cages[i]->limit();
+    }
+}
+
 // The description, whose textures go to their list.
 SceneDescription SceneObject::describe(SceneTextures& textures) const {
     SceneDescription description = m_description;
+    chooseShapes(description);
     for (const LightSet& light : m_lights) addLightTo(light, description);
     if (m_environment) {
         description.environment.emplace();

@@ -54,11 +54,13 @@ class SceneObject {
     void setInstanceParameter(const PmrParameterDesc& desc);
     SceneDescription describe(SceneTextures& textures) const;
     std::uint32_t materialIndex(const std::shared_ptr<MaterialObject>& material);
+    void chooseShapes(SceneDescription& description) const;
     std::vector<std::uint32_t> materialsOf(const PmrInstanceDesc& desc, const MeshObject& mesh);
 
     std::shared_ptr<Context> m_context;
     mutable std::mutex m_mutex;
     SceneDescription m_description;  // materials and instances; the others are
+    std::vector<std::shared_ptr<const CageSource>> m_cages;  // of the instances; null: none
     std::vector<LightSet> m_lights;
     std::optional<EnvironmentSet> m_environment;
     std::optional<CameraSet> m_camera;

@@ -48,8 +48,8 @@ using MakeByName = std::shared_ptr<MeshObject> (*)(std::shared_ptr<Context>, std
 // How each kind is made, in the order of Shape.
 template <typename Kinds>
 struct MakersOf;
-template <typename Mesh, typename... Curved>
-struct MakersOf<std::variant<Mesh, Curved...>> {
+template <typename Mesh, typename Limit, typename... Curved>
+struct MakersOf<std::variant<Mesh, Limit, Curved...>> {
     static constexpr std::array<MakeByName, sizeof...(Curved)> kMakers = {makeByName<Curved>...};
 };
 

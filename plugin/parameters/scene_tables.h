@@ -26,11 +26,11 @@ using CameraParameter = Parameter<CameraDescription>;
 using InstanceParameter = Parameter<InstanceDescription>;
 using SphereParameter = Parameter<SphereShape>;
 
-// A table for each kind of shape that is no mesh, in the order of Shape.
+// A table for each kind of shape that is no mesh or cage, in the order of Shape.
 template <typename Kinds>
 struct ShapeTablesOf;
-template <typename Mesh, typename... Curved>
-struct ShapeTablesOf<std::variant<Mesh, Curved...>> {
+template <typename Mesh, typename Limit, typename... Curved>
+struct ShapeTablesOf<std::variant<Mesh, Limit, Curved...>> {
     using Type = std::tuple<std::span<const Parameter<Curved>>...>;
 };
 using ShapeTables = ShapeTablesOf<Shape>::Type;

@@ -44,6 +44,12 @@ std::uint64_t heldTexelBytes(std::uint64_t texelBytes, std::uint64_t limit) {
     return std::min(texelBytes, std::clamp(limit / 8, kLeast, kMost));
 }
 
+// The same of triangles that are cut on demand: those that don't fit are cut again.
+std::uint64_t heldGroupBytes(std::uint64_t groupBytes, std::uint64_t limit) {
+    constexpr std::uint64_t kLeast = std::uint64_t{32} << 20;
+    return std::min(groupBytes, std::max(limit / 4, kLeast));
+}
+
 // The layers as floats, which every host has to put somewhere.
 std::uint64_t hostBytes(const SettingValues& values) {
     std::uint64_t channels = 0;
@@ -82,11 +88,13 @@ std::string obstacle(const SettingValues& values) {
 std::string figures(const MemoryNeed& need) {
     const std::string textures =
         need.textures == 0 ? "" : fmt::format(", textures {:.2f}", toGib(need.textures));
+    const std::string groups =
+        need.groups == 0 ? "" : fmt::format(", triangles on demand {:.2f}", toGib(need.groups));
     return fmt::format(
         "{:.2f} GiB (scene {:.2f}, frame {:.2f}, photon maps {:.2f}, buckets {:.2f}, process "
-        "{:.2f}{})",
+        "{:.2f}{}{})",
         toGib(need.total()), toGib(need.scene), toGib(need.frame), toGib(need.maps),
-        toGib(need.buckets), toGib(need.process), textures);
+        toGib(need.buckets), toGib(need.process), textures, groups);
 }
 
 std::uint64_t threadsOf(const SettingValues& values) {
@@ -140,7 +148,8 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
                             static_cast<std::uint64_t>(layout.count + 1) * sizeof(float) +
                         grid.cellCount() * (sizeof(BucketInfo) * 2 + kTimeBytes),
                     kProgramBytes + hostBytes(values),
-                    heldTexelBytes(texelBytes, memory.limit)};
+                    heldTexelBytes(texelBytes, memory.limit),
+                    heldGroupBytes(scene.groupBytes(), memory.limit)};
     // Without pixels there is no frame, whatever the delivery.
     const bool photonsOnly = values.integer(Setting::kPhotonsOnly) != 0;
     if (photonsOnly)
@@ -149,7 +158,8 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
                         plan.landingsPerPass() * kTracedBytesPerPhoton,
                         0,
                         kProgramBytes,
-                        memory.whole.textures};
+                        memory.whole.textures,
+                        memory.whole.groups};
     memory.need = memory.whole;
     if (photonsOnly) return memory;
     const std::string& delivery = values.word(Setting::kDelivery);

@@ -17,7 +17,10 @@ struct MemoryNeed {
     std::uint64_t scene = 0, frame = 0, maps = 0, buckets = 0;
     std::uint64_t process = 0;   // program and libraries, and a host's copy of the layers
     std::uint64_t textures = 0;  // of their texels, those that are held at once
-    std::uint64_t total() const { return scene + frame + maps + buckets + process + textures; }
+    std::uint64_t groups = 0;    // likewise of the triangles that are cut on demand
+    std::uint64_t total() const {
+        return scene + frame + maps + buckets + process + textures + groups;
+    }
 };
 
 // How a render holds its pixels: the whole frame, one pass after the other over all buckets; or

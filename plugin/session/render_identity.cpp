@@ -35,13 +35,45 @@ void addMesh(Hasher& hasher, const TriangleMesh& mesh) {
     hasher.addArray<std::uint32_t>(mesh.materials);
 }
 
+void addLimit(Hasher& hasher, const LimitShape& shape) {
+    const SubdivisionCage& cage = shape.cage();
+    hasher.add("limit");
+    hasher.addArray<Vec3f>(cage.mesh.positions);
+    hasher.addArray<std::uint32_t>(cage.mesh.faceVertexCounts);
+    hasher.addArray<std::uint32_t>(cage.mesh.vertexIndices);
+    hasher.addArray<Vec2f>(cage.mesh.texcoords);
+    hasher.addArray<std::int32_t>(cage.mesh.texcoordIndices);
+    hasher.addArray<std::uint32_t>(cage.mesh.faceMaterials);
+    for (const int rule : {static_cast<int>(cage.scheme), static_cast<int>(cage.boundary),
+                           static_cast<int>(cage.faceVarying), static_cast<int>(cage.creaseMethod),
+                           static_cast<int>(cage.smoothTriangles), shape.rate()})
+        hasher.add(rule);
+    hasher.add(cage.creases.size());
+    for (const Crease& crease : cage.creases) {
+        hasher.add(crease.vertices[0]);
+        hasher.add(crease.vertices[1]);
+        hasher.add(crease.sharpness);
+    }
+    hasher.add(cage.corners.size());
+    for (const SharpCorner& corner : cage.corners) {
+        hasher.add(corner.vertex);
+        hasher.add(corner.sharpness);
+    }
+    hasher.addArray<std::uint32_t>(cage.holes);
+}
+
 void addInstance(Hasher& hasher, const InstanceDescription& instance, const SceneTables& tables) {
-    hasher.add(instance.shape.index());
+    // As they were numbered before there were limit shapes: scenes keep the checksums that they
+    // have had.
+    const std::size_t kind = instance.shape.index();
+    hasher.add(kind > 1 ? kind - 1 : 2 * kind);
     std::visit(
         [&](const auto& shape) {
             using Kind = std::decay_t<decltype(shape)>;
             if constexpr (std::is_same_v<Kind, std::shared_ptr<const TriangleMesh>>)
                 addMesh(hasher, *shape);
+            else if constexpr (std::is_same_v<Kind, std::shared_ptr<const LimitShape>>)
+                addLimit(hasher, *shape);
             else
                 hashRows(hasher, rowsOf<Kind>(tables.shapes), shape);
         },

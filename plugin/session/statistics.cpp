@@ -98,6 +98,15 @@ Json texturesJson(const SceneTextures& textures) {
             {"bytesReadOnce", reads.bytesOnce}};
 }
 
+// Of triangles that are cut where rays meet them; by all renders of the scene.
+Json geometryJson(const Scene& scene) {
+    const CacheCounts counts = scene.groupCounts();
+    return {{"budgetBytes", scene.groupBudget()},   {"misses", counts.misses},
+            {"madeAgain", counts.madeAgain},        {"waits", counts.waits},
+            {"bytesMade", counts.bytesMade},        {"bytesHeld", counts.bytesHeld},
+            {"mostBytesHeld", counts.mostBytesHeld}};
+}
+
 Json warningsJson(const Scene& scene, RenderWork& work) {
     auto entries = work.warnings().entries();
     for (const Notice& notice : scene.notices()) {
@@ -205,6 +214,7 @@ std::string Render::statisticsJson() const {
     json["buckets"] = bucketJson(*running, progress);
     json["memory"] = memoryJson(*running, counters);
     json["textureCache"] = texturesJson(*m_scene->textures);
+    json["geometryCache"] = geometryJson(*m_scene->scene);
     json["plan"] = planJson(running->plan(), counters);
     json["warnings"] = warningsJson(running->scene(), *running);
     json["settings"] = settingsJson(settings());

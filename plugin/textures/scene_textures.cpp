@@ -86,6 +86,18 @@ BadTexels SceneTextures::badTexels(std::int32_t index, const CancelCheck& cancel
     return bad;
 }
 
+std::array<float, 2> SceneTextures::extremes(std::int32_t index, const CancelCheck& cancel) const {
+    const Texture& texture = *m_textures[static_cast<std::size_t>(index)];
+    if (texture.tiles.empty()) return texture.system->extremes(texture.picture, cancel);
+    // Where there is no tile the texel is 0.
+    std::array<float, 2> all{0.0f, 0.0f};
+    for (const TextureTile& tile : texture.tiles) {
+        const auto [lo, hi] = texture.system->extremes(tile.picture, cancel);
+        all = {std::min(all[0], lo), std::max(all[1], hi)};
+    }
+    return all;
+}
+
 std::string SceneTextures::name(std::int32_t index) const {
     const std::string& file = m_textures[static_cast<std::size_t>(index)]->picture.fileName;
     return file.substr(file.find_last_of('/') + 1);

@@ -37,6 +37,7 @@ class SceneTextures final : public TextureSource {
     Texel lookUp(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const override;
     Texel lookUpOfLight(std::int32_t index, Vec2f uv) const override;
     BadTexels badTexels(std::int32_t index, const CancelCheck& cancel) const override;
+    std::array<float, 2> extremes(std::int32_t index, const CancelCheck& cancel) const override;
     std::string name(std::int32_t index) const override;
     std::array<std::uint32_t, 2> texels(std::int32_t index) const override;
     std::uint64_t failureCount() const override;

@@ -284,15 +284,16 @@ TextureReads TextureSystem::reads(const TexturePicture& picture) const {
     return reads;
 }
 
-BadTexels TextureSystem::badTexels(const TexturePicture& picture, const CancelCheck& cancel) const {
+template <typename Visit>
+void TextureSystem::forEachTexel(const TexturePicture& picture, const char* what,
+                                 const CancelCheck& cancel, const Visit& visit) const {
     constexpr std::uint32_t kRows = kTilePixels;
     const int channelCount = std::min(picture.channelCount, 4);
     const auto channels = static_cast<std::size_t>(channelCount);
     std::vector<float> texels(std::size_t{picture.width} * kRows * channels);
     OIIO::TextureOpt options;
-    BadTexels bad;
     for (std::uint32_t row = 0; row < picture.height; row += kRows) {
-        cancel.throwIfSet("looking at a light's texels");
+        cancel.throwIfSet(what);
         const std::uint32_t rows = std::min(kRows, picture.height - row);
         if (!m_system->get_texels(picture.handle, m_system->get_perthread_info(), options, 0, 0,
                                   static_cast<int>(picture.width), static_cast<int>(row),
@@ -303,14 +304,36 @@ BadTexels TextureSystem::badTexels(const TexturePicture& picture, const CancelCh
         for (std::size_t i = 0; i < count; ++i) {
             std::array<float, 4> values{};
             std::copy_n(&texels[i * channels], channels, values.begin());
-            const Texel texel = withGain(picture, toTexel(values, channelCount));
-            if (!std::isfinite(texel.r) || !std::isfinite(texel.g) || !std::isfinite(texel.b))
-                ++bad.notFinite;
-            else if (texel.r + texel.g + texel.b < 0.0f)
-                ++bad.negative;
+            visit(withGain(picture, toTexel(values, channelCount)));
         }
     }
+}
+
+BadTexels TextureSystem::badTexels(const TexturePicture& picture, const CancelCheck& cancel) const {
+    BadTexels bad;
+    forEachTexel(picture, "looking at a light's texels", cancel, [&](const Texel& texel) {
+        if (!std::isfinite(texel.r) || !std::isfinite(texel.g) || !std::isfinite(texel.b))
+            ++bad.notFinite;
+        else if (texel.r + texel.g + texel.b < 0.0f)
+            ++bad.negative;
+    });
     return bad;
+}
+
+std::array<float, 2> TextureSystem::extremes(const TexturePicture& picture,
+                                             const CancelCheck& cancel) const {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    std::array<float, 2> found{kInfinity, -kInfinity};
+    const auto add = [&](float value) {
+        if (!std::isfinite(value)) value = 0.0f;
+        found = {std::min(found[0], value), std::max(found[1], value)};
+    };
+    forEachTexel(picture, "looking at a texture's heights", cancel,
+                 [&](const Texel& texel) { add(texel.r); });
+    const bool hasOutside = picture.wrapS == OIIO::TextureOpt::WrapBlack ||
+                            picture.wrapT == OIIO::TextureOpt::WrapBlack;
+    if (hasOutside) add(withGain(picture, {}).r);
+    return found;
 }
 
 }  // namespace pm::plugin

@@ -93,10 +93,19 @@ class TextureSystem {
     // cancel is set.
     BadTexels badTexels(const TexturePicture& picture, const CancelCheck& cancel) const;
 
+    // The least and the largest first channel of all texels of the finest level, gain and base
+    // applied, and of what is outside. Texels that are no finite number count as 0, as their
+    // look-up does. Errors as above.
+    std::array<float, 2> extremes(const TexturePicture& picture, const CancelCheck& cancel) const;
+
     TextureReads reads(const TexturePicture& picture) const;
 
   private:
     OIIO::TextureSystem& system();
+    // Calls visit(texel) for all of the finest level, in rows. while: for "cancelled while".
+    template <typename Visit>
+    void forEachTexel(const TexturePicture& picture, const char* what, const CancelCheck& cancel,
+                      const Visit& visit) const;
 
     std::once_flag m_once;
     OIIO::TextureSystem* m_system = nullptr;

@@ -17,7 +17,7 @@ struct MapLine {
     std::array<double, 3> offset{};
     double base{0};
     double gain{1};
-    double strength{1};  // of a normal or bump map
+    double strength{1};  // of a normal map or heights
     bool clamp{};
     std::string colourSpace;
     std::vector<std::string> leftOut;  // options that ask for something that is not done

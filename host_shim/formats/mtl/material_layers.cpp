@@ -61,8 +61,6 @@ void limitStrength(std::optional<TextureUse>& use, const char* key, float least,
 
 // Why a map is left out, where it is not only that nobody has done it yet.
 std::string whyLeftOut(std::string_view key) {
-    if (key == "disp" || key == "map_disp")
-        return fmt::format("{} is not displaced yet: surfaces stay where they are", key);
     if (key == "refl" || key == "map_refl")
         return fmt::format("{} is left out: mirrors show the scene, not a picture", key);
     return fmt::format("{} is not rendered yet and left out", key);
@@ -88,6 +86,7 @@ void limitStrengths(MaterialData& material, const MaterialNote& note) {
     }
     limitStrength(material.normalTexture, "norm", 0.0f, kMostOfNormals, note);
     limitStrength(material.bumpTexture, "map_bump", -kMostOfHeights, kMostOfHeights, note);
+    limitStrength(material.displacementTexture, "disp", -kMostOfHeights, kMostOfHeights, note);
 }
 
 void noteLeftOut(const MtlSection& section, const MaterialNote& note) {

@@ -113,6 +113,7 @@ class MaterialReader {
         m_material.emissionTexture = map("map_Ke", false);
         m_material.normalTexture = map("norm", true);
         m_material.bumpTexture = map("map_bump", true);
+        m_material.displacementTexture = map("disp", true);
         m_material.transmissionTexture = map("map_Tf", false);
     }
 

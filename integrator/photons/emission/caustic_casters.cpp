@@ -115,6 +115,13 @@ void addMesh(const Scene& scene, const InstanceDescription& instance, const Tria
     }
 }
 
+Item itemOf(const SphereShape& sphere) {
+    const Vec3f centre(sphere.centre);
+    // What rounding to float takes off is given back.
+    const double rounding = 0x1p-22 * (maxAbsComponent(sphere.centre) + sphere.radius);
+    return {{centre, centre, centre}, static_cast<float>(sphere.radius + rounding)};
+}
+
 std::vector<Item> castingItems(const Scene& scene, const CancelCheck& cancel) {
     std::vector<Item> items;
     const auto& instances = scene.description().instances;
@@ -122,13 +129,11 @@ std::vector<Item> castingItems(const Scene& scene, const CancelCheck& cancel) {
         if (const auto* mesh =
                 std::get_if<std::shared_ptr<const TriangleMesh>>(&instances[i].shape)) {
             addMesh(scene, instances[i], **mesh, items, cancel);
-        } else if (castsCaustics(scene.material(instances[i].materials[0]))) {
-            const SphereShape sphere = scene.ballAround(i);
-            const Vec3f centre(sphere.centre);
-            // What rounding to float takes off is given back.
-            const double rounding = 0x1p-22 * (maxAbsComponent(sphere.centre) + sphere.radius);
-            items.push_back(
-                {{centre, centre, centre}, static_cast<float>(sphere.radius + rounding)});
+        } else if (std::ranges::any_of(instances[i].materials, [&](std::uint32_t material) {
+                       return castsCaustics(scene.material(material));
+                   })) {
+            for (std::uint32_t part = 0; part < scene.partCount(i); ++part)
+                items.push_back(itemOf(scene.ballAroundPart(i, part)));
         }
     }
     return items;

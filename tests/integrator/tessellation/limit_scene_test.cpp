@@ -1,0 +1,176 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// Rays among limit surfaces that are cut when they are met.
+#include "tests/support/limit_scene.h"
+
+#include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
+
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <vector>
+
+#include "integrator/geometry/subdivision.h"
+#include "integrator/sampling/sampler.h"
+#include "integrator/sampling/warps.h"
+#include "tests/integrator/geometry/obj_cage.h"
+
+namespace pm::test {
+namespace {
+
+// From around the scene, into it.
+Ray rayInto(const Scene& scene, Sampler& random) {
+    const auto radius = static_cast<float>(scene.radius());
+    const Vec3f from = sampleUniformSphere(random.next2D()) * (2.0f * radius);
+    const Vec3f to = sampleUniformSphere(random.next2D()) * (0.7f * radius * random.next1D());
+    return {from, normalize(to - from)};
+}
+
+SceneMaker onDemand(SubdivisionCage cage, std::uint32_t rate) {
+    SceneMaker maker;
+    addLimit(maker, std::move(cage), rate, maker.diffuse(Rgb(0.5f)));
+    return maker;
+}
+
+// The same surfaces as a plain mesh of the same rate, but for how its quads are halved.
+TEST(LimitScene, IsMetWhereThePlainMeshIs) {
+    const auto scene = onDemand(cubeCage(), 8).build();
+    SceneMaker plain;
+    plain.mesh(tessellate(cubeCage(), 8).mesh, plain.diffuse(Rgb(0.5f)));
+    const auto other = plain.build();
+    Sampler random(3, 0, 0, 0);
+    int met = 0, unlike = 0;
+    for (int i = 0; i < 20'000; ++i) {
+        Ray ray = rayInto(*scene, random);
+        const Vec3f shift(scene->centre() - other->centre());
+        Surface a, b;
+        const bool meetsA = scene->intersect(ray, a);
+        ray.origin += shift;
+        const bool meetsB = other->intersect(ray, b);
+        unlike += meetsA != meetsB;
+        if (!meetsA || !meetsB) continue;
+        ++met;
+        ASSERT_LT(length(a.position + shift - b.position), 0.02f);
+        ASSERT_GT(dot(a.geometricNormal, b.geometricNormal), 0.9f);
+        ASSERT_GT(dot(a.shadingNormal, b.shadingNormal), 0.999f);
+    }
+    EXPECT_GT(met, 10'000);
+    EXPECT_LT(unlike, 50);
+}
+
+struct Met {
+    std::uint32_t primitive;
+    Vec3f position, normal;
+    bool operator==(const Met&) const = default;
+};
+
+std::vector<Met> metBy(const Scene& scene, std::uint32_t seed, int count) {
+    std::vector<Met> all;
+    Sampler random(seed, 0, 0, 0);
+    for (int i = 0; i < count; ++i) {
+        Surface surface;
+        const Ray ray = rayInto(scene, random);
+        if (!scene.intersect(ray, surface)) continue;
+        all.push_back({surface.primitive, surface.position, surface.shadingNormal});
+        EXPECT_TRUE(scene.occluded(ray));
+    }
+    return all;
+}
+
+// A cache that holds next to nothing, and eight threads at once, change no bit.
+TEST(LimitScene, IsTheSameBitsFromACacheTooSmall) {
+    const auto large = onDemand(gridCage(24), 12).build(),
+               small = onDemand(gridCage(24), 12).build();
+    small->setGroupBudget(100'000);
+    constexpr int kRays = 2000;
+    std::array<std::vector<Met>, 8> fromLarge, fromSmall;
+    tbb::parallel_for(0, 8, [&](int i) {
+        const auto at = static_cast<std::size_t>(i);
+        fromSmall[at] = metBy(*small, static_cast<std::uint32_t>(i), kRays);
+    });
+    for (std::size_t i = 0; i < 8; ++i) {
+        fromLarge[i] = metBy(*large, static_cast<std::uint32_t>(i), kRays);
+        EXPECT_GT(fromLarge[i].size(), 100u);
+        EXPECT_TRUE(fromLarge[i] == fromSmall[i]) << i;
+    }
+    EXPECT_EQ(large->groupCounts().madeAgain, 0u);
+    EXPECT_GT(small->groupCounts().madeAgain, 100u);
+    // What is pinned, and one more for each thread, may be over.
+    EXPECT_LT(small->groupCounts().mostBytesHeld, 100'000u + 16 * 90'000u);
+}
+
+TEST(LimitScene, CutsNothingThatNoRayMeets) {
+    const auto scene = onDemand(gridCage(64), 8).build();
+    EXPECT_EQ(scene->groupCounts().misses, 0u);
+    const Vec3f down{0, 0, -1};
+    Surface surface;
+    ASSERT_TRUE(scene->intersect({{10.3f, 4.1f, 5}, down}, surface));
+    EXPECT_EQ(scene->groupCounts().misses, 1u);
+    EXPECT_GT(scene->groupCounts().bytesHeld, 10'000u);
+}
+
+// What rays from inside of a closed shape miss. The closest a ray can aim: at corners of triangles,
+// where most of them meet.
+std::size_t missedFromInside(const Scene& scene, std::uint64_t rays) {
+    std::atomic<std::size_t> missed{0};
+    constexpr std::uint64_t kBatch = 4096;
+    tbb::parallel_for(std::uint64_t{0}, (rays + kBatch - 1) / kBatch, [&](std::uint64_t batch) {
+        Sampler random(static_cast<std::uint32_t>(batch), 1, 0, 0);
+        for (std::uint64_t i = 0; i < kBatch; ++i) {
+            const Vec3f from = sampleUniformSphere(random.next2D()) *
+                               (0.05f * static_cast<float>(scene.radius()) * random.next1D());
+            Vec3f way = sampleUniformSphere(random.next2D());
+            RayHit hit;
+            Surface surface;
+            if (!scene.intersect({from, way}, surface)) {
+                ++missed;
+                continue;
+            }
+            if (i % 2 == 0) continue;
+            // Again towards a corner of what it met.
+            const Vec3f corner = surface.position;
+            way = normalize(corner - from);
+            if (!scene.intersect({from, way}, surface)) ++missed;
+        }
+    });
+    return missed;
+}
+
+std::uint64_t raysOfCrackTest() {
+    const char* const asked = std::getenv("PM_TEST_CRACK_RAYS");
+    return asked ? std::strtoull(asked, nullptr, 10) : 40'000;
+}
+
+// PM_TEST_CRACK_RAYS: how many; 10 million are what the renderer is held to.
+TEST(LimitScene, HasNoCracks) {
+    const Transform far{1e4, 0, 0, 1e6, 0, 1e4, 0, 1e6, 0, 0, 1e4, -1e6};
+    for (const Transform& place : {kIdentityTransform, far}) {
+        for (const bool isBilinear : {false, true}) {
+            SubdivisionCage cage = cubeCage();
+            if (isBilinear) cage.scheme = SubdivisionScheme::kBilinear;
+            SceneMaker maker;
+            addLimit(maker, cage, 0, maker.diffuse(Rgb(0.5f)), place);
+            const double size = place[0];
+            maker.camera(Vec3d{place[3], place[7], place[11]} + Vec3d{2, 1.5, 1.2} * size,
+                         {place[3], place[7], place[11]}, {0, 1, 0}, 40);
+            EXPECT_EQ(missedFromInside(*maker.build(), raysOfCrackTest()), 0u)
+                << isBilinear << " " << size;
+        }
+    }
+}
+
+TEST(LimitScene, LimitSurfacesThatShineAreCutWhole) {
+    SceneMaker maker;
+    addLimit(maker, cubeCage(), 4, maker.diffuse(Rgb(0.5f), Rgb(1.0f)));
+    const auto scene = maker.build();
+    EXPECT_EQ(scene->lights().size(), 6u * 32u);
+    EXPECT_EQ(scene->groupCounts().misses, 0u);
+    EXPECT_EQ(scene->groupBudget(), 0u);
+}
+
+}  // namespace
+}  // namespace pm::test
