@@ -12,8 +12,10 @@
 
 #include "host_shim/app/cache_command.h"
 #include "host_shim/app/check_command.h"
+#include "host_shim/app/frames_command.h"
 #include "host_shim/app/listings.h"
 #include "host_shim/cli/command_line.h"
+#include "host_shim/farm/farm_run.h"
 #include "host_shim/log/guarded.h"
 #include "host_shim/pictures/host_error.h"
 #include "host_shim/process/interrupt.h"
@@ -48,6 +50,10 @@ int printHelp(const Options& options) {
     }
     if (options.helpOfCache) {
         print(cacheHelpText());
+        return 0;
+    }
+    if (options.helpOfFarm) {
+        print(farmHelpText());
         return 0;
     }
     if (options.helpOfCheck) {
@@ -110,6 +116,8 @@ int runOptions(const Options& options, Log& log) {
     if (options.cacheList || options.cacheClear || options.cacheVerify)
         return runCacheCommand(options);
     if (options.check) return runCheckCommand(*options.check, log);
+    if (options.farm) return runFarm(options, log);
+    if (!options.frames.empty()) return runFrames(options, log);
     return Session(options, log).run();
 }
 

@@ -10,6 +10,7 @@
 #include <optional>
 #include <ranges>
 
+#include "host_shim/cli/farm_options.h"
 #include "host_shim/cli/not_available.h"
 #include "host_shim/cli/option_table.h"
 #include "host_shim/cli/option_values.h"
@@ -153,6 +154,7 @@ void readFiles(const Typed& typed, std::optional<std::int64_t> frame, Options& o
     options.statistics = withFrame("--stats", options.statistics, frame);
     options.log = withFrame("--log", options.log.string(), frame);
     options.report = withFrame("--report", options.report.string(), frame);
+    options.bucketTimes = withFrame("--bucket-times", typed.bucketTimes, frame);
     const std::string pageType = lowerCaseExtension(options.report);
     if (!options.report.empty() && pageType != ".html" && pageType != ".htm") {
         throw HostError(ExitCode::kUsage,
@@ -249,13 +251,14 @@ std::string oneLine(std::string text) {
     return text;
 }
 
-enum class Command { kRender, kMerge, kCache, kCheck };
+enum class Command { kRender, kMerge, kCache, kCheck, kFarm };
 
 Command commandOf(const std::vector<std::string>& arguments) {
     if (arguments.empty()) return Command::kRender;
     return arguments.front() == "merge"   ? Command::kMerge
            : arguments.front() == "cache" ? Command::kCache
            : arguments.front() == "check" ? Command::kCheck
+           : arguments.front() == "farm"  ? Command::kFarm
                                           : Command::kRender;
 }
 
@@ -294,6 +297,8 @@ void readWords(const std::vector<std::string>& arguments, Command command, Typed
         addAllOfCache(app, typed, options);
     else if (command == Command::kCheck)
         addAllOfCheck(app, typed, options);
+    else if (command == Command::kFarm)
+        addAllOfFarm(app, typed, options, nullptr);
     else
         addAll(app, typed, options, nullptr);
     try {
@@ -306,6 +311,7 @@ void readWords(const std::vector<std::string>& arguments, Command command, Typed
     } catch (const CLI::ParseError& error) {
         throw HostError(ExitCode::kUsage, oneLine(error.what()) + " (see pm_host -h)");
     }
+    if (command == Command::kFarm) options.farm->given = givenOptions(app);
 }
 
 }  // namespace
@@ -317,10 +323,12 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
     Options options;
     Typed typed;
     if (command == Command::kCheck) options.check.emplace();
+    if (command == Command::kFarm) options.farm.emplace();
     readWords(arguments, command, typed, options);
     options.helpOfMerge = options.help && isMerge;
     options.helpOfCache = options.help && command == Command::kCache;
     options.helpOfCheck = options.help && command == Command::kCheck;
+    options.helpOfFarm = options.help && command == Command::kFarm;
     if (options.help || options.version) return options;
     if (command == Command::kCheck) {
         readCheck(typed, *options.check);
@@ -335,6 +343,7 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
         return options;
     }
     std::optional<std::int64_t> frame;
+    readFrames(typed, options);
     if (!typed.frame.empty()) {
         frame = integerValue("--frame", typed.frame, 0, std::numeric_limits<std::int32_t>::max());
     }
@@ -357,6 +366,7 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
                         "no SCENE given; usage: pm_host SCENE [options], see "
                         "pm_host -h");
     }
+    if (options.farm) readFarm(typed, options);
     return options;
 }
 
@@ -365,7 +375,8 @@ std::string helpText(const SettingHelp& settingHelp) {
     Typed typed;
     CLI::App app("pm: a photon-mapping bucket renderer", "pm_host");
     addAll(app, typed, options, settingHelp);
-    return app.help() + "\n" + mergeHelpText() + "\n" + cacheHelpText() + "\n" + checkHelpText();
+    return app.help() + "\n" + mergeHelpText() + "\n" + cacheHelpText() + "\n" + checkHelpText() +
+           "\n" + farmHelpText();
 }
 
 std::string mergeHelpText() {
@@ -374,6 +385,17 @@ std::string mergeHelpText() {
     CLI::App merge("pm_host merge: puts parts of one picture together", "pm_host merge");
     addAllOfMerge(merge, typed, options);
     return merge.help();
+}
+
+std::string farmHelpText() {
+    Options options;
+    options.farm.emplace();
+    Typed typed;
+    CLI::App farm(
+        "pm_host farm SCENE [options of a render]: a picture by several machines; and besides",
+        "pm_host farm");
+    addFarmOptions(farm, typed, options);
+    return farm.help();
 }
 
 std::string cacheHelpText() {

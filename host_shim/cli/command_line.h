@@ -26,5 +26,7 @@ std::string mergeHelpText();
 std::string cacheHelpText();
 // And of pm_host check.
 std::string checkHelpText();
+// And of pm_host farm: its own options, which come to those of a render.
+std::string farmHelpText();
 
 }  // namespace pm::host

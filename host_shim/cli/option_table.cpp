@@ -68,6 +68,9 @@ void addOutputOptions(CLI::App& app, Typed& typed, Options& options, bool isMerg
                                  "working folder)"));
     addText(app, "--frame", typed.frame, "N",
             std::string("fills #### and %04d in ") + (isMerge ? "PART" : "SCENE") + " and outputs");
+    if (!isMerge)
+        addText(app, "--frames", typed.frames, "A-BxS",
+                "renders one frame after the other: 1-10, 1-10x2 or 1-5,8");
     app.add_flag("--make-output-path", options.makeOutputPath, "make missing output folders");
     app.add_flag("--exr-half", options.exrHalf, "store colour as half; data stays float");
 }
@@ -223,6 +226,8 @@ void addPrintingOptions(CLI::App& app, Typed& typed, Options& options) {
     app.add_flag("--version", options.version, "print and stop");
     addText(app, "--progress", typed.progress, "auto|bar|plain|json|alf|none",
             "how progress is shown (auto)");
+    addText(app, "--bucket-times", typed.bucketTimes, "FILE.csv",
+            "how long each bucket took: its place in the order, its pixels, seconds, passes");
     addText(app, "--only-pixel", typed.onlyPixel, "X,Y", "render and print that one");
 }
 
@@ -286,6 +291,35 @@ void addAllOfCheck(CLI::App& app, Typed& typed, Options& options) {
         ->check(valueFault);
     app.add_flag("-q,--quiet", options.quiet, "only warnings and errors");
     app.add_flag("-h,--help", options.help, "print and stop");
+}
+
+void addFarmOptions(CLI::App& app, Typed& typed, Options& options) {
+    FarmOptions& farm = *options.farm;
+    addText(app, "--engine", typed.engine, "slurm|parallel|commands",
+            "what starts the tasks; commands: they are printed, for any other farm manager");
+    addText(app, "--job", typed.job, "FOLDER",
+            "keeps plan, photons, parts and logs where all machines see it; the same command again "
+            "goes on");
+    addText(app, "--runs", typed.runs, "N|auto",
+            "into how many runs of buckets, of alike predicted cost, a frame is cut, 1 to 10000 "
+            "(auto)");
+    addText(app, "--tries", typed.tries, "N", "how often a task is started at most, 1 to 100 (3)");
+    addList(app, "--sshlogin", typed.sshLogins, "[N/][USER@]HOST",
+            "of parallel: a machine, as GNU parallel takes it; may be repeated (this one)");
+    addText(app, "--at-once", typed.atOnce, "N",
+            "of parallel: tasks at once on a machine, 1 to 1024 (1)");
+    app.add_option("--slurm-option", typed.slurmOptions,
+                   "of slurm: an option for sbatch, as --slurm-option=--partition=night; may be "
+                   "repeated")
+        ->type_name("OPTION")
+        ->expected(1)
+        ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_flag("--dry-run", farm.dryRun, "print what would be done, and do nothing");
+}
+
+void addAllOfFarm(CLI::App& app, Typed& typed, Options& options, const SettingHelp& help) {
+    addAll(app, typed, options, help);
+    addFarmOptions(app, typed, options);
 }
 
 void addAllOfMerge(CLI::App& app, Typed& typed, Options& options) {

@@ -18,11 +18,13 @@ namespace pm::host {
 // Options as they were typed; what they mean is found afterwards, by option_values, since CLI11
 // reads numbers through the locale.
 struct Typed {
-    std::string scene, frame, size, eye, lookAt, up, fov, crop, aa, seed, subdivide, onlyPixel,
-        errorLimit, progress, checkpoint, photonMap, mtlDialect, textureCache, textureCacheSize,
-        exposure, cameraLight, environment, environmentRotation, environmentStrength, sun,
-        turbidity, checkSuite, jobs, timeBudget, seeds;
-    std::vector<std::string> onlyScenes, outputs, context, layers, parts, searchPaths;
+    std::string scene, frame, frames, size, eye, lookAt, up, fov, crop, aa, seed, subdivide,
+        onlyPixel, errorLimit, progress, checkpoint, photonMap, mtlDialect, textureCache,
+        textureCacheSize, exposure, cameraLight, environment, environmentRotation,
+        environmentStrength, sun, turbidity, checkSuite, jobs, timeBudget, seeds, engine, runs, job,
+        tries, atOnce, bucketTimes;
+    std::vector<std::string> onlyScenes, outputs, context, layers, parts, searchPaths, sshLogins,
+        slurmOptions;
     std::map<std::string, std::string> settings;  // option -> text
 };
 
@@ -43,5 +45,9 @@ void addAllOfMerge(CLI::App& app, Typed& typed, Options& options);
 void addAllOfCache(CLI::App& app, Typed& typed, Options& options);
 // The same of `pm_host check SUITE.json`; options.check must be there.
 void addAllOfCheck(CLI::App& app, Typed& typed, Options& options);
+// The same of `pm_host farm SCENE`, which takes what a render takes; options.farm must be there.
+void addAllOfFarm(CLI::App& app, Typed& typed, Options& options, const SettingHelp& help);
+// Its own options alone.
+void addFarmOptions(CLI::App& app, Typed& typed, Options& options);
 
 }  // namespace pm::host

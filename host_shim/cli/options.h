@@ -48,6 +48,26 @@ struct CheckOptions {
     std::filesystem::path plugin;
 };
 
+// An option as it was typed: its longest name ("SCENE" of the scene), and its values, none of a
+// flag.
+struct GivenOption {
+    std::string name;
+    std::vector<std::string> values;
+};
+
+// pm_host farm SCENE [options].
+struct FarmOptions {
+    std::string engine;                     // slurm, parallel or commands
+    int runs{0};                            // of each frame; 0 = by predicted cost
+    std::filesystem::path job;              // the folder that keeps what is done
+    bool dryRun{};                          // prints what would be done
+    int tries{3};                           // of a task
+    int atOnce{1};                          // of parallel: tasks on a machine
+    std::vector<std::string> sshLogins;     // of parallel
+    std::vector<std::string> slurmOptions;  // of slurm, for sbatch
+    std::vector<GivenOption> given;         // all that was typed
+};
+
 // A light that is infinitely far, in place of what the scene has.
 struct SkyOptions {
     std::filesystem::path environment;         // a picture; empty: none
@@ -81,8 +101,9 @@ struct Options {
     std::optional<double> errorLimit;
     std::string statistics;  // file, "-" = standard output, empty = none
     std::filesystem::path log;
-    std::filesystem::path report;  // a page, empty = none
-    bool strict{};                 // bad samples are an error
+    std::filesystem::path report;       // a page, empty = none
+    std::filesystem::path bucketTimes;  // how long each bucket took, empty = none
+    bool strict{};                      // bad samples are an error
     bool explain{};
     std::string list;  // empty, views, looks, spaces, aovs, orders, settings or parameters
     bool version{};
@@ -107,6 +128,9 @@ struct Options {
     bool helpOfCache{};
     std::optional<CheckOptions> check;
     bool helpOfCheck{};
+    std::vector<std::int64_t> frames;  // --frames, of which this is the first; empty: none
+    std::optional<FarmOptions> farm;
+    bool helpOfFarm{};
     std::vector<std::filesystem::path> merge;  // parts to put together, instead of a scene
 };
 

@@ -21,6 +21,7 @@ enum class Warning : int {
     kOutput = 1010,         // something of an output could not be had
     kBlackPicture = 1011,   // surfaces are seen, and no light on them
     kBadSamples = 1012,     // some are NaN, infinite or negative and count as black
+    kFarm = 1013,           // machines that differ, or tasks that had to be started again
 };
 
 using WarningSink = std::function<void(Warning code, const std::string& text)>;

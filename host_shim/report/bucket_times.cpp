@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/report/bucket_times.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 namespace pm::host {
@@ -18,6 +20,16 @@ std::vector<BucketTimes::Bucket> BucketTimes::timed() const {
     for (const Bucket& bucket : m_buckets)
         if (bucket.timedPasses > 0) buckets.push_back(bucket);
     return buckets;
+}
+
+std::string BucketTimes::csv() const {
+    std::string text = "bucket,x0,y0,x1,y1,seconds,passes\n";
+    for (const Bucket& bucket : timed()) {
+        const PmrRectangle& r = bucket.rectangle;
+        text += fmt::format("{},{},{},{},{},{:.9f},{}\n", bucket.index, r.x0, r.y0, r.x1, r.y1,
+                            bucket.seconds, bucket.timedPasses);
+    }
+    return text;
 }
 
 }  // namespace pm::host

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "plugin/include/pm_plugin.h"
@@ -28,6 +29,8 @@ class BucketTimes {
     void finished(const PmrBucketInfo& info);
     // Those with a timed pass, in the order of index.
     std::vector<Bucket> timed() const;
+    // The same as lines "bucket,x0,y0,x1,y1,seconds,passes" below a line of these names.
+    std::string csv() const;
 
   private:
     std::vector<Bucket> m_buckets;  // by index

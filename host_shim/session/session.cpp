@@ -33,6 +33,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
+bool timesBuckets(const Options& options) {
+    return !options.report.empty() || !options.bucketTimes.empty();
+}
+
 }  // namespace
 
 Session::Session(const Options& options, Log& log) : m_options(options), m_log(log) {
@@ -253,7 +257,7 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
     if (!m_options.explain && !m_options.photonsOnly) expose(*scene, colour, display);
     Progress progress(m_options.progress, m_options.quiet, m_log);
     RenderRun run(*scene, m_options, colourIdentity(colour), m_log, progress,
-                  m_options.report.empty() ? nullptr : &m_report.bucketTimes());
+                  timesBuckets(m_options) ? &m_report.bucketTimes() : nullptr);
     std::optional<TiledOutput> tiles;
     if (run.deliversBuckets()) {
         const std::string whole = needsWholePicture(m_options);
@@ -271,6 +275,8 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
     PmrStatus status = PMR_OK;
     phase("renderCallSeconds", [&] { status = run.run(); });
     m_statistics.library = run.statistics();
+    if (!m_options.bucketTimes.empty())
+        writeFinishedFile(m_options.bucketTimes, m_report.bucketTimes().csv());
     if (m_options.photonsOnly) return finishPhotons(status);
     const int code = tiles ? finishTiles(status, *tiles) : finish(run, status, colour, display);
     const int ofSamples = judgeSamples();

@@ -45,6 +45,7 @@ class Session {
     int renderScene(const ColourPipeline& colour, const PluginContext& context);
     int merge();
     void checkBeforeMerging();
+    void warnOfVendors(const std::vector<std::string>& vendors);
     PmrContextDesc contextDesc(const Plugin& plugin);
     // Camera, light and exposure (session_look.cpp).
     CameraPose frameScene(const SceneData& data);

@@ -31,7 +31,8 @@ std::vector<fs::path> otherOutputs(const Options& options) {
     if (!options.statistics.empty() && options.statistics != "-") {
         files.emplace_back(options.statistics);
     }
-    for (const fs::path& file : {options.log, options.report, options.part, options.checkpoint})
+    for (const fs::path& file :
+         {options.log, options.report, options.bucketTimes, options.part, options.checkpoint})
         if (!file.empty()) files.push_back(file);
     if (options.writeSidecar && sidecarInUse(options).empty())
         files.push_back(sidecarOf(options.scene));

@@ -43,6 +43,15 @@ std::string shownRanges(const std::string& lines) {
 
 }  // namespace
 
+// The same bits are promised among processors of one vendor.
+void Session::warnOfVendors(const std::vector<std::string>& vendors) {
+    if (vendors.size() > 1)
+        warn(Warning::kFarm,
+             fmt::format("merge: the parts were made by processors of unlike vendors ({}); the "
+                         "picture is right, but need not have the bytes of a render on one of them",
+                         fmt::join(vendors, ", ")));
+}
+
 void Session::checkBeforeMerging() {
     checkNotInputs(allOutputs(m_options), inputsOf(m_options, nullptr));
     checkOutputs({}, otherOutputs(m_options), m_options.makeOutputPath);
@@ -75,6 +84,7 @@ int Session::merge() {
         exposeAsParts(run.settingText("hostNote"), colour, *display);
     }
     m_statistics.library = run.statistics();
+    warnOfVendors(m_statistics.processorVendors());
     return finish(run, PMR_OK, colour, display);
 }
 

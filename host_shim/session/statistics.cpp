@@ -84,6 +84,13 @@ std::string Statistics::libraryStopReason() const {
     return parsed(library).value("stopReason", "finished");
 }
 
+std::vector<std::string> Statistics::processorVendors() const {
+    std::vector<std::string> vendors;
+    for (const Json& vendor : parsed(library).value("processorVendors", Json::array()))
+        if (vendor.is_string()) vendors.push_back(vendor.get<std::string>());
+    return vendors;
+}
+
 std::string Statistics::photonMapText() const {
     const Json json = parsed(library);
     const Json map = json.value("photonMap", Json::object());

@@ -50,6 +50,8 @@ struct Statistics {
     std::string estimateDoubts() const;
     // Why the library's render ended, in its words; "finished" when it doesn't say.
     std::string libraryStopReason() const;
+    // Of the processors that rendered, each once.
+    std::vector<std::string> processorVendors() const;
     // Of a photon map that was written, for people.
     std::string photonMapText() const;
     // None where there were no bad samples.

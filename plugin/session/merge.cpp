@@ -75,6 +75,14 @@ void Merge::keepNote(const PieceHead& head) {
     m_picture->settings.setText("hostNote", fmt::format("{}", fmt::join(notes, "\n")));
 }
 
+// Told, and no reason to refuse: unlike processors may have made unlike bits.
+void Merge::keepVendor(const PieceHead& head) {
+    std::vector<std::string>& vendors = m_picture->vendors;
+    if (!head.processorVendor.empty() &&
+        std::ranges::find(vendors, head.processorVendor) == vendors.end())
+        vendors.push_back(head.processorVendor);
+}
+
 void Merge::addPart(const std::string& file) {
     const std::lock_guard lock(m_mutex);
     std::uint32_t index = 0;
@@ -93,6 +101,7 @@ void Merge::addPart(const std::string& file) {
                 m_picture = std::make_unique<Picture>(head, file);
             checkPhotons(file, head);
             keepNote(head);
+            keepVendor(head);
         },
         [&](const Rect& rect, std::span<const std::byte> sums) {
             addBucket(file, index++, rect, sums);
@@ -161,6 +170,7 @@ std::string Merge::statisticsJson() const {
     json["hashes"] = {{"scene", head.sceneHash}, {"settings", head.settingsHash}};
     if (!head.photonHash.empty()) json["photonMap"] = {{"use", "read"}, {"hash", head.photonHash}};
     json["isa"] = head.isa;
+    json["processorVendors"] = picture().vendors;
     json["stopReason"] = "passes done";
     json["status"] = static_cast<std::int32_t>(CallStatus::kOk);
     json["error"] = "";

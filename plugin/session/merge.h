@@ -45,14 +45,16 @@ class Merge {
         SettingValues settings;
         ChannelLayout layout;
         std::unique_ptr<FrameStore> frame;
-        std::int32_t bucketSize = 0;     // pixels; of the buckets that are there
-        std::vector<std::string> notes;  // of the host, in the order in which they came
-        std::vector<std::string> files;  // of which part each bucket is, in order; empty: missing
+        std::int32_t bucketSize = 0;       // pixels; of the buckets that are there
+        std::vector<std::string> notes;    // of the host, in the order in which they came
+        std::vector<std::string> vendors;  // of the processors that made them, each once
+        std::vector<std::string> files;    // of which part each bucket is, in order; empty: missing
     };
     const Picture& picture() const;
     void checkPhotons(const std::string& file, const PieceHead& head);
     void checkFits(const std::string& file, const PieceHead& head) const;
     void keepNote(const PieceHead& head);
+    void keepVendor(const PieceHead& head);
     void addBucket(const std::string& file, std::uint32_t index, const Rect& rect,
                    std::span<const std::byte> sums);
 

@@ -3,6 +3,7 @@
 #include "plugin/session/picture_head.h"
 
 #include "plugin/session/render_identity.h"
+#include "plugin/values/processor.h"
 
 namespace pm::plugin {
 
@@ -29,6 +30,7 @@ PieceHead makePieceHead(PieceKind kind, const Identity& scene, const SettingValu
     PieceHead head;
     head.kind = kind;
     const Identity settings = settingsIdentity(values);
+    if (kind == PieceKind::kPart) head.processorVendor = processorVendor();
     head.sceneHash = identityHash(scene);
     head.settingsHash = identityHash(settings);
     for (const Identity& part : {buildIdentity(), scene, settings, frameIdentity(values)})

@@ -12,6 +12,7 @@
 #include "plugin/session/render_identity.h"
 #include "plugin/session/statistics_json.h"
 #include "plugin/values/call_error.h"
+#include "plugin/values/processor.h"
 #include "plugin/values/version.h"
 
 namespace pm::plugin {
@@ -199,6 +200,8 @@ std::string Render::statisticsJson() const {
                       {"settings", identityHash(settingsIdentity(settings()))}};
     addPhotons(running->photons(), progress, json);
     json["isa"] = running->scene().isa();
+    json["processorVendors"] = Json::array();
+    json["processorVendors"].push_back(processorVendor());
     json["stopReason"] = stopText(stopReason());
     json["status"] = static_cast<std::int32_t>(end.status);
     json["error"] = end.errorText;

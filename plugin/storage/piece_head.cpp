@@ -64,6 +64,7 @@ std::string PieceHead::toJson() const {
                  {"bucketCount", bucketCount},
                  {"firstBucket", range.first},
                  {"lastBucket", range.last}};
+    if (!processorVendor.empty()) json["processorVendor"] = processorVendor;
     if (!photonHash.empty()) json["photonHash"] = photonHash;
     return json.dump();
 }
@@ -74,6 +75,7 @@ PieceHead PieceHead::fromJson(std::span<const std::byte> text) {
         throw CallError(CallStatus::kFile, "of another version than " + std::string(kSchema));
     PieceHead head;
     head.kind = kindOf(json.at("kind").text());
+    if (const Json* vendor = json.find("processorVendor")) head.processorVendor = vendor->text();
     if (const Json* hash = json.find("photonHash")) head.photonHash = hash->text();
     for (const Json& part : json.at("identity").elements())
         head.identity.push_back({part.elementAt(0).text(), part.elementAt(1).text()});

@@ -20,12 +20,13 @@ enum class PieceKind : std::int32_t { kCheckpoint, kPart, kPhotonMap };
 const char* kindName(PieceKind kind);
 
 // What a checkpoint, a part or a photon map says of itself: of which render it is, and how much of
-// it. It holds nothing of when, where or how fast it was made, so that the same piece always has
-// the same bytes.
+// it. It holds nothing of when or how fast it was made, and of where only whose processor it was,
+// so that the same piece has the same bytes wherever that is promised.
 struct PieceHead {
     PieceKind kind = PieceKind::kCheckpoint;
     Identity identity;  // all that must be the same in two pieces of one picture
     std::string sceneHash, settingsHash, isa;
+    std::string processorVendor;  // of whom the machine was that made it; no reason to refuse it
     std::string photonHash;  // of a part: of the photon map that it was made with; empty: traced
     // By name, as setText takes them: those that change pixels, and what says which pixels and
     // channels there are.

@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include "host_shim/cli/options.h"
+#include "host_shim/log/log.h"
+
+namespace pm::host {
+
+// pm_host SCENE --frames A-B: renders one frame after the other. One that fails does not end the
+// others, but a signal does; the exit code is that of the first that failed. Errors: kUsage.
+int runFrames(const Options& options, Log& log);
+
+}  // namespace pm::host

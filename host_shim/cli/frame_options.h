@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <vector>
+
+#include "host_shim/cli/options.h"
+
+namespace pm::host {
+
+// A command line with --frames as one for each frame, with --frame; one without is itself alone.
+// Errors: kUsage, also where two frames would write the same file.
+std::vector<Options> perFrame(const Options& options);
+
+}  // namespace pm::host

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "host_shim/farm/job/job_folder.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+
+#include "host_shim/farm/job/run_script.h"
+#include "host_shim/pictures/finished_file.h"
+#include "host_shim/pictures/host_error.h"
+
+namespace pm::host {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& path, const std::string& why) {
+    throw HostError(ExitCode::kFile, fmt::format("{}: {}", path.string(), why));
+}
+
+fs::path named(const fs::path& folder, std::size_t number, const char* ending) {
+    return folder / fmt::format("{:04}{}", number, ending);
+}
+
+}  // namespace
+
+JobFolder::JobFolder(const fs::path& folder) : m_folder(fs::absolute(folder).lexically_normal()) {}
+
+JobFolder::~JobFolder() {
+    if (m_lock >= 0) ::close(m_lock);
+}
+
+fs::path JobFolder::part(int task) const {
+    return named(m_folder / "parts", static_cast<std::size_t>(task), ".pmpart");
+}
+fs::path JobFolder::photons(std::size_t frame) const {
+    return named(m_folder / "photons", frame, ".pmphotons");
+}
+fs::path JobFolder::statistics(int task) const {
+    return named(m_folder / "logs", static_cast<std::size_t>(task), ".json");
+}
+fs::path JobFolder::log(int task) const {
+    return named(m_folder / "logs", static_cast<std::size_t>(task), ".log");
+}
+fs::path JobFolder::events(int task) const {
+    return named(m_folder / "logs", static_cast<std::size_t>(task), ".events");
+}
+
+std::optional<FarmPlan> JobFolder::readPlan() const {
+    const fs::path file = m_folder / "plan.json";
+    std::error_code failed;
+    if (!fs::exists(file, failed)) return std::nullopt;
+    std::ostringstream text;
+    std::ifstream stream(file, std::ios::binary);
+    text << stream.rdbuf();
+    if (!stream) fail(file, "can't be read");
+    return FarmPlan::fromJson(text.str(), file);
+}
+
+void JobFolder::prepare() {
+    std::error_code failed;
+    for (const char* name : {"photons", "parts", "logs", "checkpoints", "locks"}) {
+        fs::create_directories(m_folder / name, failed);
+        if (failed) fail(m_folder / name, "can't be made: " + failed.message());
+    }
+    const fs::path lock = m_folder / "lock";
+    m_lock = ::open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (m_lock < 0) fail(lock, fmt::format("can't be written: {}", std::strerror(errno)));
+    if (::flock(m_lock, LOCK_EX | LOCK_NB) != 0)
+        fail(m_folder, "another pm_host farm has this job in hand; wait for it, or end it");
+}
+
+void JobFolder::writePlan(const FarmPlan& plan) const {
+    writeFinishedFile(runScript(), runScriptText(plan));
+    writeFinishedFile(m_folder / "tasks.txt", taskLines(plan));
+    writeFinishedFile(m_folder / "plan.json", plan.toJson());  // last: with it the rest is there
+}
+
+}  // namespace pm::host
