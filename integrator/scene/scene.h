@@ -201,6 +201,8 @@ class Scene {
     void setGroupBudget(std::uint64_t bytes) const {
         if (m_groupCache) m_groupCache->setBudget(bytes);
     }
+    // Null where nothing is cut on demand.
+    const GroupCache* groupCache() const { return m_groupCache.get(); }
     std::uint64_t groupBudget() const { return m_groupCache ? m_groupCache->budget() : 0; }
     std::uint64_t groupBytes() const { return m_groupBytes; }
     CacheCounts groupCounts() const {

@@ -6,6 +6,7 @@
 #include <atomic>
 
 #include "plugin/session/frame_samples.h"
+#include "plugin/session/render_caches.h"
 #include "plugin/session/render_work.h"
 
 namespace pm::plugin {
@@ -53,6 +54,7 @@ void BucketPasses::renderAtom(const FrameRenderer& renderer, FrameStore& pixels,
 }
 
 void BucketPasses::finish(const RenderedBucket& bucket, EventQueue& events) {
+    if (m_caches) m_caches->bucketDone();
     BucketInfo finished = info(bucket.cell, bucket.rect);
     const FrameStore& pixels = m_shelf.pixels(finished.bucketIndex);
     m_errors.add(bucket.cell, pixels);

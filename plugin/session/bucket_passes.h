@@ -21,6 +21,7 @@
 namespace pm::plugin {
 
 struct Cancel;
+class RenderCaches;
 
 // The buckets of a render by buckets: each with all its passes, in pass order, in a small frame
 // store of its own that is forgotten when the host has had it. Pixels have the bits that they have
@@ -39,6 +40,8 @@ class BucketPasses {
     // bucketsHeld: in work or waiting for the host, at most.
     BucketPasses(const Frame& frame, std::uint32_t bucketsHeld);
 
+    // Who is told of each bucket that is done; null: nobody.
+    void tell(RenderCaches* caches) { m_caches = caches; }
     // All buckets; the maps of all passes must have been added to the renderer. firstShare: of the
     // progress that was made before. Errors: those of the renderer. When `cancel` is set it ends
     // soon, with what is done.
@@ -67,6 +70,7 @@ class BucketPasses {
     BucketShelf m_shelf;
     BucketErrors m_errors;
     BucketMisses m_misses;
+    RenderCaches* m_caches = nullptr;
     std::vector<Scratch> m_scratch;  // one a worker
 };
 

@@ -40,7 +40,7 @@ constexpr std::uint64_t kProgramBytes = std::uint64_t{150} << 20;
 // Of all texels those that are held at once: all of them, within bounds by which a small limit is
 // kept and a large one gains nothing any more. Those that don't fit are read again.
 std::uint64_t heldTexelBytes(std::uint64_t texelBytes, std::uint64_t limit) {
-    constexpr std::uint64_t kLeast = std::uint64_t{64} << 20, kMost = std::uint64_t{1} << 30;
+    constexpr std::uint64_t kLeast = std::uint64_t{16} << 20, kMost = std::uint64_t{1} << 30;
     return std::min(texelBytes, std::clamp(limit / 8, kLeast, kMost));
 }
 

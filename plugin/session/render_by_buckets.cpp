@@ -49,6 +49,7 @@ void RenderWork::runByBuckets(const Cancel& cancel, EventQueue& events) {
     }
     cancel.throwIfSet();
     const Stopwatch watch;
+    m_buckets->tell(m_caches.get());
     BucketRun result = m_buckets->run(*m_renderer, m_arena, share, cancel, events);
     const double bucketSeconds = watch.seconds();
     for (const Notice& notice : m_renderer->takeNotices()) warn(notice, events);

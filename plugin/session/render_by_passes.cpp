@@ -152,6 +152,7 @@ struct RenderWork::PassRun {
 };
 
 void RenderWork::deliverBucket(PassRun& run, const RenderedBucket& bucket) {
+    if (m_caches) m_caches->bucketDone();
     const std::span<const float> buffer = bucket.pixels;
     const auto channels = static_cast<std::size_t>(m_layout.count);
     const auto area = static_cast<std::size_t>(bucket.rect.area());
@@ -198,7 +199,10 @@ double RenderWork::renderBuckets(std::uint32_t pass, const Cancel& cancel, Event
     const std::vector<std::uint32_t> order = m_pieces->remaining(m_order);
     PassRun run{pass, cancel, events};
     run.done = static_cast<std::uint32_t>(m_order.size() - order.size());
-    if (m_isCorrelated) run.correlated.emplace(m_grid, order, m_arena.threads());
+    CorrelatedChoice::Missing missing;
+    if (m_bucketNeeds)
+        missing = [this](std::uint32_t cell) { return m_bucketNeeds->missing(cell); };
+    if (m_isCorrelated) run.correlated.emplace(m_grid, order, m_arena.threads(), missing);
     BucketWork work;
     work.floatsPerPixel = m_layout.count + 1;
     if (m_isCorrelated) work.choose = [&](int worker) { return run.correlated->next(worker); };
@@ -208,6 +212,7 @@ double RenderWork::renderBuckets(std::uint32_t pass, const Cancel& cancel, Event
     work.render = [&](std::uint32_t cell, const Rect& rect, const Rect& atom, int worker,
                       std::span<float> buffer) {
         const BucketMisses::Counting counting(*m_bucketMisses, cell);
+        const BucketNeeds::Noting noting(m_bucketNeeds.get(), cell);
         renderAtom(rect, atom, pass, worker, buffer, cancel);
     };
     work.deliver = [&](const RenderedBucket& bucket) { deliverBucket(run, bucket); };

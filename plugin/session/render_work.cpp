@@ -92,6 +92,8 @@ void RenderWork::makePlaces() {
     }
     m_frame = std::make_shared<FrameStore>(makeFrame(m_settings, m_plan.tracePhotons));
     m_bucketTimes.resize(m_grid.cellCount());
+    if (m_isCorrelated && m_scene->groupCache())
+        m_bucketNeeds = std::make_unique<BucketNeeds>(m_grid, *m_scene->groupCache());
     m_bucketMisses = std::make_unique<BucketMisses>(m_grid.cellCount());
     const Scratch scratch{std::vector<float>(static_cast<std::size_t>(kAtomPixels) *
                                              static_cast<std::size_t>(m_layout.count)),

@@ -17,11 +17,13 @@
 #include "integrator/values/stopwatch.h"
 #include "plugin/session/bucket_info.h"
 #include "plugin/session/bucket_misses.h"
+#include "plugin/session/bucket_needs.h"
 #include "plugin/session/bucket_passes.h"
 #include "plugin/session/error_curve.h"
 #include "plugin/session/event_queue.h"
 #include "plugin/session/memory_plan.h"
 #include "plugin/session/progress_clock.h"
+#include "plugin/session/render_caches.h"
 #include "plugin/session/render_photons.h"
 #include "plugin/session/render_pieces.h"
 #include "plugin/session/setting_values.h"
@@ -62,6 +64,9 @@ class RenderWork {
     RenderWork(std::shared_ptr<const Scene> scene, const Identity& sceneIdentity,
                const SettingValues& values, std::uint64_t texelBytes);
 
+    // Before run: who is told of each bucket that is done.
+    void divideMemory(std::unique_ptr<RenderCaches> caches) { m_caches = std::move(caches); }
+    const RenderCaches* caches() const { return m_caches.get(); }
     // Before run: tells the host what the plan found.
     void announce(EventQueue& events);
     // All passes that the stop rule wants, from those on that the checkpoint has. Errors:
@@ -151,15 +156,17 @@ class RenderWork {
     std::vector<std::uint32_t> m_order;       // cells in the order of rendering
     std::vector<std::uint32_t> m_orderIndex;  // and where each cell is in it
     std::unique_ptr<RenderPieces> m_pieces;
+    std::unique_ptr<RenderCaches> m_caches;
     std::uint32_t m_timedPasses = 0;  // that secondsPerBucket is the mean of
     bool m_isCorrelated = false;      // the next bucket is chosen while rendering
     ChannelLayout m_layout;
     RenderPhotons m_photons;  // outlives who reads from it:
     std::unique_ptr<FrameRenderer> m_renderer;
-    std::shared_ptr<FrameStore> m_frame;           // the whole one
-    std::unique_ptr<BucketPasses> m_buckets;       // or, by buckets, these, and no pieces
-    std::vector<Scratch> m_scratch;                // one a worker
-    std::vector<BucketTime> m_bucketTimes;         // by cell, each its worker's; pass by pass
+    std::shared_ptr<FrameStore> m_frame;         // the whole one
+    std::unique_ptr<BucketPasses> m_buckets;     // or, by buckets, these, and no pieces
+    std::vector<Scratch> m_scratch;              // one a worker
+    std::vector<BucketTime> m_bucketTimes;       // by cell, each its worker's; pass by pass
+    std::unique_ptr<BucketNeeds> m_bucketNeeds;  // of correlated, where something is cut on demand
     std::unique_ptr<BucketMisses> m_bucketMisses;  // pass by pass
     ProgressClock m_clock;
     WarningLog m_warnings;

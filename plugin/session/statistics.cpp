@@ -218,6 +218,7 @@ std::string Render::statisticsJson() const {
     json["memory"] = memoryJson(*running, counters);
     json["textureCache"] = texturesJson(*m_scene->textures);
     json["geometryCache"] = geometryJson(*m_scene->scene);
+    if (const RenderCaches* const caches = running->caches()) json["caches"] = caches->statistics();
     json["plan"] = planJson(running->plan(), counters);
     json["warnings"] = warningsJson(running->scene(), *running);
     json["settings"] = settingsJson(settings());

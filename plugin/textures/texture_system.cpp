@@ -22,7 +22,6 @@ namespace pm::plugin {
 namespace {
 
 constexpr float kFirstMegabytes = 256.0f;  // before a render says
-constexpr float kLeastMegabytes = 64.0f;
 // Pictures that are not tiled are cut into tiles of this size when they are read.
 constexpr int kTilePixels = 64;
 // Along a long and narrow footprint; beyond, it is widened.
@@ -155,8 +154,8 @@ OIIO::TextureSystem& TextureSystem::system() {
 
 void TextureSystem::holdAtMost(std::uint64_t bytes) {
     if (bytes == 0) return;
-    const float megabytes = static_cast<float>(bytes) / (1024.0f * 1024.0f);
-    system().attribute("max_memory_MB", std::max(megabytes, kLeastMegabytes));
+    const std::uint64_t held = std::max(bytes, kLeastBytes);
+    system().attribute("max_memory_MB", static_cast<float>(held) / (1024.0f * 1024.0f));
 }
 
 TexturePicture TextureSystem::open(const TextureDescription& description) {

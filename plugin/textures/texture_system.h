@@ -75,7 +75,8 @@ class TextureSystem {
     TexturePicture open(const TextureDescription& description);
 
     // Texels that are held at once, in bytes; those of the render that asked last, as all renders
-    // of a context share them. At least 64 MiB. The look-ups are the same.
+    // of a context share them. At least kLeastBytes. The look-ups are the same.
+    static constexpr std::uint64_t kLeastBytes = std::uint64_t{16} << 20;
     void holdAtMost(std::uint64_t bytes);
 
     // The picture's value at uv, origin bottom left. Bilinear within a level, linear between the

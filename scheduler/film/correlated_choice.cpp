@@ -3,6 +3,7 @@
 #include "scheduler/film/correlated_choice.h"
 
 #include <limits>
+#include <utility>
 
 namespace pm {
 namespace {
@@ -20,9 +21,10 @@ CorrelatedChoice::Edge& CorrelatedChoice::Edge::operator+=(const Edge& other) {
 }
 
 CorrelatedChoice::CorrelatedChoice(const BucketGrid& grid, std::span<const std::uint32_t> order,
-                                   int workers)
+                                   int workers, Missing missing)
     : m_grid(grid),
       m_order(order),
+      m_missing(std::move(missing)),
       m_cells(grid.cellCount()),
       m_last(static_cast<std::size_t>(workers), kNoCell) {
     for (std::size_t place = 0; place < order.size(); ++place) {
@@ -61,6 +63,12 @@ float CorrelatedChoice::disagreement(std::uint32_t cell) const {
     return (all.sumOfSquares / all.count - meanSquared) / meanSquared;
 }
 
+// What is missing is a share, how edges disagree has no bound: the first, where it is known.
+float CorrelatedChoice::cost(std::uint32_t cell) const {
+    const float missing = m_missing ? m_missing(cell) : std::numeric_limits<float>::quiet_NaN();
+    return missing >= 0.0f ? missing : disagreement(cell);
+}
+
 // Its place in the order, kNowhere where there is none to choose. Of equal ones the first in the
 // order; a NaN in the picture is never best.
 std::size_t CorrelatedChoice::bestNeighbour(std::uint32_t cell) const {
@@ -69,7 +77,7 @@ std::size_t CorrelatedChoice::bestNeighbour(std::uint32_t cell) const {
     for (std::size_t side = 0; side < 4; ++side) {
         const std::uint32_t beside = neighbour(cell, side);
         if (beside == kNoCell || m_cells[beside].begun) continue;
-        const float value = disagreement(beside);
+        const float value = cost(beside);
         const std::size_t place = m_cells[beside].place;
         if (value < least || (value == least && best != kNowhere && place < best)) {
             least = value;

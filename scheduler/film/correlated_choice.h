@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <mutex>
 #include <span>
 #include <vector>
@@ -14,8 +15,9 @@
 namespace pm {
 
 // The order "correlated": the next bucket is chosen while rendering. After a bucket a worker goes
-// on with that of its four neighbours, not begun yet, whose finished edges agree best; where there
-// is none, with the first bucket of the given order that is not begun, and so it starts too.
+// on with that of its four neighbours, not begun yet, of whose needs least is missing in the caches
+// or, where nobody tells of caches, whose finished edges agree best; where there is none, with the
+// first bucket of the given order that is not begun, and so it starts too.
 //
 // Edges: the rows and columns of pixels that finished buckets have along a bucket's border. How
 // well they agree: the variance of their values (the mean of three channels) over their mean
@@ -26,8 +28,14 @@ namespace pm {
 // Threads: every member from any, at once; one call at a time for each worker.
 class CorrelatedChoice {
   public:
+    // Share of what a bucket needs that would have to be made or read, in [0, 1]; NaN where it is
+    // not known, and then edges count.
+    using Missing = std::function<float(std::uint32_t cell)>;
+
     // order: cells of grid, each at most once; both must outlive this. workers: their number.
-    CorrelatedChoice(const BucketGrid& grid, std::span<const std::uint32_t> order, int workers);
+    // missing: empty: edges count.
+    CorrelatedChoice(const BucketGrid& grid, std::span<const std::uint32_t> order, int workers,
+                     Missing missing = {});
 
     // The place in the order of the bucket that this worker begins next, each place once;
     // order.size() when there is none left. worker: from 0 to workers - 1.
@@ -54,10 +62,12 @@ class CorrelatedChoice {
 
     std::uint32_t neighbour(std::uint32_t cell, std::size_t side) const;
     float disagreement(std::uint32_t cell) const;
+    float cost(std::uint32_t cell) const;
     std::size_t bestNeighbour(std::uint32_t cell) const;
 
     const BucketGrid& m_grid;
     const std::span<const std::uint32_t> m_order;
+    const Missing m_missing;
     std::mutex m_mutex;  // of what follows
     std::vector<Cell> m_cells;
     std::vector<std::uint32_t> m_last;  // the bucket that each worker begun last; kNoCell at first

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <thread>
 
@@ -140,6 +141,30 @@ TEST(CorrelatedChoice, theFlatEdgeIsCrossed) {
         const std::uint32_t firstLeft = side == 0 ? 3 : 1;
         EXPECT_EQ(order[choice.next(0)], firstLeft) << "nothing finished is beside";
     }
+}
+
+// What caches lack counts before edges, and edges only where nobody knows of it.
+TEST(CorrelatedChoice, leastMissingIsNext) {
+    const BucketGrid grid({0, 0, 24, 24}, 8);
+    const std::vector<std::uint32_t> order{4, 1, 3, 5, 7};
+    const float nan = std::numeric_limits<float>::quiet_NaN();
+    const auto chosen = [&](const std::array<float, 9>& missing) {
+        CorrelatedChoice choice(grid, order, 1, [&](std::uint32_t cell) { return missing[cell]; });
+        EXPECT_EQ(order[choice.next(0)], 4u);
+        // Noise, but for the flat edge to cell 7: by edges, that would be next.
+        choice.finished(4,
+                        pixelsOf(grid.cellRect(4),
+                                 [](int x, int y) {
+                                     return y == 15 ? 500.0 : static_cast<double>(noise(x, y));
+                                 }),
+                        kFloats, kFirst);
+        return order[choice.next(0)];
+    };
+    EXPECT_EQ(chosen({nan, nan, nan, nan, nan, nan, nan, nan, nan}), 7u);
+    EXPECT_EQ(chosen({1, .5f, 1, .25f, 1, .75f, 1, .5f, 1}), 3u);
+    EXPECT_EQ(chosen({1, .5f, 1, .5f, 1, .1f, 1, .5f, 1}), 5u);
+    EXPECT_EQ(chosen({1, 1, 1, 1, 1, 1, 1, 1, 1}), 1u) << "as good: the first in the order";
+    EXPECT_EQ(chosen({1, 1, 1, 1, 1, 1, 1, nan, 1}), 7u) << "what is not known counts by edges";
 }
 
 TEST(CorrelatedChoice, everyBucketOnceForManyWorkers) {

@@ -1,0 +1,63 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#include "plugin/session/render_caches.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+namespace pm::plugin {
+
+namespace {
+
+// To ask what textures missed takes some microseconds a file.
+constexpr std::uint32_t kBucketsBetweenMoves = 16;
+// The least that is of use: some groups or tiles for each thread.
+constexpr std::uint64_t kLeastGroups = std::uint64_t{8} << 20;
+
+std::uint64_t plannedBytes(const MemoryNeed& need) {
+    return need.textures + need.groups;
+}
+
+std::vector<LedgerCache> cachesOf(const RenderScene& scene) {
+    std::vector<LedgerCache> caches;
+    const auto add = [&](const char* name, std::uint64_t least, std::uint64_t whole, auto setBudget,
+                         auto bytesMissed) {
+        if (whole > 0)
+            caches.push_back({name, std::min(least, whole), whole, std::move(setBudget),
+                              std::move(bytesMissed)});
+    };
+    const Scene& shapes = *scene.scene;
+    add(
+        "geometry", kLeastGroups, shapes.groupBytes(),
+        [&shapes](std::uint64_t bytes) { shapes.setGroupBudget(bytes); },
+        [&shapes] { return shapes.groupCounts().bytesMade; });
+    const SceneTextures& textures = *scene.textures;
+    TextureSystem& system = *scene.textureSystem;
+    add(
+        "textures", TextureSystem::kLeastBytes, textures.texelBytes(),
+        [&system](std::uint64_t bytes) { system.holdAtMost(bytes); },
+        [&textures] { return textures.reads().bytes; });
+    return caches;
+}
+
+}  // namespace
+
+RenderCaches::RenderCaches(std::shared_ptr<const RenderScene> scene, const MemoryPlan& plan)
+    : m_scene(std::move(scene)), m_ledger(plannedBytes(plan.need), cachesOf(*m_scene)) {}
+
+void RenderCaches::bucketDone() {
+    if (m_buckets.fetch_add(1, std::memory_order_relaxed) % kBucketsBetweenMoves ==
+        kBucketsBetweenMoves - 1)
+        m_ledger.balance();
+}
+
+Json RenderCaches::statistics() const {
+    Json caches = Json::array();
+    for (const MemoryLedger::Share& share : m_ledger.shares())
+        caches.push_back(
+            {{"name", share.name}, {"budgetBytes", share.budget}, {"wholeBytes", share.whole}});
+    return {{"caches", std::move(caches)}, {"moves", m_ledger.moves()}};
+}
+
+}  // namespace pm::plugin
