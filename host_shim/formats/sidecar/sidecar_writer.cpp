@@ -29,7 +29,8 @@ void write(const ordered_json& value, std::size_t indent, std::string& text) {
         text += value.dump();
         return;
     }
-    const std::string line = isRow ? "" : "\n" + std::string(indent + 4, ' ');
+    const auto lineAt = [](std::size_t column) { return std::string("\n").append(column, ' '); };
+    const std::string line = isRow ? "" : lineAt(indent + 4);
     text += value.is_array() ? '[' : '{';
     bool isFirst = true;
     for (const auto& [key, entry] : value.items()) {
@@ -39,7 +40,7 @@ void write(const ordered_json& value, std::size_t indent, std::string& text) {
         if (value.is_object()) text += ordered_json(key).dump() + ": ";
         write(entry, indent + 4, text);
     }
-    if (!isRow) text += "\n" + std::string(indent, ' ');
+    if (!isRow) text += lineAt(indent);
     text += value.is_array() ? ']' : '}';
 }
 
