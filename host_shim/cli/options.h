@@ -128,6 +128,10 @@ struct Options {
     bool helpOfCache{};
     std::optional<CheckOptions> check;
     bool helpOfCheck{};
+    std::filesystem::path copies;     // of scenes that are fetched; empty: the user's own
+    std::optional<double> copiesGib;  // the most that they may take
+    bool pack{};                      // pm_host pack: the one output is a folder
+    bool helpOfPack{};
     std::vector<std::int64_t> frames;  // --frames, of which this is the first; empty: none
     std::optional<FarmOptions> farm;
     bool helpOfFarm{};
