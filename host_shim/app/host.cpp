@@ -22,6 +22,7 @@
 #include "host_shim/process/interrupt.h"
 #include "host_shim/process/plain_text.h"
 #include "host_shim/render/plugin.h"
+#include "host_shim/watch/watch_run.h"
 
 namespace pm::host {
 namespace {
@@ -55,6 +56,10 @@ int printHelp(const Options& options) {
     }
     if (options.helpOfFarm) {
         print(farmHelpText());
+        return 0;
+    }
+    if (options.helpOfWatch) {
+        print(watchHelpText());
         return 0;
     }
     if (options.helpOfPack) {
@@ -122,6 +127,7 @@ int runOptions(const Options& options, Log& log) {
         return runCacheCommand(options);
     if (options.check) return runCheckCommand(*options.check, log);
     if (options.pack) return runPack(options, log);
+    if (options.watch) return runWatch(options, log);
     if (options.farm) return runFarm(options, log);
     if (!options.frames.empty()) return runFrames(options, log);
     return runScene(options, log);

@@ -18,6 +18,7 @@
 #include "host_shim/cli/option_values.h"
 #include "host_shim/cli/piece_options.h"
 #include "host_shim/cli/unknown_words.h"
+#include "host_shim/cli/watch_options.h"
 #include "host_shim/colour/exposure.h"
 #include "host_shim/formats/mtl/mtl_dialect.h"
 #include "host_shim/formats/scene_url.h"
@@ -256,7 +257,7 @@ std::string oneLine(std::string text) {
     return text;
 }
 
-enum class Command { kRender, kMerge, kCache, kCheck, kFarm, kPack };
+enum class Command { kRender, kMerge, kCache, kCheck, kFarm, kPack, kWatch };
 
 Command commandOf(const std::vector<std::string>& arguments) {
     if (arguments.empty()) return Command::kRender;
@@ -265,6 +266,7 @@ Command commandOf(const std::vector<std::string>& arguments) {
            : arguments.front() == "check" ? Command::kCheck
            : arguments.front() == "farm"  ? Command::kFarm
            : arguments.front() == "pack"  ? Command::kPack
+           : arguments.front() == "watch" ? Command::kWatch
                                           : Command::kRender;
 }
 
@@ -274,6 +276,8 @@ void readWords(const std::vector<std::string>& arguments, Command command, Typed
     CLI::App app("", "pm_host");
     if (command == Command::kMerge)
         addAllOfMerge(app, typed, options);
+    else if (command == Command::kWatch)
+        addAllOfWatch(app, typed, options);
     else if (command == Command::kCache)
         addAllOfCache(app, typed, options);
     else if (command == Command::kCheck)
@@ -305,11 +309,13 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
     Typed typed;
     if (command == Command::kCheck) options.check.emplace();
     if (command == Command::kFarm) options.farm.emplace();
+    if (command == Command::kWatch) options.watch.emplace();
     readWords(arguments, command, typed, options);
     options.helpOfMerge = options.help && isMerge;
     options.helpOfCache = options.help && command == Command::kCache;
     options.helpOfCheck = options.help && command == Command::kCheck;
     options.helpOfFarm = options.help && command == Command::kFarm;
+    options.helpOfWatch = options.help && command == Command::kWatch;
     options.helpOfPack = options.help && command == Command::kPack;
     if (options.help || options.version) return options;
     if (command == Command::kCheck) {
@@ -334,6 +340,10 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
     readFiles(typed, frame, options);
     options.exposure = exposureValue(typed);
     readChoices(typed, options);
+    if (options.watch) {
+        readWatch(typed, frame, options);
+        return options;
+    }
     if (isMerge) {
         checkMerge(options);
         return options;

@@ -14,7 +14,7 @@ std::string helpText(const SettingHelp& settingHelp) {
     CLI::App app("pm: a photon-mapping bucket renderer", "pm_host");
     addAll(app, typed, options, settingHelp);
     return app.help() + "\n" + mergeHelpText() + "\n" + cacheHelpText() + "\n" + checkHelpText() +
-           "\n" + farmHelpText() + "\n" + packHelpText();
+           "\n" + farmHelpText() + "\n" + packHelpText() + "\n" + watchHelpText();
 }
 
 std::string mergeHelpText() {
@@ -34,6 +34,18 @@ std::string farmHelpText() {
         "pm_host farm");
     addFarmOptions(farm, typed, options);
     return farm.help();
+}
+
+std::string watchHelpText() {
+    Options options;
+    options.watch.emplace();
+    Typed typed;
+    CLI::App watch(
+        "pm_host watch PART|FOLDER... -o FILE [options of merge]: collects parts while they come, "
+        "until the picture is whole; and besides",
+        "pm_host watch");
+    addWatchOptions(watch, typed);
+    return watch.help();
 }
 
 std::string packHelpText() {

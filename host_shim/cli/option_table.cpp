@@ -349,4 +349,18 @@ void addAllOfMerge(CLI::App& app, Typed& typed, Options& options) {
     addReportOptions(app, typed, options);
 }
 
+void addWatchOptions(CLI::App& app, Typed& typed) {
+    addText(app, "--job", typed.job, "FOLDER",
+            "the folder of a pm_host farm, whose parts are collected, in place of PART");
+    addText(app, "--page", typed.page, "FILE.html",
+            "a page that shows the picture, how much is there and who made it; it renews itself");
+    addText(app, "--interval", typed.interval, "SECONDS",
+            "between two looks for parts, 0.05 to 3600 (2)");
+}
+
+void addAllOfWatch(CLI::App& app, Typed& typed, Options& options) {
+    addAllOfMerge(app, typed, options);
+    addWatchOptions(app, typed);
+}
+
 }  // namespace pm::host

@@ -60,6 +60,11 @@ void checkPlaces(const Manifest& manifest) {
     for (const PackedFile& file : manifest.files)
         if (!places.insert(file.place).second)
             throw std::runtime_error(fmt::format("'{}' is there twice", file.place));
+    for (const std::string& place : places)
+        for (auto slash = place.find('/'); slash != place.npos; slash = place.find('/', slash + 1))
+            if (places.contains(place.substr(0, slash)))
+                throw std::runtime_error(
+                    fmt::format("'{}' is a file and a folder", place.substr(0, slash)));
     const auto need = [&](const std::string& place) {
         if (!places.contains(place))
             throw std::runtime_error(fmt::format("'{}' is not among its files", place));

@@ -267,6 +267,21 @@ class Faults(Copies):
             (self.pack_folder / "manifest.json").write_text(json.dumps(manifest))
             self.assertIn("is no place", self.render(self.server.url(), code=3)[1])
 
+    def test_manifest_whose_places_do_not_fit(self):
+        good = self.manifest()
+        first, second = good["files"][0]["place"], good["files"][1]["place"]
+        for change, scene, said in (({"place": second}, second, "is there twice"),
+                                    ({"place": "elsewhere"}, first, "is not among its files"),
+                                    ({"place": second + "/x"}, second, "is a file and a folder"),
+                                    ({"sha256": "../../x"}, first, "is no SHA-256"),
+                                    ({"bytes": 1 << 60}, first, "are too many"), ({"bytes": -1}, first, "are too many"),
+                                    ({"bytes": "1"}, first, "can't be understood")):
+            manifest = json.loads(json.dumps(good))
+            manifest["files"][0].update(change)
+            manifest["scene"] = scene
+            (self.pack_folder / "manifest.json").write_text(json.dumps(manifest))
+            self.assertIn(said, self.render(self.server.url(), code=3)[1])
+
     def test_sidecar_can_not_be_written(self):
         self.assertIn("--write-sidecar", self.render(self.server.url(), "--write-sidecar", code=2)[1])
 

@@ -66,7 +66,8 @@ MAY_INCLUDE = {
     "host_shim/sky": "formats pictures process",
     "host_shim/session": "cli colour formats formats/all formats/sidecar log look pictures process render report sky",
     "host_shim/farm": "cli farm/engines farm/job formats log pictures process render report session",
-    "host_shim/app": "check cli colour copies farm formats log pictures process render session",
+    "host_shim/watch": "cli farm/job log pictures process render report session",
+    "host_shim/app": "check cli colour copies farm formats log pictures process render session watch",
     "host_shim": "app",
 }
 # fmt: on
