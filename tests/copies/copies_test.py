@@ -170,6 +170,16 @@ class Renders(Copies):
         self.host(f"file://{str(self.pack_folder).replace(' ', '%20')}/manifest.json", *OPTIONS, "--copies", self.copies)
         self.assertTrue((self.folder / "pack.exr").exists())
 
+    def test_frames_have_packs_of_their_own(self):
+        server = self.serve()
+        for frame in ("0001", "0002"):
+            self.host("pack", self.scene, "-o", self.pack_folder / f"\u0411 shot.{frame}")
+        self.assertIn("shot.0001/", self.render(server.url("%d0%91%20shot.%04d/manifest.json"), "--frame", "1", "-v")[1])
+        said = self.render(server.url("%d0%91%20shot.####/manifest.json"), "--frames", "1-2", "-v", name="p.##.exr")[1]
+        for frame in ("0001", "0002"):
+            self.assertIn(f"shot.{frame}/", said)
+        self.assertTrue((self.folder / "p.02.exr").exists())
+
     def test_packing_again_writes_only_the_manifest(self):
         self.pack()
         before = {file: file.stat().st_mtime_ns for file in self.pack_folder.rglob("objects/*/*")}
