@@ -71,6 +71,9 @@ class Fetching {
             missing = m_folder.layOut(pack.id(), m_manifest) ? std::vector<std::string>{}
                                                              : m_folder.missing(m_manifest);
         }
+        m_log.message(Level::kDebug,
+                      fmt::format("{}: {} files, which are in {}", m_url, m_manifest.files.size(),
+                                  m_folder.tree(pack.id()).string()));
         return pack;
     }
     // As a command line that names the copies.
