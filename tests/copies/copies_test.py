@@ -10,10 +10,12 @@ import json
 import os
 import pathlib
 import shutil
+import signal
 import socket
 import subprocess
 import sys
 import tempfile
+import threading
 import unittest
 
 from server import Server
@@ -297,8 +299,8 @@ class Faults(Copies):
 
 
 class Sharing(Copies):
-    def start(self, url, name):
-        process = subprocess.Popen([HOST, url, *OPTIONS, "-o", self.folder / name, "--copies", self.copies],
+    def start(self, url, name, *more):
+        process = subprocess.Popen([HOST, url, *OPTIONS, *more, "-o", self.folder / name, "--copies", self.copies],
                                    env=self.variables, stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         self.addCleanup(process.stderr.close)
         self.addCleanup(process.wait)
@@ -316,7 +318,6 @@ class Sharing(Copies):
         self.assertEqual(len({(self.folder / f"{i}.exr").read_bytes() for i in range(3)}), 1)
 
     def test_killed_while_it_fetches(self):
-        import threading
         self.pack()
         server = self.serve()
         server.pause = threading.Event()
@@ -352,6 +353,27 @@ class Sharing(Copies):
         self.assertIn("objects", " ".join(server.asked), "b went")
         size = sum(file.stat().st_size for file in (self.copies / "objects").rglob("*") if file.is_file())
         self.assertLessEqual(size, 5.5 * (1 << 20))
+
+    def test_what_is_in_use_stays(self):
+        for name in ("a", "b"):
+            with open(self.project / "leaf.png", "ab") as file:
+                file.write(os.urandom(1 << 20))
+            self.host("pack", self.scene, "-o", self.folder / "packs" / name)
+        self.pack_folder = self.folder / "packs"
+        server = self.serve()
+        limit = ("--copies-limit", str(2.5 / 1024))  # a is 1 MiB, b 2
+        worker = self.start(server.url("a/manifest.json"), "a.exr", "--passes", "100000", "-v")
+        self.assertTrue(any(" meshes, " in line for line in worker.stderr), "it renders")
+        worker.send_signal(signal.SIGSTOP)
+        before = self.cached()
+        said = self.render(server.url("b/manifest.json"), *limit, code=4)[1]
+        self.assertIn("--copies-limit allows", said)
+        self.assertEqual(self.cached(), before)
+        worker.send_signal(signal.SIGCONT)
+        worker.kill()
+        worker.wait()
+        self.render(server.url("b/manifest.json"), *limit)
+        self.assertFalse(set(before) <= set(self.cached()), "a went once nobody rendered it")
 
     def test_too_large_for_the_limit(self):
         self.pack()
