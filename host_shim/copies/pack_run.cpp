@@ -9,6 +9,7 @@
 
 #include "host_shim/colour/config_files.h"
 #include "host_shim/copies/manifest.h"
+#include "host_shim/copies/pack_check.h"
 #include "host_shim/copies/pack_places.h"
 #include "host_shim/copies/sha256.h"
 #include "host_shim/formats/scene_reader.h"
@@ -37,6 +38,9 @@ class Packing {
             throwIfInterrupted();
             manifest.files.push_back(store(place, file));
         }
+        std::vector<std::string> read;
+        for (const fs::path& file : m_read) read.push_back(m_places.placeOf(file));
+        checkReadsTheSame(manifest, m_folder, m_options, read);
         const fs::path file = m_folder / "manifest.json";
         writeFinishedFile(file, manifest.toJson());
         m_log.info(fmt::format("wrote {}: {} files, {:.1f} MiB, of which {:.1f} MiB are new",
@@ -57,7 +61,10 @@ class Packing {
         std::error_code ignored;
         for (const fs::path& file : filesOf(scene))
             // Of what is missing the reader has warned, and a render will again.
-            if (fs::exists(file, ignored)) m_places.addFile(file);
+            if (fs::exists(file, ignored)) {
+                m_places.addFile(file);
+                m_read.push_back(file);
+            }
         m_config = filesOfConfig(m_options.colour);
         for (const fs::path& file : m_config) m_places.addFile(file);
         for (const fs::path& folder : m_options.reading.files.searchPaths)
@@ -106,6 +113,7 @@ class Packing {
     Log& m_log;
     fs::path m_folder;
     PackPlaces m_places;
+    std::vector<fs::path> m_read;    // for the scene, in the order in which it lists them
     std::vector<fs::path> m_config;  // and what it names; empty: the one that is built in
     std::uint64_t m_newBytes{};
 };

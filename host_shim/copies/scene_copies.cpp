@@ -13,6 +13,7 @@
 #include <set>
 #include <string_view>
 
+#include "host_shim/copies/copied_options.h"
 #include "host_shim/copies/download.h"
 #include "host_shim/copies/manifest.h"
 #include "host_shim/copies/sha256.h"
@@ -76,27 +77,8 @@ class Fetching {
                                   m_folder.tree(pack.id()).string()));
         return pack;
     }
-    // As a command line that names the copies.
-    void nameCopies(const std::string& id, Options& options) const {
-        const fs::path tree = m_folder.tree(id);
-        options.scene = tree / m_manifest.scene;
-        SceneFileRules& rules = options.reading.files;
-        rules.isTrusted = false;
-        rules.moved = {m_manifest.base, tree};
-        rules.alsoAllowed.push_back(tree);
-        for (auto place = m_manifest.searchPaths.rbegin(); place != m_manifest.searchPaths.rend();
-             ++place)
-            rules.searchPaths.insert(rules.searchPaths.begin(), tree / *place);
-        const auto isMeant = [](const std::optional<PackedOption>& packed,
-                                const std::string& text) {
-            return packed && (text.empty() || text == packed->text);
-        };
-        if (isMeant(m_manifest.ocio, options.colour.ocioFile))
-            options.colour.ocioFile = (tree / m_manifest.ocio->place).string();
-        fs::path& environment = options.sky.environment;
-        if (!environment.empty() && isMeant(m_manifest.environment, environment.string()))
-            environment = tree / m_manifest.environment->place;
-    }
+    const Manifest& manifest() const { return m_manifest; }
+    fs::path tree(const PackInUse& pack) const { return m_folder.tree(pack.id()); }
 
   private:
     // What nobody brought while we waited; the others were whole.
@@ -176,7 +158,7 @@ std::optional<PackInUse> takeCopies(Options& options, Log& log) {
                         "--write-sidecar: a scene that is fetched has no place for it");
     Fetching fetching(options, log);
     PackInUse pack = fetching.run();
-    fetching.nameCopies(pack.id(), options);
+    nameCopies(fetching.manifest(), fetching.tree(pack), options);
     return pack;
 }
 

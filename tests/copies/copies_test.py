@@ -392,6 +392,20 @@ class Packing(Copies):
         self.host("pack", self.scene, code=2)
         self.host("pack", "http://127.0.0.1/manifest.json", "-o", "x", code=2)
 
+    def test_name_that_would_lead_elsewhere(self):
+        # A whole path whose letters are of another case leads to its file here, and nowhere in a pack.
+        shots = self.project / "shots"
+        shots.mkdir()
+        whole = self.folder / "Project" / "leaf.png"
+        (shots / "scenes.mtl").write_text((SCENES / "scenes.mtl").read_text().replace("leaf.png", str(whole)))
+        self.scene = shots / "textured.obj"
+        shutil.copy(SCENES / "textured.obj", self.scene)
+        shutil.copy(SCENES / "checker.png", shots / "checker.png")
+        said = self.pack(code=3).stderr
+        self.assertIn(f"where the scene reads {self.project}/leaf.png, its copies would lead to", said)
+        self.assertFalse((self.pack_folder / "manifest.json").exists())
+        self.assertEqual([file.name for file in self.pack_folder.iterdir()], ["objects"])
+
     def test_config_with_an_absolute_search_path(self):
         config = self.project / "studio" / "config.ocio"
         text = config.read_text()
