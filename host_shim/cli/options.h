@@ -68,6 +68,14 @@ struct FarmOptions {
     std::vector<GivenOption> given;         // all that was typed
 };
 
+// pm_host watch PART... or --job FOLDER.
+struct WatchOptions {
+    std::filesystem::path job;  // of pm_host farm; empty: Options::merge names the parts
+    std::optional<std::int64_t> frame;
+    std::filesystem::path page;  // empty: none
+    double intervalSeconds{2};
+};
+
 // A light that is infinitely far, in place of what the scene has.
 struct SkyOptions {
     std::filesystem::path environment;         // a picture; empty: none
@@ -128,9 +136,15 @@ struct Options {
     bool helpOfCache{};
     std::optional<CheckOptions> check;
     bool helpOfCheck{};
+    std::filesystem::path copies;     // of scenes that are fetched; empty: the user's own
+    std::optional<double> copiesGib;  // the most that they may take
+    bool pack{};                      // pm_host pack: the one output is a folder
+    bool helpOfPack{};
     std::vector<std::int64_t> frames;  // --frames, of which this is the first; empty: none
     std::optional<FarmOptions> farm;
     bool helpOfFarm{};
+    std::optional<WatchOptions> watch;
+    bool helpOfWatch{};
     std::vector<std::filesystem::path> merge;  // parts to put together, instead of a scene
 };
 
