@@ -20,13 +20,6 @@ ordered_json describe(const CameraData& camera) {
     return json;
 }
 
-// A line's end and so many blanks.
-std::string newLine(std::size_t indent) {
-    std::string text(indent + 1, ' ');
-    text.front() = '\n';
-    return text;
-}
-
 // Indented, but for lists of numbers, which stand in a line.
 void write(const ordered_json& value, std::size_t indent, std::string& text) {
     const bool isRow = value.is_array() && std::ranges::all_of(value, [](const auto& entry) {
@@ -36,7 +29,8 @@ void write(const ordered_json& value, std::size_t indent, std::string& text) {
         text += value.dump();
         return;
     }
-    const std::string line = isRow ? std::string() : newLine(indent + 4);
+    const auto lineAt = [](std::size_t column) { return std::string("\n").append(column, ' '); };
+    const std::string line = isRow ? "" : lineAt(indent + 4);
     text += value.is_array() ? '[' : '{';
     bool isFirst = true;
     for (const auto& [key, entry] : value.items()) {
@@ -46,7 +40,7 @@ void write(const ordered_json& value, std::size_t indent, std::string& text) {
         if (value.is_object()) text += ordered_json(key).dump() + ": ";
         write(entry, indent + 4, text);
     }
-    if (!isRow) text += newLine(indent);
+    if (!isRow) text += lineAt(indent);
     text += value.is_array() ? ']' : '}';
 }
 
