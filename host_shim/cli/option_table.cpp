@@ -234,7 +234,7 @@ void addPrintingOptions(CLI::App& app, Typed& typed, Options& options) {
     addText(app, "--list", options.list, "views|looks|spaces|aovs|orders|settings|parameters",
             "print and stop");
     app.add_flag("--version", options.version, "print and stop");
-    addText(app, "--progress", typed.progress, "auto|bar|plain|json|alf|none",
+    addText(app, "--progress", typed.progress, "auto|bar|plain|json|alf|openjd|none",
             "how progress is shown (auto)");
     addText(app, "--bucket-times", typed.bucketTimes, "FILE.csv",
             "how long each bucket took: its place in the order, its pixels, seconds, passes");
