@@ -14,7 +14,7 @@ MAY_INCLUDE = {
     "integrator/caches": "",
     "integrator/cameras": "values",
     "integrator/geometry": "values",
-    "integrator/photons/map": "values",
+    "integrator/photons/map": "caches values",
     "integrator/sampling": "values",
     "integrator/materials/lobes": "sampling values",
     "integrator/shapes": "geometry sampling values",
