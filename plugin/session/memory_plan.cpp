@@ -13,6 +13,7 @@
 #include "plugin/session/frame_samples.h"
 #include "plugin/session/layer_table.h"
 #include "plugin/session/memory_limit.h"
+#include "plugin/session/page_plan.h"
 #include "plugin/session/pixel_reader.h"
 #include "plugin/session/render_photons.h"
 #include "plugin/values/call_error.h"
@@ -133,8 +134,11 @@ BucketGrid bucketsOf(const SettingValues& values) {
     return {wholeAtoms(window), size == 0 ? autoBucketSize(window) : size};
 }
 
-MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues& values,
-                      const BucketGrid& grid, std::uint64_t texelBytes) {
+namespace {
+
+// With all maps in memory.
+MemoryPlan planInMemory(const Scene& scene, const Plan& plan, const SettingValues& values,
+                        const BucketGrid& grid, std::uint64_t texelBytes) {
     const RenderSettings settings = values.toRenderSettings();
     const ChannelLayout layout = channelLayout(settings);
     const std::uint64_t threads = threadsOf(values);
@@ -177,6 +181,24 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
     return memory;
 }
 
+}  // namespace
+
+MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues& values,
+                      const BucketGrid& grid, std::uint64_t texelBytes) {
+    MemoryPlan memory = planInMemory(scene, plan, values, grid, texelBytes);
+    const RenderSettings settings = values.toRenderSettings();
+    const std::uint64_t ofFrame =
+        plan.globalMap ? GatherPoints::memoryBytes(settings.width, settings.height,
+                                                   plan.gatherSpacing, settings.window)
+                       : 0;
+    planPages(plan, values,
+              memory.byBuckets ? pointBytes(plan, settings, grid,
+                                            values.word(Setting::kBucketOrder), memory.bucketsHeld)
+                               : ofFrame,
+              memory);
+    return memory;
+}
+
 std::string MemoryPlan::explain() const {
     std::string text = fmt::format("memory: {}", figures(need));
     if (byBuckets)
@@ -185,7 +207,13 @@ std::string MemoryPlan::explain() const {
             toGib(whole.total()));
     text += fmt::format(", the limit is {:.2f} GiB", toGib(limit));
     if (need.total() > limit) text += ": the render would be refused";
-    return text + "\n";
+    text += "\n";
+    if (pages > 0)
+        text += fmt::format(
+            "photon pages: of {:.2f} GiB of photons {:.2f} GiB are held at once, the rest is read "
+            "again from scratch files\n",
+            toGib(pagedBytes), toGib(std::min(pages, pagedBytes)));
+    return text;
 }
 
 void MemoryPlan::check() const {

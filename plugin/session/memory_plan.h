@@ -32,6 +32,8 @@ struct MemoryPlan {
     MemoryNeed need;                // as it is to be done
     MemoryNeed whole;               // with the whole frame
     std::uint32_t bucketsHeld = 0;  // by buckets: in work or waiting for the host, at most
+    std::uint64_t pages = 0;  // bytes that pages of photon maps take at once; 0: maps are in memory
+    std::uint64_t pagedBytes = 0;  // of all pages of the maps that there are at once
     std::string whyWhole;  // why it can't be done by buckets; empty where it can or isn't asked for
 
     // For --explain; ends with a line break.

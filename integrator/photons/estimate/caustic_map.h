@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "integrator/photons/estimate/surface_patches.h"
@@ -63,7 +64,10 @@ class CausticMap {
     // cancel is set.
     CausticMap(std::span<const Photon> photons, const PilotRadius& radius, float radiusFactor,
                const SurfacePatches* patches = nullptr, const CancelCheck& cancel = {})
-        : m_map(photons, cancel),
+        : CausticMap(PhotonMap(photons, cancel), radius, radiusFactor, patches) {}
+    CausticMap(PhotonMap map, const PilotRadius& radius, float radiusFactor,
+               const SurfacePatches* patches = nullptr)
+        : m_map(std::move(map)),
           m_radius(radius),
           m_radiusFactor(radiusFactor),
           m_patches(patches) {}

@@ -51,7 +51,7 @@ class PagedBuilder {
         : m_tree(tree),
           m_paging(paging),
           m_cancel(cancel),
-          m_most(mostBuilt(std::max(paging.budget(), kLeastBuildBytes))) {}
+          m_most(mostBuilt(std::max(paging.buildBudget(), kLeastBuildBytes))) {}
 
     // Part of the tree, as in buildPhotonTree.
     struct Part {

@@ -111,6 +111,8 @@ class PhotonMap {
     // While it is built, the photons that it is built from included; and once it is.
     static constexpr std::uint64_t kBytesPerPhoton = sizeof(Photon) + kTreeBuildBytesPerPhoton;
     static constexpr std::uint64_t kHeldBytesPerPhoton = kTreeBytesPerPhoton;
+    // In pages, without those: the planes of the tree.
+    static constexpr std::uint64_t kPagedBytesPerPhoton = 1;
 
     bool empty() const { return m_tree.size == 0; }
     std::size_t size() const { return m_tree.size; }

@@ -34,13 +34,15 @@ class PhotonPaging {
     // budget: bytes of pages that are held at once; each thread that reads holds two more at most.
     // folder must outlive this.
     PhotonPaging(ScratchFolder& folder, std::uint64_t budget)
-        : m_folder(folder), m_budget(budget) {}
+        : m_folder(folder), m_buildBudget(budget), m_budget(budget) {}
     PhotonPaging(const PhotonPaging&) = delete;
     PhotonPaging& operator=(const PhotonPaging&) = delete;
 
     std::uint64_t budget() const { return m_budget.load(std::memory_order_relaxed); }
     // Evicts at once where it is less than what is held.
     void setBudget(std::uint64_t bytes);
+    // What tracing photons and building a map may take beside: the budget at first.
+    std::uint64_t buildBudget() const { return m_buildBudget; }
     // Of all maps so far.
     CacheCounts counts() const;
     // Of the pages of the maps that there are now, and the most there were, if all were held.
@@ -67,6 +69,7 @@ class PhotonPaging {
     void released(std::uint64_t bytes) { m_bytesHeld.fetch_sub(bytes, std::memory_order_relaxed); }
 
     ScratchFolder& m_folder;
+    const std::uint64_t m_buildBudget;
     std::atomic<std::uint64_t> m_budget;
     std::atomic<std::uint64_t> m_bytesHeld{0}, m_mostBytesHeld{0};
     std::atomic<std::uint64_t> m_wholeBytes{0}, m_mostWholeBytes{0};

@@ -11,8 +11,8 @@
 
 namespace pm {
 
-std::vector<Photon> refocusedOf(std::span<const Photon> descended) {
-    std::vector<Photon> found;
+BigVector<Photon> refocusedOf(std::span<const Photon> descended) {
+    BigVector<Photon> found;
     std::ranges::copy_if(descended, std::back_inserter(found),
                          [](const Photon& photon) { return photon.normal.isMarked(); });
     return found;

@@ -12,7 +12,7 @@
 namespace pm {
 
 // Of the photons that are descended from caustics, those that have been refocused, in their order.
-std::vector<Photon> refocusedOf(std::span<const Photon> descended);
+BigVector<Photon> refocusedOf(std::span<const Photon> descended);
 
 // Those that glossy lobes received, as a pilot of radii takes them.
 std::vector<Photon> photonsOf(std::span<const ReceivedPhoton> received);

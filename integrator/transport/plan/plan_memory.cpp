@@ -108,6 +108,35 @@ std::uint64_t Plan::memoryBytes(std::uint32_t passes, std::uint64_t pointBytes) 
     return heldMapBytes(passes) + pointBytes * passes + buildingMapBytes() + patchBytes;
 }
 
+std::uint64_t Plan::pagedBytes() const {
+    return (globalLandings() + descendedLandings() + causticLandings() + refocusedLandings()) *
+           PhotonMap::kHeldBytesPerPhoton;
+}
+
+std::uint64_t Plan::bytesBesidePages(std::uint32_t first, std::uint32_t last,
+                                     std::uint64_t pointBytes) const {
+    const std::uint64_t nodes =
+        pagedBytes() / PhotonMap::kHeldBytesPerPhoton * PhotonMap::kPagedBytesPerPhoton;
+    std::uint64_t bytes =
+        pilotMapBytes() + patchBytes +
+        receivedLandings() * (ReceivedMap::kBytesPerPhoton - ReceivedMap::kHeldBytesPerPhoton +
+                              sizeof(ReceivedPhoton));
+    for (std::uint32_t pass = first; pass <= last; ++pass)
+        bytes += passMapBytes(pass) - pagedBytes() + nodes + pointBytes;
+    return bytes;
+}
+
+// The last to be built is the largest, with the photons of both pilots.
+std::uint64_t Plan::pilotBuildingBytes() const {
+    const std::uint64_t gathered = globalLandings() + descendedLandings();
+    return pilotMapBytes() +
+           (gathered * (PhotonMap::kBytesPerPhoton + sizeof(Photon)) +
+            (globalMap ? IrradianceSites::memoryBytes(gathered / PilotRadius::kPilotShare, 1.0f)
+                       : 0) *
+                PilotRadius::kPilotShare) /
+               PilotRadius::kPilotShare;
+}
+
 // In the order in which PhotonPass makes the maps; a map's photons go when it is built, before
 // those maps are there that come after it.
 std::uint64_t Plan::buildingMapBytes(std::uint32_t pass) const {
