@@ -72,6 +72,13 @@ std::uint64_t pointBytes(const Plan& plan, const RenderSettings& settings, const
                                      grid.window(), bucketsHeld);
 }
 
+// The same of a whole frame.
+std::uint64_t framePointBytes(const Plan& plan, const RenderSettings& settings) {
+    if (!plan.globalMap) return 0;
+    return GatherPoints::memoryBytes(settings.width, settings.height, plan.gatherSpacing,
+                                     settings.window);
+}
+
 // Why the passes of a bucket can't all be made before the next one; empty where they can.
 std::string obstacle(const SettingValues& values) {
     if (values.number(Setting::kTimeLimit) > 0) return "timeLimitSeconds";
@@ -187,16 +194,25 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
                       const BucketGrid& grid, std::uint64_t texelBytes) {
     MemoryPlan memory = planInMemory(scene, plan, values, grid, texelBytes);
     const RenderSettings settings = values.toRenderSettings();
-    const std::uint64_t ofFrame =
-        plan.globalMap ? GatherPoints::memoryBytes(settings.width, settings.height,
-                                                   plan.gatherSpacing, settings.window)
-                       : 0;
-    planPages(plan, values,
-              memory.byBuckets ? pointBytes(plan, settings, grid,
-                                            values.word(Setting::kBucketOrder), memory.bucketsHeld)
-                               : ofFrame,
-              memory);
-    return memory;
+    if (!memory.byBuckets) {
+        planPages(plan, values, framePointBytes(plan, settings), memory);
+        return memory;
+    }
+    MemoryPlan ofFrame = memory;
+    planPages(
+        plan, values,
+        pointBytes(plan, settings, grid, values.word(Setting::kBucketOrder), memory.bucketsHeld),
+        memory);
+    if (memory.need.total() <= memory.limit && memory.pages == 0) return memory;
+    if (values.word(Setting::kDelivery) == "buckets") return memory;
+    // The frame with the maps of one pass, where that leaves more room for their pages.
+    ofFrame.byBuckets = false;
+    ofFrame.bucketsHeld = 0;
+    ofFrame.need = ofFrame.whole;
+    planPages(plan, values, framePointBytes(plan, settings), ofFrame);
+    return ofFrame.need.total() <= ofFrame.limit && ofFrame.pagedShare() >= memory.pagedShare()
+               ? ofFrame
+               : memory;
 }
 
 std::string MemoryPlan::explain() const {

@@ -2,8 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "plugin/session/page_plan.h"
 
-#include <algorithm>
-
 #include "plugin/session/render_photons.h"
 
 namespace pm::plugin {
@@ -36,8 +34,8 @@ void planPages(const Plan& plan, const SettingValues& values, std::uint64_t poin
         pages = (memory.limit - others) / kPagesTwice;
     }
     memory.pages = pages;
-    memory.pagedBytes = plan.pagedBytes() * (last - first + 1);
-    memory.need.maps = std::max(beside + kPagesTwice * pages, plan.pilotBuildingBytes());
+    memory.pagedBytes = plan.pagedBytes() * (last - first + 1) + plan.pagedPilotBytes();
+    memory.need.maps = beside + kPagesTwice * pages;
 }
 
 }  // namespace pm::plugin

@@ -140,7 +140,7 @@ TEST_F(Pages, AKilledRenderLeavesNothing) {
 }
 
 TEST_F(Pages, SayWhatIsWrongWithTheFolderOrTheDisk) {
-    expectRefusal(run(glass({"-o", "a.exr", "--photon-pages", "1", "--scratch", "nowhere"})), 5,
+    expectRefusal(run(glass({"-o", "a.exr", "--photon-pages", "1", "--scratch", "nowhere"})), 4,
                   {"nowhere", "--scratch", "No such file or directory"});
     rlimit before{};
     ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
@@ -148,7 +148,7 @@ TEST_F(Pages, SayWhatIsWrongWithTheFolderOrTheDisk) {
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &full), 0);
     const Outcome outcome = run(glass({"-o", "a.exr", "--photon-pages", "1"}));
     ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &before), 0);
-    EXPECT_NE(outcome.exitCode, 0);
+    EXPECT_EQ(outcome.exitCode, 4);
     EXPECT_NE(outcome.err.find("scratch: can't be written"), std::string::npos) << outcome.err;
     EXPECT_FALSE(fs::exists(path("a.exr")));
     expectNothingLeft();

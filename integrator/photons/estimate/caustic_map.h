@@ -31,6 +31,9 @@ class PilotRadius {
     // fallback: the typical radius where the pilot found too little; scene units, > 0. Throws
     // Error(kCancelled) soon after cancel is set.
     PilotRadius(std::span<const Photon> pilot, std::uint32_t estimatePhotons, float fallback,
+                const CancelCheck& cancel = {})
+        : PilotRadius(PhotonMap(pilot, cancel), estimatePhotons, fallback, cancel) {}
+    PilotRadius(PhotonMap pilot, std::uint32_t estimatePhotons, float fallback,
                 const CancelCheck& cancel = {});
 
     // One for all places: what half of the pilot's photons need; scene units, > 0.

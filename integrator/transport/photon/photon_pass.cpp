@@ -11,6 +11,7 @@
 
 #include "integrator/transport/frame/pass_radius.h"
 #include "integrator/transport/frame/render_counters.h"
+#include "integrator/transport/photon/photon_lists.h"
 #include "integrator/values/stopwatch.h"
 
 namespace pm {
@@ -106,7 +107,7 @@ void PhotonPass::dropMaps() {
 }
 
 PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
-                                    Control& control, const TraceRounds* rounds) {
+                                    Control& control, const TraceRounds& rounds) {
     const Stopwatch watch;
     const auto part = [&](double fraction) {
         if (control.progress)
@@ -121,16 +122,34 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
     request.withoutCaustics = m_plan.descent > 0.0f;
     request.oneInChains = m_plan.oneInChains;
     PhotonTraceResult result =
-        m_source                            ? m_source->read(kind, pass, control.cancelled)
-        : kind == PhotonKind::kCausticPilot ? tracePilotOfCaustics(request, control, part)
-        : rounds ? traceInRounds(m_scene, m_lights, request, control.cancelled, part, *rounds)
-                 : tracePhotons(m_scene, m_lights, request, control.cancelled, part);
-    if (m_source) part(1.0);
+        m_source ? m_source->read(kind, pass, control.cancelled)
+        : kind == PhotonKind::kCausticPilot
+            ? tracePilotOfCaustics(request, control, part, rounds)
+            : traceInRounds(m_scene, m_lights, request, control.cancelled, part, rounds);
+    if (m_source) {
+        part(1.0);
+        // What a source gives comes at once.
+        PhotonTraceResult rest;
+        rest.balance = result.balance;
+        rest.focus = result.focus;
+        rounds.take(std::exchange(result, std::move(rest)));
+    }
     control.photonsBefore += count;
     this->count(kind, result.balance);
     const std::lock_guard lock(m_mutex);
     m_photonSeconds += watch.seconds();
     return result;
+}
+
+PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
+                                    Control& control) {
+    PhotonTraceResult all;
+    const PhotonTraceResult rest =
+        trace(kind, count, pass, control,
+              {TraceRounds::kAll, [&](PhotonTraceResult part) { append(all, std::move(part)); }});
+    all.balance = rest.balance;
+    all.focus = rest.focus;
+    return all;
 }
 
 // In files where maps are in pages.
@@ -144,8 +163,7 @@ PhotonPass::ForMaps PhotonPass::traceForMaps(PhotonKind kind, std::uint64_t coun
         traced.descended.append(std::move(part.descended));
         traced.received.insert(traced.received.end(), part.received.begin(), part.received.end());
     };
-    // What a source gives comes at once.
-    rounds.take(trace(kind, count, pass, control, &rounds));
+    traced.focus = trace(kind, count, pass, control, rounds).focus;
     return traced;
 }
 

@@ -91,17 +91,22 @@ class PhotonPass {
         std::uint64_t memoryBytes() const;
     };
     // Photons of one kind, traced, or read where there is a source of them.
-    // rounds: null where all are asked for at once.
+    // rounds: take the photons; what is returned has none.
     PhotonTraceResult trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
-                            Control& control, const TraceRounds* rounds = nullptr);
+                            Control& control, const TraceRounds& rounds);
+    // All at once.
+    PhotonTraceResult trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
+                            Control& control);
     struct ForMaps {
         TracedPhotons photons, descended;
         std::vector<ReceivedPhoton> received;
+        Focus focus{};
     };
     ForMaps traceForMaps(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
                          Control& control);
     PhotonTraceResult tracePilotOfCaustics(PhotonTraceRequest request, const Control& control,
-                                           const std::function<void(double)>& progress) const;
+                                           const std::function<void(double)>& progress,
+                                           const TraceRounds& rounds) const;
     TracedPhotons buildCaustics(PassMaps& maps, Control& control);
     // At which gather rays read caustics.
     float radiusOfGathered() const;
@@ -109,10 +114,10 @@ class PhotonPass {
     void buildIndirect(PassMaps& maps, TracedPhotons descended, Control& control);
     void findFocus(const CancelCheck& check);
     void aim(Control& control);
-    BigVector<Photon> findCausticRadii(float fallback, Control& control);
+    TracedPhotons findCausticRadii(float fallback, Control& control);
     void chooseGatherRays(const PhotonMap& pilot, const CancelCheck& check);
     void findRadii(Control& control);
-    void findGlobalRadius(std::span<const Photon> pilot, float fallback, const CancelCheck& check);
+    void findGlobalRadius(TracedPhotons pilot, float fallback, const CancelCheck& check);
     void buildMaps(std::uint32_t pass, Control& control);
     void count(PhotonKind kind, const PhotonBalance& balance);
 

@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/transport/photon/traced_photons.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "integrator/transport/photon/photon_lists.h"
@@ -31,15 +33,15 @@ void TracedPhotons::append(TracedPhotons others) {
     others.m_spool->visit([&](const Photon& photon) { m_spool->append(photon); });
 }
 
-TracedPhotons TracedPhotons::refocused() {
+TracedPhotons TracedPhotons::those(const std::function<bool(const Photon&)>& isMeant) {
     TracedPhotons found(m_paging);
     if (!m_spool) {
-        found.m_photons = refocusedOf(m_photons);
+        std::ranges::copy_if(m_photons, std::back_inserter(found.m_photons), isMeant);
         return found;
     }
     m_spool->finish();
     m_spool->visit([&](const Photon& photon) {
-        if (photon.normal.isMarked()) found.m_spool->append(photon);
+        if (isMeant(photon)) found.m_spool->append(photon);
     });
     return found;
 }

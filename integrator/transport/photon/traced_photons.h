@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <limits>
 #include <memory>
 
@@ -24,8 +25,12 @@ class TracedPhotons {
     void append(BigVector<Photon> photons);
     void append(TracedPhotons others);
     std::size_t size() const;
-    // Those that have been refocused, in their order (of such as are descended from caustics).
-    TracedPhotons refocused();
+    // Those which are meant, in their order.
+    TracedPhotons those(const std::function<bool(const Photon&)>& isMeant);
+    // Of such as are descended from caustics those that have been refocused.
+    TracedPhotons refocused() {
+        return those([](const Photon& photon) { return photon.normal.isMarked(); });
+    }
     // Their map; they are given back. Builds in parallel in the calling TBB arena. Throws
     // Error(kCancelled) soon after cancel is set.
     PhotonMap intoMap(const CancelCheck& cancel,

@@ -113,28 +113,23 @@ std::uint64_t Plan::pagedBytes() const {
            PhotonMap::kHeldBytesPerPhoton;
 }
 
+std::uint64_t Plan::pagedPilotBytes() const {
+    return (causticLandings() + refocusedLandings()) / PilotRadius::kPilotShare *
+           PhotonMap::kHeldBytesPerPhoton;
+}
+
 std::uint64_t Plan::bytesBesidePages(std::uint32_t first, std::uint32_t last,
                                      std::uint64_t pointBytes) const {
-    const std::uint64_t nodes =
-        pagedBytes() / PhotonMap::kHeldBytesPerPhoton * PhotonMap::kPagedBytesPerPhoton;
+    const auto planes = [](std::uint64_t paged) {
+        return paged / PhotonMap::kHeldBytesPerPhoton * PhotonMap::kPagedBytesPerPhoton;
+    };
     std::uint64_t bytes =
-        pilotMapBytes() + patchBytes +
+        pilotMapBytes() - pagedPilotBytes() + planes(pagedPilotBytes()) + patchBytes +
         receivedLandings() * (ReceivedMap::kBytesPerPhoton - ReceivedMap::kHeldBytesPerPhoton +
                               sizeof(ReceivedPhoton));
     for (std::uint32_t pass = first; pass <= last; ++pass)
-        bytes += passMapBytes(pass) - pagedBytes() + nodes + pointBytes;
+        bytes += passMapBytes(pass) - pagedBytes() + planes(pagedBytes()) + pointBytes;
     return bytes;
-}
-
-// The last to be built is the largest, with the photons of both pilots.
-std::uint64_t Plan::pilotBuildingBytes() const {
-    const std::uint64_t gathered = globalLandings() + descendedLandings();
-    return pilotMapBytes() +
-           (gathered * (PhotonMap::kBytesPerPhoton + sizeof(Photon)) +
-            (globalMap ? IrradianceSites::memoryBytes(gathered / PilotRadius::kPilotShare, 1.0f)
-                       : 0) *
-                PilotRadius::kPilotShare) /
-               PilotRadius::kPilotShare;
 }
 
 // In the order in which PhotonPass makes the maps; a map's photons go when it is built, before
