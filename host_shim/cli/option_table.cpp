@@ -13,7 +13,7 @@
 namespace pm::host {
 namespace {
 
-constexpr std::array<SettingOption, 17> kSettingOptions{{
+constexpr std::array<SettingOption, 19> kSettingOptions{{
     {"--threads", "threads", "N"},
     {"--bucket-size", "bucketSize", "N|auto"},
     {"--bucket-order", "bucketOrder", "NAME"},
@@ -31,6 +31,8 @@ constexpr std::array<SettingOption, 17> kSettingOptions{{
     {"--error-target", "errorTarget", "RELMSE"},
     {"--seed", "seed", "N|frame"},
     {"--memory-limit", "memoryLimitGib", "GIB"},
+    {"--photon-pages", "photonPagesMib", "MIB"},
+    {"--scratch", "scratchFolder", "FOLDER"},
 }};
 
 // What is wrong with a value: an empty one, of a script's variable perhaps, is not the same as

@@ -220,6 +220,8 @@ std::string Render::statisticsJson() const {
     json["memory"] = memoryJson(*running, counters);
     json["textureCache"] = texturesJson(*m_scene->textures);
     json["geometryCache"] = geometryJson(*m_scene->scene);
+    if (const RenderPages* const pages = running->pages())
+        json["photonPages"] = pages->statistics();
     if (const RenderCaches* const caches = running->caches()) json["caches"] = caches->statistics();
     json["plan"] = planJson(running->plan(), counters);
     json["warnings"] = warningsJson(running->scene(), *running);

@@ -191,8 +191,8 @@ TEST(LimitGroups, AreNotMadeAgainForRaysThatPassBy) {
     const double top = groups.pin(0)->hi().z;
     ASSERT_LT(top, box.hi.z - 1.0);
     const Vec3d middle = 0.5 * (box.lo + box.hi);
-    const ShearedRay down(Vec3f(middle.x, middle.y, box.hi.z), {0, 0, -1});
-    const ShearedRay by(Vec3f(box.lo.x - 1.0, middle.y, top + 0.5), {1, 0, 0});
+    const ShearedRay down(Vec3f(Vec3d{middle.x, middle.y, box.hi.z}), {0, 0, -1});
+    const ShearedRay by(Vec3f(Vec3d{box.lo.x - 1.0, middle.y, top + 0.5}), {1, 0, 0});
     EXPECT_TRUE(groups.mayMeet(0, down, 0.0, 100.0));
     EXPECT_FALSE(groups.mayMeet(0, down, 0.0, 0.5)) << "ends before";
     EXPECT_FALSE(groups.mayMeet(0, by, 0.0, 100.0));
