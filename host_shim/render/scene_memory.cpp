@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "host_shim/formats/text_lines.h"
@@ -40,6 +41,13 @@ std::uint64_t trianglesOf(const MeshData& mesh) {
     return triangles;
 }
 
+// What is displaced is cut where rays meet it.
+bool isCutWhole(const MeshData& mesh, const SceneData& data) {
+    return std::ranges::none_of(mesh.slotMaterials, [&](std::uint32_t material) {
+        return data.materials[material].displacementTexture.has_value();
+    });
+}
+
 void check(const Options& options, double gib, const std::string& what) {
     const std::optional<double> limit = limitGib(options);
     if (!limit || gib <= *limit) return;
@@ -62,7 +70,8 @@ void checkSceneFits(const Options& options, const SceneData& data) {
     if (options.subdivide == Subdivide::kNone) return;
     std::uint64_t triangles = 0;
     for (const MeshData& mesh : data.meshes) {
-        if (options.subdivide == Subdivide::kAll || mesh.tags) triangles += trianglesOf(mesh);
+        const bool isCage = options.subdivide == Subdivide::kAll || mesh.tags;
+        if (isCage && isCutWhole(mesh, data)) triangles += trianglesOf(mesh);
     }
     check(options, kBytesOfTriangle * static_cast<double>(triangles) / kGib,
           fmt::format("subdivided it has {} triangles of", triangles));

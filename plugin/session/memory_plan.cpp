@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "integrator/photons/map/photon.h"
 #include "integrator/transport/frame_renderer.h"
@@ -16,6 +17,7 @@
 #include "plugin/session/page_plan.h"
 #include "plugin/session/pixel_reader.h"
 #include "plugin/session/render_photons.h"
+#include "plugin/textures/texture_system.h"
 #include "plugin/values/call_error.h"
 #include "scheduler/buckets/available_threads.h"
 #include "scheduler/buckets/bucket_order.h"
@@ -38,17 +40,36 @@ constexpr std::uint64_t kTimeBytes = 16;
 // Code and libraries of pm_host as measured with next to no scene; a host that is larger knows so.
 constexpr std::uint64_t kProgramBytes = std::uint64_t{150} << 20;
 
-// Of all texels those that are held at once: all of them, within bounds by which a small limit is
-// kept and a large one gains nothing any more. Those that don't fit are read again.
-std::uint64_t heldTexelBytes(std::uint64_t texelBytes, std::uint64_t limit) {
-    constexpr std::uint64_t kLeast = std::uint64_t{16} << 20, kMost = std::uint64_t{1} << 30;
-    return std::min(texelBytes, std::clamp(limit / 8, kLeast, kMost));
+// Caches of textures and of triangles that are cut on demand: what doesn't fit is read or cut
+// again.
+struct CacheSizes {
+    std::uint64_t textures, groups;
+};
+
+CacheSizes leastOf(const CacheSizes& whole) {
+    return {std::min(whole.textures, TextureSystem::kLeastBytes),
+            std::min(whole.groups, kLeastGroups)};
 }
 
-// The same of triangles that are cut on demand: those that don't fit are cut again.
-std::uint64_t heldGroupBytes(std::uint64_t groupBytes, std::uint64_t limit) {
-    constexpr std::uint64_t kLeast = std::uint64_t{32} << 20;
-    return std::min(groupBytes, std::max(limit / 4, kLeast));
+// What they have before photon maps go into pages or pixels from bucket to bucket.
+CacheSizes wantedOf(const CacheSizes& whole, std::uint64_t limit) {
+    const CacheSizes least = leastOf(whole);
+    return {std::clamp(limit / 8, least.textures, whole.textures),
+            std::clamp(limit / 4, least.groups, whole.groups)};
+}
+
+// What is left of the limit goes to those that lack some, in proportion.
+void growCaches(const CacheSizes& whole, MemoryPlan& memory) {
+    MemoryNeed& need = memory.need;
+    if (need.total() >= memory.limit) return;
+    const std::uint64_t left = memory.limit - need.total();
+    const std::uint64_t lack = whole.textures - need.textures + whole.groups - need.groups;
+    const double share = lack <= left ? 1.0 : static_cast<double>(left) / static_cast<double>(lack);
+    const auto grow = [share](std::uint64_t& size, std::uint64_t most) {
+        size += static_cast<std::uint64_t>(share * static_cast<double>(most - size));
+    };
+    grow(need.textures, whole.textures);
+    grow(need.groups, whole.groups);
 }
 
 // The layers as floats, which every host has to put somewhere.
@@ -145,7 +166,7 @@ namespace {
 
 // With all maps in memory.
 MemoryPlan planInMemory(const Scene& scene, const Plan& plan, const SettingValues& values,
-                        const BucketGrid& grid, std::uint64_t texelBytes) {
+                        const BucketGrid& grid, const CacheSizes& caches) {
     const RenderSettings settings = values.toRenderSettings();
     const ChannelLayout layout = channelLayout(settings);
     const std::uint64_t threads = threadsOf(values);
@@ -159,8 +180,8 @@ MemoryPlan planInMemory(const Scene& scene, const Plan& plan, const SettingValue
                             static_cast<std::uint64_t>(layout.count + 1) * sizeof(float) +
                         grid.cellCount() * (sizeof(BucketInfo) * 2 + kTimeBytes),
                     kProgramBytes + hostBytes(values),
-                    heldTexelBytes(texelBytes, memory.limit),
-                    heldGroupBytes(scene.groupBytes(), memory.limit)};
+                    caches.textures,
+                    caches.groups};
     // Without pixels there is no frame, whatever the delivery.
     const bool photonsOnly = values.integer(Setting::kPhotonsOnly) != 0;
     if (photonsOnly)
@@ -188,11 +209,9 @@ MemoryPlan planInMemory(const Scene& scene, const Plan& plan, const SettingValue
     return memory;
 }
 
-}  // namespace
-
-MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues& values,
-                      const BucketGrid& grid, std::uint64_t texelBytes) {
-    MemoryPlan memory = planInMemory(scene, plan, values, grid, texelBytes);
+MemoryPlan planWith(const Scene& scene, const Plan& plan, const SettingValues& values,
+                    const BucketGrid& grid, const CacheSizes& caches) {
+    MemoryPlan memory = planInMemory(scene, plan, values, grid, caches);
     const RenderSettings settings = values.toRenderSettings();
     if (!memory.byBuckets) {
         planPages(plan, values, framePointBytes(plan, settings), memory);
@@ -203,16 +222,30 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
         plan, values,
         pointBytes(plan, settings, grid, values.word(Setting::kBucketOrder), memory.bucketsHeld),
         memory);
-    if (memory.need.total() <= memory.limit && memory.pages == 0) return memory;
+    const bool isInMemory = memory.need.total() <= memory.limit && memory.pages == 0;
+    if (isInMemory) return memory;
     if (values.word(Setting::kDelivery) == "buckets") return memory;
     // The frame with the maps of one pass, where that leaves more room for their pages.
     ofFrame.byBuckets = false;
     ofFrame.bucketsHeld = 0;
     ofFrame.need = ofFrame.whole;
     planPages(plan, values, framePointBytes(plan, settings), ofFrame);
+    memory.smallest = ofFrame.smallest = std::min(memory.smallest, ofFrame.smallest);
     return ofFrame.need.total() <= ofFrame.limit && ofFrame.pagedShare() >= memory.pagedShare()
                ? ofFrame
                : memory;
+}
+
+}  // namespace
+
+MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues& values,
+                      const BucketGrid& grid, std::uint64_t texelBytes) {
+    const CacheSizes whole{texelBytes, scene.groupBytes()};
+    const std::uint64_t limit = memoryLimitBytes(values.number(Setting::kMemoryLimit));
+    MemoryPlan memory = planWith(scene, plan, values, grid, wantedOf(whole, limit));
+    if (memory.need.total() > limit) memory = planWith(scene, plan, values, grid, leastOf(whole));
+    growCaches(whole, memory);
+    return memory;
 }
 
 std::string MemoryPlan::explain() const {
@@ -240,7 +273,8 @@ void MemoryPlan::check() const {
             " even bucket by bucket, with the maps of all passes; with the whole "
             "frame {:.2f} GiB",
             toGib(whole.total()));
-    text += fmt::format("; the memory limit is {:.2f} GiB", toGib(limit));
+    text += fmt::format("; the memory limit is {:.2f} GiB, the smallest that works {:.3f} GiB",
+                        toGib(limit), std::ceil(1000 * toGib(smallest)) / 1000);
     if (!whyWhole.empty())
         text += fmt::format("; bucket by bucket does not go together with {}", whyWhole);
     throw CallError(CallStatus::kMemory, text);

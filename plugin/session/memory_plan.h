@@ -32,6 +32,7 @@ struct MemoryPlan {
     MemoryNeed need;                // as it is to be done
     MemoryNeed whole;               // with the whole frame
     std::uint32_t bucketsHeld = 0;  // by buckets: in work or waiting for the host, at most
+    std::uint64_t smallest = 0;     // the smallest limit by which it can be done
     std::uint64_t pages = 0;  // bytes that pages of photon maps take at once; 0: maps are in memory
     std::uint64_t pagedBytes = 0;  // of all pages of the maps that there are at once
     std::string whyWhole;  // why it can't be done by buckets; empty where it can or isn't asked for
@@ -46,9 +47,15 @@ struct MemoryPlan {
     void check() const;
 };
 
+// Bytes below which a cache is of no use: some pages or groups for each of many threads.
+inline constexpr std::uint64_t kLeastGroups = std::uint64_t{8} << 20,
+                               kLeastPages = std::uint64_t{8} << 20;
+
 // The most passes whose maps are held at once.
 inline constexpr std::uint32_t kMostPassesByBuckets = 8;
 
+// Caches of what can be read or made again are planned as large as the limit leaves room for, and
+// as small as they may be before the render is refused.
 // grid: of the window's whole atoms. texelBytes: of all textures of the scene. Errors: CallError
 // ARGUMENT where delivery by buckets is demanded and can't be.
 MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues& values,

@@ -2,14 +2,14 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "plugin/session/page_plan.h"
 
+#include <algorithm>
+
 #include "plugin/session/render_photons.h"
 
 namespace pm::plugin {
 
 namespace {
 
-// Less would be read again all the time: some pages for each of many threads.
-constexpr std::uint64_t kLeastPages = std::uint64_t{8} << 20;
 // What is held, and what a map is traced and built in: each as much as the pages may take.
 constexpr std::uint64_t kPagesTwice = 2;
 constexpr double kMib = 1 << 20;
@@ -19,8 +19,8 @@ constexpr double kMib = 1 << 20;
 void planPages(const Plan& plan, const SettingValues& values, std::uint64_t pointBytes,
                MemoryPlan& memory) {
     const auto demanded = static_cast<std::uint64_t>(values.number(Setting::kPhotonPages) * kMib);
+    memory.smallest = memory.need.total();
     if (!plan.tracePhotons || RenderPhotons::isOnly(values)) return;
-    if (demanded == 0 && memory.need.total() <= memory.limit) return;
     const std::uint32_t passes = values.passLimit(), last = passes - 1;
     const std::uint32_t first = memory.byBuckets ? 0 : last;
     std::uint64_t beside = plan.bytesBesidePages(first, last, pointBytes);
@@ -29,8 +29,10 @@ void planPages(const Plan& plan, const SettingValues& values, std::uint64_t poin
         beside += plan.landingsPerPass() * sizeof(Photon);
     const std::uint64_t others = memory.need.total() - memory.need.maps + beside;
     std::uint64_t pages = demanded;
+    memory.smallest = demanded > 0 ? others + kPagesTwice * demanded
+                                   : std::min(memory.smallest, others + kPagesTwice * kLeastPages);
     if (demanded == 0) {
-        if (others + kPagesTwice * kLeastPages > memory.limit) return;
+        if (memory.need.total() <= memory.limit || memory.smallest > memory.limit) return;
         pages = (memory.limit - others) / kPagesTwice;
     }
     memory.pages = pages;

@@ -12,8 +12,6 @@ namespace {
 
 // To ask what textures missed takes some microseconds a file.
 constexpr std::uint32_t kBucketsBetweenMoves = 16;
-// The least that is of use: some groups or tiles for each thread.
-constexpr std::uint64_t kLeastGroups = std::uint64_t{8} << 20, kLeastPages = kLeastGroups;
 
 std::uint64_t plannedBytes(const MemoryPlan& plan) {
     return plan.need.textures + plan.need.groups + plan.pages;
@@ -41,7 +39,7 @@ std::vector<LedgerCache> cachesOf(const RenderScene& scene, const MemoryPlan& pl
         [&textures] { return textures.reads().bytes; });
     if (photons)
         add(
-            "photons", std::min(plan.pages, kLeastPages), std::max(plan.pagedBytes, plan.pages),
+            "photonPages", std::min(plan.pages, kLeastPages), std::max(plan.pagedBytes, plan.pages),
             [photons](std::uint64_t bytes) { photons->setBudget(bytes); },
             [photons] { return photons->counts().bytesMade; });
     return caches;

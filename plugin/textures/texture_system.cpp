@@ -21,7 +21,8 @@ namespace pm::plugin {
 
 namespace {
 
-constexpr float kFirstMegabytes = 256.0f;  // before a render says
+// Before a render says: enough to look at all texels once, row after row.
+constexpr float kFirstMegabytes = 16.0f;
 // Pictures that are not tiled are cut into tiles of this size when they are read.
 constexpr int kTilePixels = 64;
 // Along a long and narrow footprint; beyond, it is widened.

@@ -61,7 +61,7 @@ class CacheBench {
     explicit CacheBench(CacheScene scene)
         : m_scene(std::move(scene)),
           m_grid(m_scene.settings.window, kBucketPixels),
-          m_order(m_scene.name, m_scene.scene, m_scene.settings) {}
+          m_order(m_scene.name, m_scene.scene, m_scene.settings, m_scene.photons.get()) {}
 
     const CacheScene& scene() const { return m_scene; }
     const CacheTrace& trace() const { return m_trace; }
@@ -300,7 +300,8 @@ int runProgram(int argc, char** argv) {
     app.add_option("--side", side, "pixels of a picture's side (256)")->check(CLI::Range(32, 4096));
     app.add_option("--folder", folder, "for pictures of 300 MB (/tmp)");
     app.add_flag("--quick", quick, "2 turns, 96 pixels");
-    app.add_option("--only", only, "one scene")->check(CLI::IsMember({"landscape", "room"}));
+    app.add_option("--only", only, "one scene")
+        ->check(CLI::IsMember({"landscape", "room", "caustic"}));
     CLI11_PARSE(app, argc, argv);
     try {
         if (quick) {
@@ -308,9 +309,13 @@ int runProgram(int argc, char** argv) {
             side = 96;
         }
         std::vector<std::unique_ptr<CacheBench>> benches;
-        if (only != "room") benches.push_back(std::make_unique<CacheBench>(landscape(side)));
-        if (only != "landscape")
-            benches.push_back(std::make_unique<CacheBench>(texturedRoom(side, folder)));
+        const auto add = [&](const char* name, auto make) {
+            if (only.empty() || only == name)
+                benches.push_back(std::make_unique<CacheBench>(make()));
+        };
+        add("landscape", [&] { return landscape(side); });
+        add("room", [&] { return texturedRoom(side, folder); });
+        add("caustic", [&] { return pagedCaustic(side, folder); });
         Report report("pm_bench_order_caches");
         for (const auto& bench : benches) bench->observe();
         tellUsers(report, benches);

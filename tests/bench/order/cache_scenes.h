@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 
+#include "integrator/photons/map/photon_pages.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame_renderer.h"
 
@@ -25,8 +26,9 @@ struct CacheScene {
     // Each miss takes so much longer from here on, as if it came from another machine: the thread
     // that reads sleeps. Empty where a CacheWatch is told of misses: it can sleep.
     std::function<void(std::uint32_t microseconds)> setPause;
-    std::uint64_t leastBudget = 0;       // bytes, below which setBudget changes nothing
-    const GroupCache* groups = nullptr;  // null: not geometry
+    std::uint64_t leastBudget = 0;          // bytes, below which setBudget changes nothing
+    const GroupCache* groups = nullptr;     // null: not geometry
+    std::shared_ptr<PhotonPaging> photons;  // null: photon maps are in memory
 };
 
 // Hills of some millions of triangles, displaced, cut on demand, from a man's height above ground,
@@ -36,5 +38,9 @@ CacheScene landscape(std::int32_t side);
 // A room of 24 panels, each with a picture of 2048 x 2048 texels of its own, tiled, without levels.
 // folder: for the pictures, 300 MB.
 CacheScene texturedRoom(std::int32_t side, const std::filesystem::path& folder);
+
+// A box with a glass and a mirror sphere, and millions of photons in pages. folder: for their
+// files.
+CacheScene pagedCaustic(std::int32_t side, const std::filesystem::path& folder);
 
 }  // namespace pm::bench

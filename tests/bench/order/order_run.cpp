@@ -124,10 +124,12 @@ std::vector<Rect> regionsInside(const Rect& bucket, OrderScene::Inside way) {
 }  // namespace
 
 OrderScene::OrderScene(std::string name, std::shared_ptr<const Scene> scene,
-                       const RenderSettings& settings)
+                       const RenderSettings& settings, PhotonPaging* paging)
     : m_name(std::move(name)),
       m_settings(settings),
-      m_renderer(std::make_unique<FrameRenderer>(std::move(scene), settings)) {}
+      m_renderer(std::make_unique<FrameRenderer>(std::move(scene), settings)) {
+    if (paging) m_renderer->pageMaps(*paging);
+}
 
 void OrderScene::beginPass(int threads) {
     WorkerArena arena(threads);

@@ -38,8 +38,9 @@ struct BucketTimes {
 // A scene ready to be rendered again and again. Threads: one call at a time.
 class OrderScene {
   public:
-    OrderScene(std::string name, std::shared_ptr<const Scene> scene,
-               const RenderSettings& settings);
+    // paging: of the photon maps; null: they are in memory. Outlives this.
+    OrderScene(std::string name, std::shared_ptr<const Scene> scene, const RenderSettings& settings,
+               PhotonPaging* paging = nullptr);
 
     const std::string& name() const { return m_name; }
 

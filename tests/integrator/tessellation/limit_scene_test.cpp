@@ -4,6 +4,7 @@
 #include "tests/support/limit_scene.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <tbb/parallel_for.h>
 
 #include <array>
@@ -174,6 +175,56 @@ TEST(LimitScene, HasNoCracks) {
                 << isBilinear << " " << size;
         }
     }
+}
+
+// A height for each place, of any texture coordinates.
+class WavyTexture final : public TextureSource {
+  public:
+    Texel lookUp(std::int32_t, Vec2f uv, const UvFootprint&) const override {
+        const float height = 0.5f + 0.5f * std::sin(400.0f * uv.x) * std::cos(300.0f * uv.y);
+        return {height, height, height};
+    }
+    std::array<std::uint32_t, 2> texels(std::int32_t) const override { return {4096, 4096}; }
+    std::uint64_t failureCount() const override { return 0; }
+};
+
+// PM_TEST_MANY_TRIANGLES=1: fifty millions of them, displaced, all of which are cut, within 2 GiB;
+// else a hundredth, and of the memory alone what the cache holds.
+TEST(LimitScene, RendersManyTrianglesInLittleMemory) {
+    const bool isMany = std::getenv("PM_TEST_MANY_TRIANGLES") != nullptr;
+    const int side = isMany ? 400 : 40;
+    SubdivisionCage cage = gridCage(side);
+    for (const Vec3f& p : cage.mesh.positions)
+        cage.mesh.texcoords.emplace_back(p.x / static_cast<float>(side),
+                                         p.y / static_cast<float>(side));
+    cage.mesh.texcoordIndices.assign(cage.mesh.vertexIndices.begin(),
+                                     cage.mesh.vertexIndices.end());
+    SceneMaker maker;
+    maker.description.textures = std::make_shared<const WavyTexture>();
+    MaterialDescription hills;
+    hills.diffuse = Rgb(0.5f);
+    hills.displacementTexture = 0;
+    addLimit(maker, std::move(cage), 13, maker.material(hills));
+    const double middle = 0.5 * side;
+    maker.sky(Rgb(1.0f));
+    maker.camera({middle, middle, 1.1 * side}, {middle, middle, 0}, {0, 1, 0}, 50);
+    const auto scene = maker.build();
+    EXPECT_GT(scene->groupBytes(), isMany ? 2'000'000'000u : 20'000'000u);
+    scene->setGroupBudget(scene->groupBytes() / 16);
+    RenderSettings settings = smallFrame(1024, 1024, IntegratorKind::kPath, 1, 2);
+    if (!isMany) settings = smallFrame(128, 128, IntegratorKind::kPath, 1, 2);
+    // Hills under an even sky: some of it is hidden.
+    const MeasuredLayers measured = measure(scene, settings);
+    EXPECT_GT(measured.beauty.mean[1], 0.3);
+    EXPECT_LT(measured.beauty.mean[1], 0.55);
+    const CacheCounts counts = scene->groupCounts();
+    EXPECT_GT(counts.misses - counts.madeAgain, scene->groupBytes() / 100'000);
+    EXPECT_GT(counts.madeAgain, 0u);
+    EXPECT_LT(counts.mostBytesHeld, scene->groupBudget() + 16 * 90'000u);
+    rusage usage{};
+    getrusage(RUSAGE_SELF, &usage);
+    RecordProperty("residentMiB", static_cast<int>(usage.ru_maxrss / 1024));
+    EXPECT_LT(usage.ru_maxrss, isMany ? 2L << 20 : 1L << 40);  // KiB
 }
 
 TEST(LimitScene, LimitSurfacesThatShineAreCutWhole) {

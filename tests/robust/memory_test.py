@@ -1,0 +1,146 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+# SPDX-FileCopyrightText: The pm authors
+"""Renders within the smallest memory limit that works: the same bits as with room for all, though textures,
+triangles and photons are each 8 times as large as their caches and more; and no more resident memory than
+the limit and a tenth of it, or 64 MiB, as the system has it.
+
+usage: memory_test.py PM_HOST
+"""
+import hashlib
+import json
+import os
+import pathlib
+import re
+import struct
+import subprocess
+import sys
+import tempfile
+import zlib
+
+MIB = 1 << 20
+# Heights, of which each is kept as a float of 4 bytes: 128 MiB. Each tile is met by what is cut.
+WIDTH, HEIGHT = 8192, 4096
+FACES = 64  # of the ground, along each side
+
+
+def write_heights(path):
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+
+    packed = zlib.compressobj(1)
+    data = b""
+    for y in range(HEIGHT):
+        row = bytes((x * 7 // 64 + y * 5 // 64 + (x * y >> 16)) % 61 + (x // 128 + y // 128) % 2 * 40
+                    for x in range(0, WIDTH, 16))  # fmt: skip
+        data += packed.compress(b"\0" + b"".join(bytes([v]) * 16 for v in row))
+    data += packed.flush()
+    path.write_bytes(b"\x89PNG\r\n\x1a\n"
+                     + chunk(b"IHDR", struct.pack(">IIBBBBB", WIDTH, HEIGHT, 8, 0, 0, 0, 0))
+                     + chunk(b"IDAT", data) + chunk(b"IEND", b""))  # fmt: skip
+
+
+def write_ground(folder):
+    write_heights(folder / "heights.png")
+    (folder / "ground.mtl").write_text(
+        "newmtl ground\nKd 0.5 0.5 0.4\ndisp -bm 2 heights.png\nnewmtl lamp\nKd 0 0 0\nKe 40 40 40\n",
+        encoding="utf-8")  # fmt: skip
+    lines = ["mtllib ground.mtl", "o ground", "usemtl ground"]
+    for y in range(FACES + 1):
+        for x in range(FACES + 1):
+            lines += [f"v {x - FACES / 2} 0 {FACES / 2 - y}", f"vt {x / FACES} {y / FACES}"]
+    at = [[y * (FACES + 1) + x + 1 for x in range(FACES + 1)] for y in range(FACES + 1)]
+    for y in range(FACES):
+        for x in range(FACES):
+            corners = at[y][x], at[y][x + 1], at[y + 1][x + 1], at[y + 1][x]
+            lines.append("f " + " ".join(f"{c}/{c}" for c in corners))
+    lines += ["t interpolateboundary 1/0/0 1", "o lamp", "usemtl lamp"]
+    lines += [f"v {x} 40 {z}" for x, z in ((-5, -5), (5, -5), (5, 5), (-5, 5))] + ["f -4 -3 -2 -1"]
+    (folder / "ground.obj").write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+class Runs:
+    def __init__(self, host, folder):
+        self.host, self.folder, self.faults = host, folder, 0
+
+    def check(self, good, text):
+        print(("ok: " if good else "FAULT: ") + text, flush=True)
+        self.faults += not good
+
+    def run(self, scene, *options):
+        """Exit code, standard error, statistics and the most resident bytes."""
+        with open(self.folder / "err", "w+", encoding="utf-8") as err:
+            child = subprocess.Popen(
+                [self.host, scene, "-o", "a.exr", "--stats", "s.json", "-q", "--threads", "2", *options],
+                cwd=self.folder, stderr=err, stdout=subprocess.DEVNULL,
+                env={**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")})  # fmt: skip
+            _, status, usage = os.wait4(child.pid, 0)
+            child.returncode = os.waitstatus_to_exitcode(status)
+            err.seek(0)
+            text = err.read()
+        stats = json.loads((self.folder / "s.json").read_text()) if child.returncode == 0 else None
+        return child.returncode, text, stats, usage.ru_maxrss * 1024
+
+    def picture(self):
+        """Of all pixels; the file's own metadata tell of limits."""
+        done = subprocess.run(["oiiotool", "--hash", "-i", "a.exr"], cwd=self.folder, capture_output=True,
+                              text=True, check=True)  # fmt: skip
+        return re.search(r"SHA-1: (\w+)", done.stdout).group(1)
+
+    def smallest(self, scene, *options):
+        code, text, _, _ = self.run(scene, *options, "--memory-limit", "0.05")
+        found = re.search(r"the smallest that works ([0-9.]+) GiB", text)
+        self.check(code == 5 and found, f"{scene}: a limit too small names the smallest: {text.strip()}")
+        return found.group(1)
+
+    def within(self, scene, caches, *options):
+        """caches: of statistics, each with the names of its working set and of what it read or made."""
+        code, text, roomy, most = self.run(scene, *options)
+        self.check(code == 0, f"{scene} with room for all: {most / MIB:.0f} MiB {text}")
+        picture = self.picture()
+        limit = self.smallest(scene, *options)
+        code, text, _, _ = self.run(scene, *options, "--memory-limit", f"{float(limit) - 0.003}")
+        self.check(code == 5, f"{scene}: 3 MiB less than {limit} GiB is refused")
+        code, text, stats, most = self.run(scene, *options, "--memory-limit", limit)
+        self.check(code == 0, f"{scene} within {limit} GiB {text}")
+        if code != 0:
+            return
+        self.check(self.picture() == picture, f"{scene}: the same bits")
+        allowed = float(limit) * 1024 * MIB
+        allowed += max(allowed / 10, 64 * MIB)
+        self.check(most <= allowed, f"{scene}: {most / MIB:.0f} of {allowed / MIB:.0f} MiB resident")
+        for cache, working_set, budget, again in caches(roomy, stats):
+            self.check(working_set >= 8 * budget,
+                       f"{cache}: {working_set / MIB:.0f} MiB through {budget / MIB:.1f} MiB")  # fmt: skip
+            self.check(again > 0, f"{cache}: {again} times something was read or made again")
+
+
+def held(stats, name):
+    return max(c["budgetBytes"] for c in stats["caches"]["caches"] if c["name"] == name)
+
+
+def ground_caches(roomy, stats):
+    texels, triangles = stats["textureCache"], stats["geometryCache"]
+    yield "textures", roomy["textureCache"]["bytesReadOnce"], held(stats, "textures"), texels["bytesRead"] - texels["bytesReadOnce"]
+    yield "triangles", roomy["geometryCache"]["bytesMade"], held(stats, "geometry"), triangles["madeAgain"]
+
+
+def box_caches(_, stats):
+    pages = stats["photonPages"]
+    yield "photons", pages["wholeBytes"], held(stats, "photonPages"), pages["madeAgain"]
+
+
+def main():
+    with tempfile.TemporaryDirectory() as name:
+        runs = Runs(os.path.abspath(sys.argv[1]), pathlib.Path(name))
+        write_ground(runs.folder)
+        runs.within("ground.obj", ground_caches, "--eye", "0,30,50", "--look-at", "0,0,0", "--fov", "45",
+                    "--size", "96x64", "--aa", "1", "--passes", "1", "--photons", "2000")  # fmt: skip
+        source = pathlib.Path(__file__).resolve().parents[2]
+        runs.within(str(source / "scenes/cornell_box/cornell_box.obj"), box_caches, "--size", "64x48",
+                    "--aa", "1", "--passes", "1", "--photons", "2000000")  # fmt: skip
+        return 1 if runs.faults else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
