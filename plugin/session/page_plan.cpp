@@ -23,10 +23,7 @@ void planPages(const Plan& plan, const SettingValues& values, std::uint64_t poin
     if (demanded == 0 && memory.need.total() <= memory.limit) return;
     const std::uint32_t passes = values.passLimit(), last = passes - 1;
     const std::uint32_t first = memory.byBuckets ? 0 : last;
-    std::uint64_t beside = plan.bytesBesidePages(first, last, pointBytes);
-    // What is read of a file comes at once.
-    if (!values.word(Setting::kPhotonMap).empty())
-        beside += plan.landingsPerPass() * sizeof(Photon);
+    const std::uint64_t beside = plan.bytesBesidePages(first, last, pointBytes);
     const std::uint64_t others = memory.need.total() - memory.need.maps + beside;
     std::uint64_t pages = demanded;
     if (demanded == 0) {

@@ -122,18 +122,11 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
     request.withoutCaustics = m_plan.descent > 0.0f;
     request.oneInChains = m_plan.oneInChains;
     PhotonTraceResult result =
-        m_source ? m_source->read(kind, pass, control.cancelled)
+        m_source ? m_source->readInRounds(kind, pass, control.cancelled, rounds)
         : kind == PhotonKind::kCausticPilot
             ? tracePilotOfCaustics(request, control, part, rounds)
             : traceInRounds(m_scene, m_lights, request, control.cancelled, part, rounds);
-    if (m_source) {
-        part(1.0);
-        // What a source gives comes at once.
-        PhotonTraceResult rest;
-        rest.balance = result.balance;
-        rest.focus = result.focus;
-        rounds.take(std::exchange(result, std::move(rest)));
-    }
+    if (m_source) part(1.0);
     control.photonsBefore += count;
     this->count(kind, result.balance);
     const std::lock_guard lock(m_mutex);
