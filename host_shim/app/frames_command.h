@@ -7,6 +7,10 @@
 
 namespace pm::host {
 
+// pm_host SCENE, which may be the address of a packed scene. Returns the exit code. Errors: those of
+// takeCopies.
+int runScene(Options options, Log& log);
+
 // pm_host SCENE --frames A-B: renders one frame after the other. One that fails does not end the
 // others, but a signal does; the exit code is that of the first that failed. Errors: kUsage.
 int runFrames(const Options& options, Log& log);

@@ -15,12 +15,14 @@
 #include "host_shim/app/frames_command.h"
 #include "host_shim/app/listings.h"
 #include "host_shim/cli/command_line.h"
+#include "host_shim/copies/pack_run.h"
 #include "host_shim/farm/farm_run.h"
 #include "host_shim/log/guarded.h"
 #include "host_shim/pictures/host_error.h"
 #include "host_shim/process/interrupt.h"
 #include "host_shim/process/plain_text.h"
-#include "host_shim/session/session.h"
+#include "host_shim/render/plugin.h"
+#include "host_shim/watch/watch_run.h"
 
 namespace pm::host {
 namespace {
@@ -54,6 +56,14 @@ int printHelp(const Options& options) {
     }
     if (options.helpOfFarm) {
         print(farmHelpText());
+        return 0;
+    }
+    if (options.helpOfWatch) {
+        print(watchHelpText());
+        return 0;
+    }
+    if (options.helpOfPack) {
+        print(packHelpText());
         return 0;
     }
     if (options.helpOfCheck) {
@@ -116,9 +126,11 @@ int runOptions(const Options& options, Log& log) {
     if (options.cacheList || options.cacheClear || options.cacheVerify)
         return runCacheCommand(options);
     if (options.check) return runCheckCommand(*options.check, log);
+    if (options.pack) return runPack(options, log);
+    if (options.watch) return runWatch(options, log);
     if (options.farm) return runFarm(options, log);
     if (!options.frames.empty()) return runFrames(options, log);
-    return Session(options, log).run();
+    return runScene(options, log);
 }
 
 // Of the environment pm_host reads $OCIO and what its config names, and a few of its own. Its

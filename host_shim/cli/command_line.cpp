@@ -10,14 +10,18 @@
 #include <optional>
 #include <ranges>
 
+#include "host_shim/cli/check_options.h"
+#include "host_shim/cli/copies_options.h"
 #include "host_shim/cli/farm_options.h"
 #include "host_shim/cli/not_available.h"
 #include "host_shim/cli/option_table.h"
 #include "host_shim/cli/option_values.h"
 #include "host_shim/cli/piece_options.h"
 #include "host_shim/cli/unknown_words.h"
+#include "host_shim/cli/watch_options.h"
 #include "host_shim/colour/exposure.h"
 #include "host_shim/formats/mtl/mtl_dialect.h"
+#include "host_shim/formats/scene_url.h"
 #include "host_shim/formats/text_lines.h"
 #include "host_shim/pictures/picture_io.h"
 
@@ -183,7 +187,9 @@ ExposureOption exposureValue(const Typed& typed) {
 void addDefaultOutput(Options& options) {
     if (options.outputs.empty() && !options.onlyPixel && !options.photonsOnly &&
         !options.scene.empty()) {
-        options.outputs.push_back(options.scene.stem().string() + ".exr");
+        const std::string scene = options.scene.string();
+        options.outputs.push_back(
+            (isSceneUrl(scene) ? nameOfSceneUrl(scene) : options.scene.stem().string()) + ".exr");
     }
 }
 
@@ -197,6 +203,7 @@ void readChoices(const Typed& typed, Options& options) {
                                               {"plain", ProgressStyle::kPlain},
                                               {"json", ProgressStyle::kJson},
                                               {"alf", ProgressStyle::kAlf},
+                                              {"openjd", ProgressStyle::kOpenJd},
                                               {"none", ProgressStyle::kNone}});
     chosen<int>("--list", options.list, 0,
                 {{"views", 0},
@@ -251,7 +258,7 @@ std::string oneLine(std::string text) {
     return text;
 }
 
-enum class Command { kRender, kMerge, kCache, kCheck, kFarm };
+enum class Command { kRender, kMerge, kCache, kCheck, kFarm, kPack, kWatch };
 
 Command commandOf(const std::vector<std::string>& arguments) {
     if (arguments.empty()) return Command::kRender;
@@ -259,32 +266,9 @@ Command commandOf(const std::vector<std::string>& arguments) {
            : arguments.front() == "cache" ? Command::kCache
            : arguments.front() == "check" ? Command::kCheck
            : arguments.front() == "farm"  ? Command::kFarm
+           : arguments.front() == "pack"  ? Command::kPack
+           : arguments.front() == "watch" ? Command::kWatch
                                           : Command::kRender;
-}
-
-void readCheck(const Typed& typed, CheckOptions& check) {
-    if (typed.checkSuite.empty())
-        throw HostError(ExitCode::kUsage,
-                        "no SUITE.json given; usage: pm_host check SUITE.json [options], see "
-                        "pm_host check -h");
-    check.suite = typed.checkSuite;
-    check.only = typed.onlyScenes;
-    if (!typed.jobs.empty())
-        check.jobs = static_cast<int>(integerValue("--jobs", typed.jobs, 1, 1024));
-    if (!typed.seeds.empty())
-        check.seeds = static_cast<int>(integerValue("--seeds", typed.seeds, 4, 64));
-    if (!typed.timeBudget.empty())
-        check.timeBudgetSeconds = numberValue("--time-budget", typed.timeBudget, 0, 1e9);
-    if (!typed.seed.empty())
-        check.seed = static_cast<std::uint64_t>(
-            integerValue("--seed", typed.seed, 0, std::numeric_limits<std::int64_t>::max()));
-    if (check.update && check.because.empty())
-        throw HostError(ExitCode::kUsage, "--update wants --because TEXT: why references change");
-    if (!check.update && (!check.because.empty() || !typed.seeds.empty()))
-        throw HostError(ExitCode::kUsage, "--because and --seeds are of --update");
-    if (check.update && check.seed)
-        throw HostError(ExitCode::kUsage,
-                        "--update and --seed: references have seeds of their own");
 }
 
 // Which words belong to which option; what they mean is read from typed.
@@ -293,6 +277,8 @@ void readWords(const std::vector<std::string>& arguments, Command command, Typed
     CLI::App app("", "pm_host");
     if (command == Command::kMerge)
         addAllOfMerge(app, typed, options);
+    else if (command == Command::kWatch)
+        addAllOfWatch(app, typed, options);
     else if (command == Command::kCache)
         addAllOfCache(app, typed, options);
     else if (command == Command::kCheck)
@@ -324,17 +310,22 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
     Typed typed;
     if (command == Command::kCheck) options.check.emplace();
     if (command == Command::kFarm) options.farm.emplace();
+    if (command == Command::kWatch) options.watch.emplace();
     readWords(arguments, command, typed, options);
     options.helpOfMerge = options.help && isMerge;
     options.helpOfCache = options.help && command == Command::kCache;
     options.helpOfCheck = options.help && command == Command::kCheck;
     options.helpOfFarm = options.help && command == Command::kFarm;
+    options.helpOfWatch = options.help && command == Command::kWatch;
+    options.helpOfPack = options.help && command == Command::kPack;
     if (options.help || options.version) return options;
     if (command == Command::kCheck) {
         readCheck(typed, *options.check);
         return options;
     }
+    options.pack = command == Command::kPack;
     readTextureCache(typed, options);
+    readCopies(typed, options);
     if (command == Command::kCache) {
         if (!options.cacheList && !options.cacheClear && !options.cacheVerify)
             throw HostError(ExitCode::kUsage,
@@ -350,6 +341,10 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
     readFiles(typed, frame, options);
     options.exposure = exposureValue(typed);
     readChoices(typed, options);
+    if (options.watch) {
+        readWatch(typed, frame, options);
+        return options;
+    }
     if (isMerge) {
         checkMerge(options);
         return options;
@@ -358,6 +353,7 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
     readCamera(typed, options);
     readSettings(typed, frame, options);
     readPhotonMap(typed.photonMap, typed.settings, frame, options);
+    if (options.pack) checkPack(options);
     addDefaultOutput(options);
     readPieces(typed.checkpoint, frame, options);
     checkBuckets(typed.settings, options);
@@ -368,51 +364,6 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
     }
     if (options.farm) readFarm(typed, options);
     return options;
-}
-
-std::string helpText(const SettingHelp& settingHelp) {
-    Options options;
-    Typed typed;
-    CLI::App app("pm: a photon-mapping bucket renderer", "pm_host");
-    addAll(app, typed, options, settingHelp);
-    return app.help() + "\n" + mergeHelpText() + "\n" + cacheHelpText() + "\n" + checkHelpText() +
-           "\n" + farmHelpText();
-}
-
-std::string mergeHelpText() {
-    Options options;
-    Typed typed;
-    CLI::App merge("pm_host merge: puts parts of one picture together", "pm_host merge");
-    addAllOfMerge(merge, typed, options);
-    return merge.help();
-}
-
-std::string farmHelpText() {
-    Options options;
-    options.farm.emplace();
-    Typed typed;
-    CLI::App farm(
-        "pm_host farm SCENE [options of a render]: a picture by several machines; and besides",
-        "pm_host farm");
-    addFarmOptions(farm, typed, options);
-    return farm.help();
-}
-
-std::string cacheHelpText() {
-    Options options;
-    Typed typed;
-    CLI::App cache("pm_host cache: the folder of prepared textures", "pm_host cache");
-    addAllOfCache(cache, typed, options);
-    return cache.help();
-}
-
-std::string checkHelpText() {
-    Options options;
-    options.check.emplace();
-    Typed typed;
-    CLI::App check("pm_host check: a suite of scenes against its references", "pm_host check");
-    addAllOfCheck(check, typed, options);
-    return check.help();
 }
 
 }  // namespace pm::host

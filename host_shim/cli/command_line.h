@@ -28,5 +28,9 @@ std::string cacheHelpText();
 std::string checkHelpText();
 // And of pm_host farm: its own options, which come to those of a render.
 std::string farmHelpText();
+// And of pm_host watch: its own options, which come to those of merge.
+std::string watchHelpText();
+// And of pm_host pack.
+std::string packHelpText();
 
 }  // namespace pm::host

@@ -85,7 +85,9 @@ void addUntrusted(CLI::App& app, Options& options) {
 }
 
 void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
-    addText(app, "SCENE", typed.scene, "FILE", "the scene, an .obj");
+    addText(app, "SCENE", typed.scene, "FILE",
+            "the scene, an .obj, or http://, https:// or file:// to the manifest.json of one that "
+            "pm_host pack made");
     addOutputOptions(app, typed, options, false);
     addText(app, "--size", typed.size, "WxH", "pixels, 1 to 65536 each (640x480)");
     addText(app, "--camera", options.cameraName, "NAME",
@@ -196,6 +198,14 @@ void addTextureOptions(CLI::App& app, Typed& typed) {
             "the most that they may take there; those not used for long go first (20)");
 }
 
+void addCopiesOptions(CLI::App& app, Typed& typed) {
+    addText(app, "--copies", typed.copies, "DIR",
+            "where copies of scenes that are fetched are kept ($XDG_CACHE_HOME/pm/copies, else "
+            "~/.cache/pm/copies)");
+    addText(app, "--copies-limit", typed.copiesLimit, "GIB",
+            "the most that they may take there; those not used for long go first (20)");
+}
+
 void addReportOptions(CLI::App& app, Typed& typed, Options& options) {
     app.add_option("--reference", options.reference,
                    "EXR to report relMSE against, or a display picture, compared in codes of 255")
@@ -226,7 +236,7 @@ void addPrintingOptions(CLI::App& app, Typed& typed, Options& options) {
     addText(app, "--list", options.list, "views|looks|spaces|aovs|orders|settings|parameters",
             "print and stop");
     app.add_flag("--version", options.version, "print and stop");
-    addText(app, "--progress", typed.progress, "auto|bar|plain|json|alf|none",
+    addText(app, "--progress", typed.progress, "auto|bar|plain|json|alf|openjd|none",
             "how progress is shown (auto)");
     addText(app, "--bucket-times", typed.bucketTimes, "FILE.csv",
             "how long each bucket took: its place in the order, its pixels, seconds, passes");
@@ -247,6 +257,7 @@ void addAll(CLI::App& app, Typed& typed, Options& options, const SettingHelp& he
     addPieceOptions(app, typed, options);
     addColourOptions(app, typed, options);
     addTextureOptions(app, typed);
+    addCopiesOptions(app, typed);
     addReportOptions(app, typed, options);
     addPrintingOptions(app, typed, options);
 }
@@ -324,6 +335,12 @@ void addAllOfFarm(CLI::App& app, Typed& typed, Options& options, const SettingHe
     addFarmOptions(app, typed, options);
 }
 
+void addPackOptions(CLI::App& app, Typed& typed) {
+    app.set_help_flag();
+    addList(app, "-o,--output", typed.outputs, "FOLDER",
+            "gets objects/, the contents by their SHA-256, and manifest.json");
+}
+
 void addAllOfMerge(CLI::App& app, Typed& typed, Options& options) {
     app.set_help_flag();
     app.option_defaults()->always_capture_default(false);
@@ -332,6 +349,20 @@ void addAllOfMerge(CLI::App& app, Typed& typed, Options& options) {
     addOutputOptions(app, typed, options, true);
     addColourOptions(app, typed, options);
     addReportOptions(app, typed, options);
+}
+
+void addWatchOptions(CLI::App& app, Typed& typed) {
+    addText(app, "--job", typed.job, "FOLDER",
+            "the folder of a pm_host farm, whose parts are collected, in place of PART");
+    addText(app, "--page", typed.page, "FILE.html",
+            "a page that shows the picture, how much is there and who made it; it renews itself");
+    addText(app, "--interval", typed.interval, "SECONDS",
+            "between two looks for parts, 0.05 to 3600 (2)");
+}
+
+void addAllOfWatch(CLI::App& app, Typed& typed, Options& options) {
+    addAllOfMerge(app, typed, options);
+    addWatchOptions(app, typed);
 }
 
 }  // namespace pm::host

@@ -22,7 +22,7 @@ struct Typed {
         onlyPixel, errorLimit, progress, checkpoint, photonMap, mtlDialect, textureCache,
         textureCacheSize, exposure, cameraLight, environment, environmentRotation,
         environmentStrength, sun, turbidity, checkSuite, jobs, timeBudget, seeds, engine, runs, job,
-        tries, atOnce, bucketTimes;
+        tries, atOnce, bucketTimes, copies, copiesLimit, page, interval;
     std::vector<std::string> onlyScenes, outputs, context, layers, parts, searchPaths, sshLogins,
         slurmOptions;
     std::map<std::string, std::string> settings;  // option -> text
@@ -47,6 +47,13 @@ void addAllOfCache(CLI::App& app, Typed& typed, Options& options);
 void addAllOfCheck(CLI::App& app, Typed& typed, Options& options);
 // The same of `pm_host farm SCENE`, which takes what a render takes; options.farm must be there.
 void addAllOfFarm(CLI::App& app, Typed& typed, Options& options, const SettingHelp& help);
+// The same of `pm_host watch PART... -o FILE`, which takes what merge takes; options.watch must be
+// there.
+void addAllOfWatch(CLI::App& app, Typed& typed, Options& options);
+// Its own options alone.
+void addWatchOptions(CLI::App& app, Typed& typed);
+// What pm_host pack has to say of its own; it takes what a render takes.
+void addPackOptions(CLI::App& app, Typed& typed);
 // Its own options alone.
 void addFarmOptions(CLI::App& app, Typed& typed, Options& options);
 

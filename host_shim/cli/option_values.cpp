@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "host_shim/formats/scene_url.h"
 #include "host_shim/formats/text_lines.h"
 #include "host_shim/pictures/host_error.h"
 
@@ -71,6 +72,8 @@ Pattern findPattern(const std::string& name) {
         auto end = percent + 1;
         while (end < name.size() && name[end] >= '0' && name[end] <= '9') ++end;
         if (end >= name.size() || name[end] != 'd') continue;
+        // An address has bytes as "%20" and "%d0"; none of them is a control character.
+        if (isSceneUrl(name) && (name[percent + 1] != '0' || end < percent + 3)) continue;
         std::int64_t digits = 0;
         parseInteger(std::string_view(name).substr(percent + 1, end - percent - 1), digits);
         return {percent, end + 1 - percent,

@@ -26,8 +26,8 @@ std::array<std::int32_t, 2> sizeValue(const std::string& option, std::string_vie
 std::array<std::int32_t, 2> pixelValue(const std::string& option, std::string_view text);  // X,Y
 PixelRect cropValue(const std::string& option, std::string_view text);  // x0,y0,x1,y1
 
-// Fills #### (padded to as many digits as there are) and %d, %04d in a file name. Errors: kUsage
-// for a pattern when no frame is given.
+// Fills #### (padded to as many digits as there are) and %d, %04d in a file name; in an address
+// #### and %04d. Errors: kUsage for a pattern when no frame is given.
 std::string withFrame(const std::string& option, const std::string& name,
                       std::optional<std::int64_t> frame);
 

@@ -25,7 +25,7 @@ struct ExposureOption {
     bool mayBeMeasured{};
 };
 enum class CameraLight { kAuto, kOn, kOff };
-enum class ProgressStyle { kAuto, kBar, kPlain, kJson, kAlf, kNone };
+enum class ProgressStyle { kAuto, kBar, kPlain, kJson, kAlf, kOpenJd, kNone };
 
 // A setting of the library that the command line gave a value to.
 struct GivenSetting {
@@ -66,6 +66,14 @@ struct FarmOptions {
     std::vector<std::string> sshLogins;     // of parallel
     std::vector<std::string> slurmOptions;  // of slurm, for sbatch
     std::vector<GivenOption> given;         // all that was typed
+};
+
+// pm_host watch PART... or --job FOLDER.
+struct WatchOptions {
+    std::filesystem::path job;  // of pm_host farm; empty: Options::merge names the parts
+    std::optional<std::int64_t> frame;
+    std::filesystem::path page;  // empty: none
+    double intervalSeconds{2};
 };
 
 // A light that is infinitely far, in place of what the scene has.
@@ -128,9 +136,15 @@ struct Options {
     bool helpOfCache{};
     std::optional<CheckOptions> check;
     bool helpOfCheck{};
+    std::filesystem::path copies;     // of scenes that are fetched; empty: the user's own
+    std::optional<double> copiesGib;  // the most that they may take
+    bool pack{};                      // pm_host pack: the one output is a folder
+    bool helpOfPack{};
     std::vector<std::int64_t> frames;  // --frames, of which this is the first; empty: none
     std::optional<FarmOptions> farm;
     bool helpOfFarm{};
+    std::optional<WatchOptions> watch;
+    bool helpOfWatch{};
     std::vector<std::filesystem::path> merge;  // parts to put together, instead of a scene
 };
 

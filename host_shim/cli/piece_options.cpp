@@ -86,9 +86,12 @@ void checkMerge(const Options& options) {
         throw HostError(ExitCode::kUsage,
                         "usage: pm_host merge PART... -o FILE [options], see pm_host -h");
     }
-    if (std::ranges::any_of(options.outputs, isPart)) {
-        throw HostError(ExitCode::kUsage, "-o: merge makes pictures, no .pmpart");
-    }
+    checkPicturesOnly("merge", options);
+}
+
+void checkPicturesOnly(const std::string& verb, const Options& options) {
+    if (std::ranges::any_of(options.outputs, isPart))
+        throw HostError(ExitCode::kUsage, fmt::format("-o: {} makes pictures, no .pmpart", verb));
 }
 
 }  // namespace pm::host

@@ -27,5 +27,7 @@ void checkBuckets(const std::map<std::string, std::string>& typed, const Options
 
 // pm_host merge has parts and an output, and that is a picture.
 void checkMerge(const Options& options);
+// No output is a part. verb: for the message.
+void checkPicturesOnly(const std::string& verb, const Options& options);
 
 }  // namespace pm::host

@@ -59,7 +59,22 @@ bool SceneFiles::isAllowedByName(const fs::path& file) const {
     return m_rules.isTrusted || isBelowAny(fs::absolute(file).lexically_normal(), m_rootsByName);
 }
 
-std::optional<fs::path> SceneFiles::findIn(const fs::path& folder, const std::string& name) {
+// Before a name is looked for: where an absolute one lies now. None: nowhere.
+std::optional<std::string> SceneFiles::placeNow(const std::string& name) const {
+    const fs::path path(name);
+    if (!m_rules.moved || !path.is_absolute()) return name;
+    const auto [end, rest] = std::mismatch(m_rules.moved->was.begin(), m_rules.moved->was.end(),
+                                           path.begin(), path.end());
+    if (end != m_rules.moved->was.end()) return std::nullopt;
+    fs::path place = m_rules.moved->is;
+    for (auto part = rest; part != path.end(); ++part) place /= *part;
+    return place.string();
+}
+
+std::optional<fs::path> SceneFiles::findIn(const fs::path& folder, const std::string& asked) {
+    const auto place = placeNow(asked);
+    if (!place) return std::nullopt;
+    const std::string& name = *place;
     if (name.find('\0') != name.npos || !isAllowedByName(folder / name)) return std::nullopt;
     auto file = findFile(folder, name, m_names);
     if (!file || m_rules.isTrusted) return file;

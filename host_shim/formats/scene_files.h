@@ -12,12 +12,19 @@
 
 namespace pm::host {
 
+// A scene that lies elsewhere than where its absolute names were written for.
+struct MovedFolder {
+    std::filesystem::path was, is;  // absolute
+};
+
 // Which files a scene may name beside those below its own folder.
 struct SceneFileRules {
     // Where names are looked for that are not found beside the scene; in this order.
     std::vector<std::filesystem::path> searchPaths;
     bool isTrusted{true};                            // else nothing is opened that lies elsewhere
     std::vector<std::filesystem::path> alsoAllowed;  // for scenes that are not trusted
+    // Absolute names below `was` mean the same below `is`; others mean nothing then.
+    std::optional<MovedFolder> moved;
 };
 
 // The one place where names in scene files (libraries and pictures) become files that are opened.
@@ -49,6 +56,7 @@ class SceneFiles {
                                                       const std::vector<std::string>& names);
     std::optional<std::filesystem::path> findIn(const std::filesystem::path& folder,
                                                 const std::string& name);
+    std::optional<std::string> placeNow(const std::string& name) const;
     bool isAllowedByName(const std::filesystem::path& file) const;
 
     std::filesystem::path m_sceneFolder;

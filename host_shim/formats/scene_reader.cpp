@@ -3,6 +3,14 @@
 #include "host_shim/formats/scene_reader.h"
 
 namespace pm::host {
+namespace {
+
+void addFilesOf(const TextureUse& use, std::vector<std::filesystem::path>& files) {
+    if (use.tiles.empty()) files.emplace_back(use.file);
+    for (const TileUse& tile : use.tiles) files.emplace_back(tile.file);
+}
+
+}  // namespace
 
 std::vector<std::filesystem::path> filesOf(const SceneData& scene) {
     std::vector<std::filesystem::path> files;
@@ -14,11 +22,11 @@ std::vector<std::filesystem::path> filesOf(const SceneData& scene) {
               &material.roughnessTexture, &material.transmissionTexture, &material.emissionTexture,
               &material.opacityTexture, &material.normalTexture, &material.bumpTexture,
               &material.displacementTexture}) {
-            if (*use) files.emplace_back((*use)->file);
+            if (*use) addFilesOf(**use, files);
         }
     }
     if (scene.environment && scene.environment->texture)
-        files.emplace_back(scene.environment->texture->file);
+        addFilesOf(*scene.environment->texture, files);
     return files;
 }
 

@@ -22,6 +22,7 @@ enum class Warning : int {
     kBlackPicture = 1011,   // surfaces are seen, and no light on them
     kBadSamples = 1012,     // some are NaN, infinite or negative and count as black
     kFarm = 1013,           // machines that differ, or tasks that had to be started again
+    kCopies = 1014,         // a local copy that was not what it should be
 };
 
 using WarningSink = std::function<void(Warning code, const std::string& text)>;

@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <nlohmann/json.hpp>
+
 #include "host_shim/pictures/host_error.h"
 #include "host_shim/process/interrupt.h"
 
@@ -31,6 +33,20 @@ void MergeRun::add(const std::vector<std::filesystem::path>& parts, Log& log) {
             m_context.check(status, "merge");
     }
     if (good == 0) throw HostError(ExitCode::kBadInput, "merge: none of the parts can be used");
+}
+
+std::optional<std::string> MergeRun::tryAdd(const std::filesystem::path& part) {
+    const PmrStatus status = api().addPart(m_handle, part.c_str());
+    if (status == PMR_OK) return std::nullopt;
+    const bool isOfPart =
+        status == PMR_ERROR_FILE || status == PMR_ERROR_IO || status == PMR_ERROR_MISMATCH;
+    if (!isOfPart) m_context.check(status, "merge");
+    return m_context.lastError();
+}
+
+std::uint32_t MergeRun::bucketCount() const {
+    const auto json = nlohmann::json::parse(statistics(), nullptr, false);
+    return json.at("buckets").at("count").get<std::uint32_t>();
 }
 
 std::string MergeRun::missing() const {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,11 @@ class MergeRun : public PictureSource {
     // Adds all parts that are good and names the others in the log. Errors: kBadInput where a part
     // is of another picture than the first good one, or none is good.
     void add(const std::vector<std::filesystem::path>& parts, Log& log);
+    // Adds one part. None where it is in; else why it is not: it is damaged, can't be read, or is
+    // of another picture than the first good one.
+    std::optional<std::string> tryAdd(const std::filesystem::path& part);
+    // Of the whole picture; once a part is there.
+    std::uint32_t bucketCount() const;
     // Buckets that no part has: "A:B", one range a line.
     std::string missing() const;
 

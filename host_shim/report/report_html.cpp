@@ -93,13 +93,17 @@ std::string details(std::string_view summary, const std::string& content) {
     return fmt::format("<details><summary>{}</summary>\n{}</details>\n", escaped(summary), content);
 }
 
-std::string wholePage(std::string_view title, const std::string& body) {
+std::string wholePage(std::string_view title, const std::string& body, int refreshSeconds) {
+    const std::string refresh =
+        refreshSeconds > 0
+            ? fmt::format("<meta http-equiv=\"refresh\" content=\"{}\"/>\n", refreshSeconds)
+            : "";
     return fmt::format(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
         "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\"/>\n"
-        "<meta name=\"viewport\" content=\"width=device-width\"/>\n"
+        "<meta name=\"viewport\" content=\"width=device-width\"/>\n{}"
         "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
-        kPolicy, escaped(title), kStyle, body);
+        kPolicy, refresh, escaped(title), kStyle, body);
 }
 
 }  // namespace pm::host

@@ -29,7 +29,8 @@ std::string codeBlock(std::string_view text);
 // What folds away under a line of plain text. content is HTML.
 std::string details(std::string_view summary, const std::string& content);
 
-// The whole page. title is plain text, body HTML.
-std::string wholePage(std::string_view title, const std::string& body);
+// The whole page. title is plain text, body HTML. refreshSeconds: after that a browser reads it
+// again; 0: it does not.
+std::string wholePage(std::string_view title, const std::string& body, int refreshSeconds = 0);
 
 }  // namespace pm::host

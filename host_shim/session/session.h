@@ -14,12 +14,14 @@
 #include "host_shim/pictures/picture.h"
 #include "host_shim/render/render_run.h"
 #include "host_shim/render/tiled_output.h"
+#include "host_shim/report/report_pictures.h"
 #include "host_shim/session/report.h"
 #include "host_shim/session/statistics.h"
 
 namespace pm::host {
 
 class MaterialBuilder;
+class MergeRun;
 
 // One rendering from files to files, or one merging of parts.
 class Session {
@@ -28,6 +30,10 @@ class Session {
 
     // Renders or merges, and writes; returns the exit code. Statistics are written on failure too.
     int run();
+    // Of pm_host watch: writes the pictures with the buckets that are there; the others are
+    // transparent black, and pm:complete is 0. isShown: the answer is the display picture, for a
+    // page; else empty. Errors: as run's, thrown.
+    EmbeddedPicture writeIncomplete(const MergeRun& parts, bool isShown);
 
   private:
     int render();
@@ -104,6 +110,7 @@ class Session {
     bool m_hasLight{};                   // of its own
     bool m_hasSky{};
     bool m_hasCameraLight{};
+    bool m_isIncomplete{};  // on purpose: what can't be seen yet is no fault
     // Statistics and report; not before it is known that they overwrite no input.
     bool m_mayWriteStatistics{};
 };

@@ -7,6 +7,7 @@
 #include <cstdio>
 
 #include "host_shim/cli/option_values.h"
+#include "host_shim/colour/display_picture.h"
 #include "host_shim/pictures/picture_io.h"
 #include "host_shim/process/interrupt.h"
 #include "host_shim/process/outputs.h"
@@ -86,6 +87,23 @@ int Session::merge() {
     m_statistics.library = run.statistics();
     warnOfVendors(m_statistics.processorVendors());
     return finish(run, PMR_OK, colour, display);
+}
+
+EmbeddedPicture Session::writeIncomplete(const MergeRun& parts, bool isShown) {
+    constexpr std::size_t kMostBytes = std::size_t{2} << 20;  // in a page
+    m_isIncomplete = true;
+    takeFrame(parts, m_options);
+    const ColourPipeline colour =
+        colourOfParts(parts.settingText("hostIdentity"), m_options.colour);
+    std::optional<DisplayTransform> display;
+    if (isShown || wantsDisplay(m_options)) {
+        display = colour.displayTransform();
+        exposeAsParts(parts.settingText("hostNote"), colour, *display);
+    }
+    const Picture picture = assemblePicture(parts, m_options, colour, false);
+    writeOutputs(picture, true, display);  // under their own names
+    if (!isShown) return {};
+    return embedded(makeDisplayPicture(picture, *display).picture, kMostBytes);
 }
 
 }  // namespace pm::host

@@ -127,7 +127,7 @@ void Session::writeOutput(const fs::path& file, const Picture& picture,
     DisplayWriteOptions how;
     how.exposure = exposureText(m_exposure);
     writeDisplayPicture(file, result.picture, how);
-    lookForDarkness(file, picture, result.picture);
+    if (!m_isIncomplete) lookForDarkness(file, picture, result.picture);
 }
 
 int Session::compareWithReference(const Picture& picture) {

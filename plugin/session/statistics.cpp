@@ -102,10 +102,12 @@ Json texturesJson(const SceneTextures& textures) {
 // Of triangles that are cut where rays meet them; by all renders of the scene.
 Json geometryJson(const Scene& scene) {
     const CacheCounts counts = scene.groupCounts();
-    return {{"budgetBytes", scene.groupBudget()},   {"misses", counts.misses},
-            {"madeAgain", counts.madeAgain},        {"waits", counts.waits},
-            {"bytesMade", counts.bytesMade},        {"bytesHeld", counts.bytesHeld},
-            {"mostBytesHeld", counts.mostBytesHeld}};
+    Json missesOf;
+    for (std::size_t i = 0; i < kCacheUsers; ++i) missesOf[kCacheUserNames[i]] = counts.missesOf[i];
+    return {{"budgetBytes", scene.groupBudget()},    {"misses", counts.misses},
+            {"madeAgain", counts.madeAgain},         {"waits", counts.waits},
+            {"bytesMade", counts.bytesMade},         {"bytesHeld", counts.bytesHeld},
+            {"mostBytesHeld", counts.mostBytesHeld}, {"missesOf", std::move(missesOf)}};
 }
 
 Json warningsJson(const Scene& scene, RenderWork& work) {

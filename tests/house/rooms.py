@@ -61,11 +61,13 @@ MAY_INCLUDE = {
     "host_shim/farm/job": "cli formats pictures report",
     "host_shim/log": "cli pictures process",
     "host_shim/render": "cli colour formats log look pictures pictures/writers plugin/include process report textures",
+    "host_shim/copies": "cli colour formats log pictures process session textures",
     "host_shim/farm/engines": "cli farm/job formats log pictures process report",
     "host_shim/sky": "formats pictures process",
     "host_shim/session": "cli colour formats formats/all formats/sidecar log look pictures process render report sky",
     "host_shim/farm": "cli farm/engines farm/job formats log pictures process render report session",
-    "host_shim/app": "check cli colour farm formats log pictures process render session",
+    "host_shim/watch": "cli farm/job log pictures process render report session",
+    "host_shim/app": "check cli colour copies farm formats log pictures process render session watch",
     "host_shim": "app",
 }
 # fmt: on

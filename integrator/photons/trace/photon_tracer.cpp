@@ -124,6 +124,7 @@ class PhotonWalk {
     // Returns the flux that landed as asked for, W, summed over the channels.
     double walk(const EmittedPhoton& photon, std::uint32_t index, Sampler& sampler,
                 Batch& batch) const {
+        const CacheWatch::As as(CacheUser::kPhoton);
         Waiting waiting;
         Part& first = waiting.parts[waiting.count++];
         first = {photon.ray, photon.flux, {.index = index}};

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "host_shim/cli/option_table.h"
+#include "host_shim/cli/options.h"
+
+namespace pm::host {
+
+// What the command line of pm_host watch says beside that of a merge. Errors: kUsage.
+void readWatch(const Typed& typed, std::optional<std::int64_t> frame, Options& options);
+
+}  // namespace pm::host
