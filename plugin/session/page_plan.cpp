@@ -25,14 +25,22 @@ void planPages(const Plan& plan, const SettingValues& values, std::uint64_t poin
     const std::uint32_t first = memory.byBuckets ? 0 : last;
     const std::uint64_t beside = plan.bytesBesidePages(first, last, pointBytes);
     const std::uint64_t others = memory.need.total() - memory.need.maps + beside;
-    std::uint64_t pages = demanded;
+    std::uint64_t pages = demanded, sites = plan.siteBytes(first, last, 1.0f);
+    float room = 1.0f;
     if (demanded == 0) {
-        if (others + kPagesTwice * kLeastPages > memory.limit) return;
-        pages = (memory.limit - others) / kPagesTwice;
+        // Where sites would take more than half, what they lack is estimated again, from pages.
+        const std::uint64_t half = memory.limit > others ? (memory.limit - others) / 2 : 0;
+        if (sites > half) {
+            room = static_cast<float>(static_cast<double>(half) / static_cast<double>(sites));
+            sites = plan.siteBytes(first, last, room);
+        }
+        if (others + sites + kPagesTwice * kLeastPages > memory.limit) return;
+        pages = (memory.limit - others - sites) / kPagesTwice;
     }
+    memory.roomForSites = room;
     memory.pages = pages;
     memory.pagedBytes = plan.pagedBytes() * (last - first + 1) + plan.pagedPilotBytes();
-    memory.need.maps = beside + kPagesTwice * pages;
+    memory.need.maps = beside + sites + kPagesTwice * pages;
 }
 
 }  // namespace pm::plugin
