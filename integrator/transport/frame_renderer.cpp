@@ -93,6 +93,7 @@ struct FrameRenderer::Impl {
     const Camera camera;
     const PhotonSource* photonSource = nullptr;
     PhotonPaging* photonPaging = nullptr;
+    float roomForSites = 1.0f;
     std::unique_ptr<Prepared> prepared;
     std::uint32_t lastPass = 0;  // begun or added
     bool badValuesReported = false, cutsReported = false;
@@ -122,7 +123,7 @@ void FrameRenderer::Impl::prepare(const std::atomic<bool>& cancelled) {
     if (plan.lampSamples == 0)
         plan.lampSamples = findLampSamples(*scene, lights, camera, settings, plan, cancel);
     if (photonSource) made->photons.readFrom(*photonSource);
-    if (photonPaging) made->photons.pageMaps(*photonPaging);
+    if (photonPaging) made->photons.pageMaps(*photonPaging, roomForSites);
     const std::lock_guard lock(mutex);
     counters.lampSamples = plan.lampSamples;
     prepared = std::move(made);
@@ -210,9 +211,10 @@ void FrameRenderer::readPhotons(const PhotonSource& source) {
     if (m_impl->prepared) m_impl->prepared->photons.readFrom(source);
 }
 
-void FrameRenderer::pageMaps(PhotonPaging& paging) {
+void FrameRenderer::pageMaps(PhotonPaging& paging, float roomForSites) {
     m_impl->photonPaging = &paging;
-    if (m_impl->prepared) m_impl->prepared->photons.pageMaps(paging);
+    m_impl->roomForSites = roomForSites;
+    if (m_impl->prepared) m_impl->prepared->photons.pageMaps(paging, roomForSites);
 }
 
 void FrameRenderer::tracePass(std::uint32_t pass, PhotonSink& sink,

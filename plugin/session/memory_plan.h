@@ -35,6 +35,7 @@ struct MemoryPlan {
     std::uint64_t smallest = 0;     // the smallest limit by which it can be done
     std::uint64_t pages = 0;  // bytes that pages of photon maps take at once; 0: maps are in memory
     std::uint64_t pagedBytes = 0;  // of all pages of the maps that there are at once
+    float roomForSites = 1.0f;     // with pages: see IrradianceSites
     std::string whyWhole;  // why it can't be done by buckets; empty where it can or isn't asked for
 
     // Of the photon maps, what is held of their pages.

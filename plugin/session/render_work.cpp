@@ -105,7 +105,7 @@ void RenderWork::makePlaces() {
 void RenderWork::makeRenderer() {
     m_renderer = m_arena.execute(
         [this] { return std::make_unique<FrameRenderer>(m_scene, m_settings, m_plan); });
-    if (m_pages) m_renderer->pageMaps(m_pages->paging());
+    if (m_pages) m_renderer->pageMaps(m_pages->paging(), m_memory.roomForSites);
     if (m_photons.source() != nullptr) m_renderer->readPhotons(*m_photons.source());
 }
 

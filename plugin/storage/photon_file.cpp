@@ -26,6 +26,8 @@ namespace fs = std::filesystem;
 
 // No head that was written here is nearly as long.
 constexpr std::uint64_t kLongestHead = std::uint64_t{1} << 20;
+// Photons that are read at a time, at least.
+constexpr std::uint64_t kFewestOfARound = 8192;
 
 CallError unusable(const std::string& file, const std::string& why) {
     return {CallStatus::kFile, fmt::format("{}: {}", file, why)};
@@ -262,12 +264,57 @@ PhotonTraceResult PhotonFileReader::read(PhotonKind kind, std::uint32_t pass,
     if (isWhole && head.photons == found.photons && head.descended == found.descended &&
         head.received == found.received)
         fault = faultOf(head, traced, m_wanted.sceneRadius);
-    if (fault != nullptr)
-        throw unusable(m_file.name(), fmt::format("the photon map is damaged at byte {}: {}",
-                                                  from.place.payloadAt, fault));
+    if (fault != nullptr) throwDamaged(from, fault);
     traced.focus = head.focus;
     traced.balance = head.balance;
     return traced;
+}
+
+void PhotonFileReader::throwDamaged(const Entry& from, const char* fault) const {
+    throw unusable(m_file.name(), fmt::format("the photon map is damaged at byte {}: {}",
+                                              from.place.payloadAt, fault));
+}
+
+PhotonTraceResult PhotonFileReader::readInRounds(PhotonKind kind, std::uint32_t pass,
+                                                 const std::atomic<bool>& cancelled,
+                                                 const TraceRounds& rounds) const {
+    if (rounds.bytes == TraceRounds::kAll)
+        return PhotonSource::readInRounds(kind, pass, cancelled, rounds);
+    const Entry& from = entry(kind, pass);
+    const BetweenChunks between = stopIf(cancelled, "cancelled while reading photons");
+    if (!isWhole(m_file, from.place, between)) throwDamaged(from, "a checksum is wrong");
+    TracedHead head;
+    std::uint64_t at = from.place.payloadAt;
+    const auto readInto = [&](std::span<std::byte> bytes) {
+        if (!m_file.readAt(at, bytes)) throwDamaged(from, "it ends too soon");
+        at += bytes.size();
+    };
+    readInto(std::as_writable_bytes(std::span(&head, 1)));
+    if (head.photons != from.photons || head.descended != from.descended ||
+        head.received != from.received)
+        throwDamaged(from, "its photons are miscounted");
+    const auto takeAll = [&](std::uint64_t count, auto member) {
+        while (count > 0) {
+            between();
+            PhotonTraceResult part;
+            auto& photons = part.*member;
+            const std::uint64_t most = std::max<std::uint64_t>(
+                rounds.bytes / 2 / sizeof(photons.front()), kFewestOfARound);
+            photons.resize(std::min(count, most));
+            readInto(std::as_writable_bytes(std::span(photons)));
+            if (const char* const fault = faultOf(head, part, m_wanted.sceneRadius))
+                throwDamaged(from, fault);
+            count -= photons.size();
+            rounds.take(std::move(part));
+        }
+    };
+    takeAll(head.photons, &PhotonTraceResult::photons);
+    takeAll(head.descended, &PhotonTraceResult::descended);
+    takeAll(head.received, &PhotonTraceResult::received);
+    PhotonTraceResult rest;
+    rest.focus = head.focus;
+    rest.balance = head.balance;
+    return rest;
 }
 
 std::string PhotonFileReader::hash(std::uint32_t passes) const {

@@ -76,6 +76,10 @@ class PhotonFileReader : public PhotonSource {
     // Errors: CallError(FILE) where it is damaged, CallError(IO), Error(kCancelled).
     PhotonTraceResult read(PhotonKind kind, std::uint32_t pass,
                            const std::atomic<bool>& cancelled) const override;
+    // Reads twice where it is not one round: once to see that it is whole.
+    PhotonTraceResult readInRounds(PhotonKind kind, std::uint32_t pass,
+                                   const std::atomic<bool>& cancelled,
+                                   const TraceRounds& rounds) const override;
 
     std::uint32_t passes() const { return m_passes; }  // that it holds
     std::uint64_t bytes() const { return m_size; }
@@ -93,6 +97,7 @@ class PhotonFileReader : public PhotonSource {
     void readEntries();
     std::size_t entriesOf(std::uint32_t passes) const;
     const Entry& entry(PhotonKind kind, std::uint32_t pass) const;
+    [[noreturn]] void throwDamaged(const Entry& from, const char* fault) const;
 
     const Wanted m_wanted;
     OwnedFile m_file;

@@ -54,6 +54,7 @@ class Pages : public HostProcess {
 TEST_F(Pages, GiveThePictureOfMapsInMemory) {
     ASSERT_EQ(run(glass({"-o", "whole.exr"})).exitCode, 0);
     EXPECT_FALSE(statistics().contains("photonPages"));
+    const nlohmann::json counters = statistics()["counters"];
     const Picture whole = readExr(path("whole.exr"));
     // Room for all, which tells how much there is.
     ASSERT_EQ(run(glass({"-o", "roomy.exr", "--photon-pages", "100"})).exitCode, 0);
@@ -67,6 +68,7 @@ TEST_F(Pages, GiveThePictureOfMapsInMemory) {
             glass({"-o", "few.exr", "--photon-pages", few, "--threads", std::to_string(threads)}));
         ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
         expectSamePicture(whole, readExr(path("few.exr")));
+        EXPECT_EQ(statistics()["counters"], counters);
         pages = statistics()["photonPages"];
         const auto budget = pages["budgetBytes"].get<std::uint64_t>();
         EXPECT_GE(pages["wholeBytes"].get<std::uint64_t>(), 8 * budget);
@@ -99,14 +101,40 @@ TEST_F(Pages, AreMadeWhereMapsDoNotFit) {
     };
     const Outcome refused = with({"-o", "none.exr", "--memory-limit", limit(0.1)});
     EXPECT_EQ(refused.exitCode, 5);
-    const std::string half = limit(0.7);
-    const Outcome explained = with({"--explain", "--memory-limit", half});
-    EXPECT_NE(explained.out.find("photon pages: of "), std::string::npos) << explained.out;
-    const Outcome outcome = with({"-o", "paged.exr", "--memory-limit", half});
+    // With a third there is less room for sites, too.
+    for (const double share : {0.7, 0.33}) {
+        SCOPED_TRACE(share);
+        const Outcome explained = with({"--explain", "--memory-limit", limit(share)});
+        EXPECT_NE(explained.out.find("photon pages: of "), std::string::npos) << explained.out;
+        const Outcome outcome = with({"-o", "paged.exr", "--memory-limit", limit(share)});
+        ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+        EXPECT_GT(statistics()["photonPages"]["misses"].get<std::uint64_t>(), 0u);
+        EXPECT_LT(statistics()["memory"]["mapBytes"].get<double>(), share * maps);
+        expectSamePicture(readExr(path("whole.exr")), readExr(path("paged.exr")));
+    }
+}
+
+// In rounds, not all of a pass at once.
+TEST_F(Pages, TakePhotonsOfAFile) {
+    const std::vector<std::string> map{"--photon-map", "photons.pm"};
+    const auto with = [&](std::vector<std::string> more) {
+        more.insert(more.begin(), map.begin(), map.end());
+        return run(glass(more));
+    };
+    ASSERT_EQ(with({"--photons-only"}).exitCode, 0);
+    ASSERT_EQ(run(glass({"-o", "whole.exr"})).exitCode, 0);
+    const Outcome outcome = with({"-o", "few.exr", "--photon-pages", "0.3"});
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
-    EXPECT_GT(statistics()["photonPages"]["misses"].get<std::uint64_t>(), 0u);
-    EXPECT_LT(statistics()["memory"]["mapBytes"].get<double>(), 0.7 * maps);
-    expectSamePicture(readExr(path("whole.exr")), readExr(path("paged.exr")));
+    EXPECT_GT(statistics()["photonPages"]["madeAgain"].get<std::uint64_t>(), 0u);
+    expectSamePicture(readExr(path("whole.exr")), readExr(path("few.exr")));
+    // What was damaged since is found before it is in a map.
+    std::fstream file(path("photons.pm"), std::ios::in | std::ios::out | std::ios::binary);
+    file.seekp(static_cast<std::streamoff>(fs::file_size(path("photons.pm")) / 2));
+    file.put('x').put('y');
+    file.close();
+    const Outcome damaged = with({"-o", "none.exr", "--photon-pages", "0.3"});
+    EXPECT_NE(damaged.exitCode, 0);
+    EXPECT_NE(damaged.err.find("damaged at byte"), std::string::npos) << damaged.err;
 }
 
 TEST_F(Pages, AKilledRenderLeavesNothing) {

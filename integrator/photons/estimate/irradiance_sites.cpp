@@ -26,11 +26,13 @@ constexpr std::size_t kFewestSlots = 1 << 16, kMostSlots = 1 << 22, kMostProbes 
 // and as radii shrink, sites grow in number. Later passes have up to three times as many.
 constexpr double kSlotsPerPhoton = 0.5, kMostSlotsPerPhoton = 1.5;
 
-std::size_t slotsFor(std::size_t photons, float radiusFactor) {
+std::size_t slotsFor(std::size_t photons, float radiusFactor, float room) {
     const auto factor = static_cast<double>(radiusFactor);
     const double each = std::min(kSlotsPerPhoton / (factor * factor), kMostSlotsPerPhoton);
-    return std::clamp(static_cast<std::size_t>(each * static_cast<double>(photons)), kFewestSlots,
-                      kMostSlots);
+    const std::size_t usual = std::clamp(
+        static_cast<std::size_t>(each * static_cast<double>(photons)), kFewestSlots, kMostSlots);
+    return std::max(kFewestSlots, static_cast<std::size_t>(static_cast<double>(room) *
+                                                           static_cast<double>(usual)));
 }
 
 template <std::size_t N>
@@ -60,10 +62,10 @@ Vec3f originOf(const PhotonMap& map, float radius) {
 
 IrradianceSites::IrradianceSites(const Scene& scene, const PhotonMap& map, float radius,
                                  const SurfacePatches* patches, float radiusFactor,
-                                 const Focus& focus)
+                                 const Focus& focus, float room)
     : m_estimate(scene, map, radius, patches),
       m_cells(scene, kCellSize * radius, originOf(map, radius), focus),
-      m_slotCount(slotsFor(map.size(), radiusFactor)),
+      m_slotCount(slotsFor(map.size(), radiusFactor, room)),
       m_slots(makeBigZeroedArray<Slot>(m_slotCount)) {}
 
 // Null where too many others are in the way.
@@ -180,8 +182,8 @@ std::uint64_t IrradianceSites::memoryBytes() const {
     return m_slotCount * sizeof(Slot);
 }
 
-std::uint64_t IrradianceSites::memoryBytes(std::uint64_t photons, float radiusFactor) {
-    return slotsFor(photons, radiusFactor) * sizeof(Slot);
+std::uint64_t IrradianceSites::memoryBytes(std::uint64_t photons, float radiusFactor, float room) {
+    return slotsFor(photons, radiusFactor, room) * sizeof(Slot);
 }
 
 }  // namespace pm

@@ -25,10 +25,11 @@ class IrradianceSites {
     // scene, map and patches must outlive this. radius: of the estimates, scene units, > 0.
     // patches: see SurfaceEstimate. radiusFactor: this pass's radii over the first pass's, by which
     // room is made for more sites, in (0, 1]. focus: where the radius is as given; beyond it
-    // estimates are wider.
+    // estimates are wider. room: the share of the usual room for sites, in (0, 1]; what is not kept
+    // is estimated again when it is asked for, to the same bits.
     IrradianceSites(const Scene& scene, const PhotonMap& map, float radius,
                     const SurfacePatches* patches = nullptr, float radiusFactor = 1.0f,
-                    const Focus& focus = {});
+                    const Focus& focus = {}, float room = 1.0f);
 
     // Irradiance, W m^-2, at a site near the point, on the side of the normal, that the point is
     // seen from; estimated at the point itself where none is.
@@ -49,7 +50,8 @@ class IrradianceSites {
 
     std::uint64_t memoryBytes() const;
     // The same of a map of so many photons.
-    static std::uint64_t memoryBytes(std::uint64_t photons, float radiusFactor = 1.0f);
+    static std::uint64_t memoryBytes(std::uint64_t photons, float radiusFactor = 1.0f,
+                                     float room = 1.0f);
 
   private:
     using Cell = SurfaceCells::Cell;

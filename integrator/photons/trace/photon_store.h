@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <cstdint>
+#include <utility>
 
 #include "integrator/photons/trace/photon_tracer.h"
 
@@ -28,6 +29,16 @@ class PhotonSource {
     // `cancelled` is set. Threads: any, at once.
     virtual PhotonTraceResult read(PhotonKind kind, std::uint32_t pass,
                                    const std::atomic<bool>& cancelled) const = 0;
+    // The same in rounds, as traceInRounds.
+    virtual PhotonTraceResult readInRounds(PhotonKind kind, std::uint32_t pass,
+                                           const std::atomic<bool>& cancelled,
+                                           const TraceRounds& rounds) const {
+        PhotonTraceResult all = read(kind, pass, cancelled), rest;
+        rest.balance = all.balance;
+        rest.focus = all.focus;
+        rounds.take(std::move(all));
+        return rest;
+    }
 };
 
 }  // namespace pm

@@ -72,7 +72,9 @@ struct Plan {
     std::uint64_t pagedBytes() const;
     // ... and of the pilots, which stay; ...
     std::uint64_t pagedPilotBytes() const;
-    // ... what the maps of passes first to last take beside, with pointBytes of gather points each;
+    // ... what passes first to last have for sites in a share of the usual room; ...
+    std::uint64_t siteBytes(std::uint32_t first, std::uint32_t last, float room) const;
+    // ... what their maps take beside pages and sites, with pointBytes of gather points each;
     // without what they are built in, which is the pages' business.
     std::uint64_t bytesBesidePages(std::uint32_t first, std::uint32_t last,
                                    std::uint64_t pointBytes) const;

@@ -30,8 +30,8 @@ constexpr float kAside = 1e-3f;
 
 VirtualLamps::VirtualLamps(const Scene& scene, const PhotonMap& caustics, float radius,
                            const SurfacePatches* patches, float radiusFactor, std::uint64_t random,
-                           const CancelCheck& cancel)
-    : m_scene(scene), m_sites(scene, caustics, radius, patches, radiusFactor) {
+                           const CancelCheck& cancel, float room)
+    : m_scene(scene), m_sites(scene, caustics, radius, patches, radiusFactor, {}, room) {
     const float u = toUnitFloat(static_cast<std::uint32_t>(mixBits(random)));
     const DrawnByFlux drawn = drawBySteps(caustics, kLamps, u, cancel);
     for (const auto& [photon, share] : drawn.photons)
@@ -143,8 +143,8 @@ std::uint64_t VirtualLamps::memoryBytes() const {
     return m_sites.memoryBytes() + m_lamps.size() * sizeof(Lamp);
 }
 
-std::uint64_t VirtualLamps::memoryBytes(std::uint64_t photons, float radiusFactor) {
-    return IrradianceSites::memoryBytes(photons, radiusFactor) + kLamps * sizeof(Lamp);
+std::uint64_t VirtualLamps::memoryBytes(std::uint64_t photons, float radiusFactor, float room) {
+    return IrradianceSites::memoryBytes(photons, radiusFactor, room) + kLamps * sizeof(Lamp);
 }
 
 }  // namespace pm

@@ -36,12 +36,12 @@ class VirtualLamps {
     };
 
     // caustics: photons of diffuse surfaces reached by way of other lobes. They, scene and patches
-    // must outlive this. radius, patches, radiusFactor: see IrradianceSites. random: chooses among
-    // the photons. Works in parallel in the calling TBB arena. Throws Error(kCancelled) soon after
-    // cancel is set.
+    // must outlive this. radius, patches, radiusFactor, room: see IrradianceSites. random: chooses
+    // among the photons. Works in parallel in the calling TBB arena. Throws Error(kCancelled) soon
+    // after cancel is set.
     VirtualLamps(const Scene& scene, const PhotonMap& caustics, float radius,
                  const SurfacePatches* patches, float radiusFactor, std::uint64_t random,
-                 const CancelCheck& cancel = {});
+                 const CancelCheck& cancel = {}, float room = 1.0f);
 
     // Rays to lamps beside so many gather rays.
     static std::uint32_t raysBeside(std::uint32_t gatherRays) {
@@ -67,7 +67,8 @@ class VirtualLamps {
     }
     std::uint64_t memoryBytes() const;
     // The same of so many caustic photons.
-    static std::uint64_t memoryBytes(std::uint64_t photons, float radiusFactor = 1.0f);
+    static std::uint64_t memoryBytes(std::uint64_t photons, float radiusFactor = 1.0f,
+                                     float room = 1.0f);
 
   private:
     // A photon, its flux that of all of them; density: of lamps there, all of them together 1,

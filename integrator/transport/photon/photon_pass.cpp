@@ -122,18 +122,11 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
     request.withoutCaustics = m_plan.descent > 0.0f;
     request.oneInChains = m_plan.oneInChains;
     PhotonTraceResult result =
-        m_source ? m_source->read(kind, pass, control.cancelled)
+        m_source ? m_source->readInRounds(kind, pass, control.cancelled, rounds)
         : kind == PhotonKind::kCausticPilot
             ? tracePilotOfCaustics(request, control, part, rounds)
             : traceInRounds(m_scene, m_lights, request, control.cancelled, part, rounds);
-    if (m_source) {
-        part(1.0);
-        // What a source gives comes at once.
-        PhotonTraceResult rest;
-        rest.balance = result.balance;
-        rest.focus = result.focus;
-        rounds.take(std::exchange(result, std::move(rest)));
-    }
+    if (m_source) part(1.0);
     control.photonsBefore += count;
     this->count(kind, result.balance);
     const std::lock_guard lock(m_mutex);
@@ -184,9 +177,9 @@ TracedPhotons PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
     }
     if (m_plan.descent > 0.0f) {
         const float radius = radiusOfGathered();
-        maps.lamps = std::make_unique<VirtualLamps>(m_scene, maps.caustic->photons(),
-                                                    radius * factor, patchesOfSites(radius), factor,
-                                                    combineBits(m_settings.seed, maps.pass), check);
+        maps.lamps = std::make_unique<VirtualLamps>(
+            m_scene, maps.caustic->photons(), radius * factor, patchesOfSites(radius), factor,
+            combineBits(m_settings.seed, maps.pass), check, m_roomForSites);
         maps.refocusedPhotons = std::make_unique<PhotonMap>(
             traced.descended.refocused().intoMap(check, m_scene.coreRadiusIfAny()));
         maps.refocused = std::make_unique<SurfaceEstimate>(m_scene, *maps.refocusedPhotons,
@@ -215,7 +208,8 @@ void PhotonPass::buildIndirect(PassMaps& maps, TracedPhotons descended, Control&
         traced.photons.intoMap(CancelCheck(control.cancelled), m_scene.coreRadiusIfAny()));
     noteBuilding(maps, maps.global->size());
     maps.sites = std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor,
-                                                   patchesOfSites(m_globalRadius), factor, m_focus);
+                                                   patchesOfSites(m_globalRadius), factor, m_focus,
+                                                   m_roomForSites);
     const GatherPoints::Request request{.width = m_settings.width,
                                         .height = m_settings.height,
                                         .spacing = m_plan.gatherSpacing,

@@ -43,7 +43,10 @@ class PhotonPass {
 
     // As FrameRenderer::readPhotons and tracePass.
     void readFrom(const PhotonSource& source) { m_source = &source; }
-    void pageMaps(PhotonPaging& paging) { m_paging = &paging; }
+    void pageMaps(PhotonPaging& paging, float roomForSites) {
+        m_paging = &paging;
+        m_roomForSites = roomForSites;
+    }
     void traceInto(PhotonSink& sink, std::uint32_t pass, const std::atomic<bool>& cancelled,
                    const std::function<void(double)>& progress);
 
@@ -133,6 +136,7 @@ class PhotonPass {
     const RenderSettings& m_settings;
     const PhotonSource* m_source = nullptr;  // null: photons are traced
     PhotonPaging* m_paging = nullptr;        // null: maps are in memory
+    float m_roomForSites = 1.0f;             // see IrradianceSites
     bool m_pilotsAreKept = false;            // by the sink
     // Of the first pass, scene units.
     bool m_haveRadii = false;

@@ -118,6 +118,17 @@ std::uint64_t Plan::pagedPilotBytes() const {
            PhotonMap::kHeldBytesPerPhoton;
 }
 
+std::uint64_t Plan::siteBytes(std::uint32_t first, std::uint32_t last, float room) const {
+    const std::uint64_t gathered = globalLandings() + descendedLandings();
+    std::uint64_t bytes = 0;
+    for (std::uint32_t pass = first; pass <= last; ++pass) {
+        const float factor = radiusFactor(pass);
+        if (globalMap) bytes += IrradianceSites::memoryBytes(gathered, factor, room);
+        if (descent > 0.0f) bytes += VirtualLamps::memoryBytes(causticLandings(), factor, room);
+    }
+    return bytes;
+}
+
 std::uint64_t Plan::bytesBesidePages(std::uint32_t first, std::uint32_t last,
                                      std::uint64_t pointBytes) const {
     const auto planes = [](std::uint64_t paged) {
@@ -129,7 +140,7 @@ std::uint64_t Plan::bytesBesidePages(std::uint32_t first, std::uint32_t last,
                               sizeof(ReceivedPhoton));
     for (std::uint32_t pass = first; pass <= last; ++pass)
         bytes += passMapBytes(pass) - pagedBytes() + planes(pagedBytes()) + pointBytes;
-    return bytes;
+    return bytes - siteBytes(first, last, 1.0f);
 }
 
 // In the order in which PhotonPass makes the maps; a map's photons go when it is built, before
