@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 
 from server import Server
@@ -323,12 +324,37 @@ class Sharing(Copies):
         server.pause = threading.Event()
         worker = self.start(server.url(), "killed.exr")
         while not any("/objects/" in path for path in server.asked):
-            pass
+            time.sleep(0.01)
         worker.kill()
         worker.wait()
         server.pause.set()
         self.render(server.url())
         self.assertEqual([file for file in self.cached() if ".tmp." in file], [], "what it left is removed")
+
+    def test_interrupted_while_it_fetches(self):
+        self.pack()
+        server = self.serve()
+        server.pause = threading.Event()
+        self.addCleanup(server.pause.set)
+        worker = self.start(server.url(), "interrupted.exr")
+        while not any("/objects/" in path for path in server.asked):
+            time.sleep(0.01)
+        worker.send_signal(signal.SIGINT)
+        self.assertEqual(worker.wait(10), 130)
+        self.assertEqual(self.cached(), [])
+
+    def test_farm_of_a_fetched_scene(self):
+        self.pack()
+        server = self.serve()
+        farm = ("--bucket-size", "8", "--copies", self.copies)
+        local, _ = self.render(self.scene, *farm[:2], name="local.exr")
+        printed = self.host("farm", server.url(), *OPTIONS, *farm, "--engine", "commands", "--job", "job", "--runs", "2",
+                            "-o", "farm.exr").stdout
+        self.hide_project()
+        for command in (line for line in printed.splitlines() if not line.startswith("#")):
+            subprocess.run(command, shell=True, check=True, env=self.variables, cwd=self.folder, capture_output=True)
+        self.assertEqual((self.folder / "farm.exr").read_bytes(), local)
+        self.assertEqual(len(server.objects()), 4)
 
     def test_room_is_made_by_what_is_not_used(self):
         for name in ("a", "b", "c"):
