@@ -311,7 +311,12 @@ class Sharing(Copies):
     def test_two_at_once_fetch_once(self):
         self.pack()
         server = self.serve()
+        server.pause = threading.Event()
         workers = [self.start(server.url(), f"{i}.exr") for i in range(3)]
+        while server.asked.count("/manifest.json") < 3:
+            time.sleep(0.01)
+        time.sleep(1)  # all want the same now
+        server.pause.set()
         for worker in workers:
             self.assertEqual(worker.wait(120), 0, worker.stderr.read())
         objects = server.objects()
