@@ -158,6 +158,22 @@ class Renders(Copies):
         self.assertNotIn("leaf.png", said)
         self.assertEqual(far, local)
 
+    def test_tiles(self):
+        (self.project / "tex").mkdir()
+        for tile, picture in (("1001", "leaf.png"), ("1002", "checker.png"), ("1011", "checker.png")):
+            shutil.copy(SCENES / picture, self.project / "tex" / f"t.{tile}.png")
+        library = self.project / "scenes.mtl"
+        text = library.read_text()
+        self.assertIn("map_Kd checker.png", text)
+        library.write_text(text.replace("map_Kd checker.png", "map_Kd Tex/t.<UDIM>.png"))
+        local, _ = self.render(self.scene, name="local.exr")
+        self.pack()
+        self.hide_project()
+        self.assertEqual(self.render(self.serve().url())[0], local)
+        places = [file["place"] for file in self.manifest()["files"]]
+        self.assertEqual([place for place in places if place.startswith("tex/")],
+                         ["tex/t.1001.png", "tex/t.1002.png", "tex/t.1011.png"])
+
     def test_parts_of_copies_and_of_the_original_go_together(self):
         self.pack()
         server = self.serve()
