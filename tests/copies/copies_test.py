@@ -303,8 +303,9 @@ class Faults(Copies):
                                     ({"place": "elsewhere"}, first, "is not among its files"),
                                     ({"place": second + "/x"}, second, "is a file and a folder"),
                                     ({"sha256": "../../x"}, first, "is no SHA-256"),
-                                    ({"bytes": 1 << 60}, first, "are too many"), ({"bytes": -1}, first, "are too many"),
-                                    ({"bytes": "1"}, first, "can't be understood")):
+                                    ({"bytes": 1 << 60}, first, "are too many"), 
+                                    ({"bytes": -1}, first, "no whole number"), ({"bytes": 1e300}, first, "no whole number"),
+                                    ({"bytes": "1"}, first, "no whole number"), ({"bytes": None}, first, "no whole number")):
             manifest = json.loads(json.dumps(good))
             manifest["files"][0].update(change)
             manifest["scene"] = scene
