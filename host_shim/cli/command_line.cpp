@@ -203,6 +203,7 @@ void readChoices(const Typed& typed, Options& options) {
                                               {"plain", ProgressStyle::kPlain},
                                               {"json", ProgressStyle::kJson},
                                               {"alf", ProgressStyle::kAlf},
+                                              {"openjd", ProgressStyle::kOpenJd},
                                               {"none", ProgressStyle::kNone}});
     chosen<int>("--list", options.list, 0,
                 {{"views", 0},

@@ -13,7 +13,7 @@
 namespace pm::host {
 namespace {
 
-constexpr std::array<SettingOption, 17> kSettingOptions{{
+constexpr std::array<SettingOption, 19> kSettingOptions{{
     {"--threads", "threads", "N"},
     {"--bucket-size", "bucketSize", "N|auto"},
     {"--bucket-order", "bucketOrder", "NAME"},
@@ -31,6 +31,8 @@ constexpr std::array<SettingOption, 17> kSettingOptions{{
     {"--error-target", "errorTarget", "RELMSE"},
     {"--seed", "seed", "N|frame"},
     {"--memory-limit", "memoryLimitGib", "GIB"},
+    {"--photon-pages", "photonPagesMib", "MIB"},
+    {"--scratch", "scratchFolder", "FOLDER"},
 }};
 
 // What is wrong with a value: an empty one, of a script's variable perhaps, is not the same as
@@ -234,7 +236,7 @@ void addPrintingOptions(CLI::App& app, Typed& typed, Options& options) {
     addText(app, "--list", options.list, "views|looks|spaces|aovs|orders|settings|parameters",
             "print and stop");
     app.add_flag("--version", options.version, "print and stop");
-    addText(app, "--progress", typed.progress, "auto|bar|plain|json|alf|none",
+    addText(app, "--progress", typed.progress, "auto|bar|plain|json|alf|openjd|none",
             "how progress is shown (auto)");
     addText(app, "--bucket-times", typed.bucketTimes, "FILE.csv",
             "how long each bucket took: its place in the order, its pixels, seconds, passes");

@@ -25,7 +25,7 @@ struct ExposureOption {
     bool mayBeMeasured{};
 };
 enum class CameraLight { kAuto, kOn, kOff };
-enum class ProgressStyle { kAuto, kBar, kPlain, kJson, kAlf, kNone };
+enum class ProgressStyle { kAuto, kBar, kPlain, kJson, kAlf, kOpenJd, kNone };
 
 // A setting of the library that the command line gave a value to.
 struct GivenSetting {

@@ -25,11 +25,6 @@ namespace fs = std::filesystem;
 // Settings of the library by their defaults, which are not known to the command line.
 constexpr std::int64_t kBucketSize = 32;
 constexpr std::int64_t kPasses = 4;
-// Of a farm: a second of dispatch is nothing to half a minute, and a machine that is slower than
-// others has less to end with where there are several runs for each.
-constexpr double kShortestRunSeconds = 30;
-constexpr int kRunsOfAMachine = 6;
-constexpr int kMostRuns = 300;
 // Costs are told by fewer photons.
 constexpr std::int64_t kPilotPhotons = 100'000;
 
@@ -58,17 +53,6 @@ std::uint32_t bucketCountOf(const PixelRect& window, std::int32_t size) {
         return static_cast<std::uint32_t>((end - origin + size - 1) / size);
     };
     return along(window.x0, window.x1) * along(window.y0, window.y1);
-}
-
-int runCountOf(const FarmOptions& farm, double threadSeconds, std::size_t frames,
-               std::size_t machines) {
-    if (farm.runs > 0) return farm.runs;
-    const int count = std::max(1, static_cast<int>(machines));
-    const double threads = std::max(1u, std::thread::hardware_concurrency());
-    const int byTime = static_cast<int>(
-        std::min(threadSeconds / threads / kShortestRunSeconds, double{kMostRuns}));
-    const int least = (count + static_cast<int>(frames) - 1) / static_cast<int>(frames);
-    return std::clamp(byTime, least, std::max(least, std::min(kRunsOfAMachine * count, kMostRuns)));
 }
 
 class Planning {
@@ -135,11 +119,23 @@ class Planning {
         const double pixels = static_cast<double>(window.width()) * window.height();
         const auto passes = static_cast<double>(numberGiven(m_farm, "--passes", kPasses));
         const double scale = pixels / std::max(m_pilot.pixels, 1.0) * passes;
-        const int count = runCountOf(m_farm, seconds * scale, m_frames.size(), machines);
-        const std::vector<BucketRun> runs =
-            cutRuns(m_pilot.bucketSeconds, plan.bucketCount, static_cast<std::uint32_t>(count));
+        const auto count =
+            m_farm.runs > 0
+                ? static_cast<std::uint32_t>(m_farm.runs)
+                : runCount({seconds * scale / threadCount(), eachRunSeconds(pixels, passes)},
+                           m_frames.size(), machines);
+        const std::vector<BucketRun> runs = cutRuns(m_pilot.bucketSeconds, plan.bucketCount, count);
         for (std::size_t i = 0; i < m_frames.size(); ++i)
             for (const BucketRun& run : runs) addRun(i, run, scale, plan);
+    }
+    static double threadCount() { return std::max(1u, std::thread::hardware_concurrency()); }
+    // On a machine like this one. The pilot has fewer photons than a picture where their number is
+    // given, else by its size.
+    double eachRunSeconds(double pixels, double passes) const {
+        const auto given = static_cast<double>(numberGiven(m_farm, "--photons", 0));
+        const double more = given > 0 ? std::max(1.0, given / kPilotPhotons)
+                                      : pixels / std::max(m_pilot.pixels, 1.0);
+        return m_pilot.startSeconds + m_pilot.mapSeconds * more * passes;
     }
     void addRun(std::size_t frame, const BucketRun& run, double scale, FarmPlan& plan) const {
         FarmTask task;

@@ -80,6 +80,12 @@ void readStatistics(const fs::path& file, PilotFindings& findings) {
         throw HostError(ExitCode::kInternal, "the pilot's statistics can't be read");
     findings.isa = json.at("isa").get<std::string>();
     findings.hasPhotons = json.at("plan").value("tracePhotons", false);
+    const auto& phases = json.at("phases");
+    const auto seconds = [&](const char* name) { return phases.value(name, 0.0); };
+    findings.mapSeconds = seconds("mapSeconds") / std::max(json.value("passesDone", 1.0), 1.0);
+    findings.startSeconds =
+        std::max(0.0, seconds("elapsedSeconds") - seconds("writePicturesSeconds") -
+                          seconds("renderSeconds") - seconds("beginPassSeconds"));
     // Exposure that nobody gave is 0, and one that was measured is a fraction.
     const auto colour = json.find("colour");
     findings.measuresExposure = colour != json.end() && colour->value("exposureStops", 0.0) != 0;

@@ -13,6 +13,8 @@ namespace pm::host {
 struct PilotFindings {
     std::vector<double> bucketSeconds;  // thread-seconds a pass of its buckets, in their order
     double pixels{};                    // that it rendered
+    double startSeconds{};              // of the process, until its first pass
+    double mapSeconds{};                // a pass
     std::string isa;                    // of this machine, or the one that was asked for
     bool hasPhotons{};                  // the render reads photons
     bool measuresExposure{};            // a render with these options would measure its exposure

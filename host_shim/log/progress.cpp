@@ -52,9 +52,8 @@ void Progress::update(double fraction, double remainingSeconds) {
     show(fraction, remainingSeconds);
 }
 
-void Progress::showAlf() {
-    const std::string line = fmt::format("ALF_PROGRESS {}%\n", m_shownPercent);
-    std::fwrite(line.data(), 1, line.size(), stdout);
+void Progress::print(const std::string& lines) {
+    std::fwrite(lines.data(), 1, lines.size(), stdout);
     if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return;
     // Nobody listens any more: no reason to end a render, and no failure of its results.
     std::clearerr(stdout);
@@ -78,7 +77,12 @@ void Progress::show(double fraction, double remainingSeconds) {
                 std::isnan(remainingSeconds) ? "null" : fmt::format("{:.2f}", remainingSeconds)));
             break;
         case ProgressStyle::kAlf:
-            showAlf();
+            print(fmt::format("ALF_PROGRESS {}%\n", m_shownPercent));
+            break;
+        case ProgressStyle::kOpenJd:
+            // Open Job Description, "How Jobs Are Run": messages of a task on standard output.
+            print(fmt::format("openjd_progress: {:.1f}\nopenjd_status: {}\n", fraction * 100,
+                              fraction < 1 ? remaining : "done"));
             break;
         default:
             m_log.rawLine(fmt::format("Progress: {}%, {} elapsed, {}", m_shownPercent,

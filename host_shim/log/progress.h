@@ -22,7 +22,7 @@ class Progress {
 
   private:
     void show(double fraction, double remainingSeconds);
-    void showAlf();
+    void print(const std::string& lines);
 
     ProgressStyle m_style;
     Log& m_log;

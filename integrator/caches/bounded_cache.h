@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
@@ -21,6 +22,7 @@ struct CacheCounts {
     std::uint64_t bytesMade = 0;
     std::uint64_t bytesHeld = 0;  // now
     std::uint64_t mostBytesHeld = 0;
+    std::array<std::uint64_t, kCacheUsers> missesOf{};  // by CacheUser
 };
 
 // Values of a known number of keys, made when they are first asked for and evicted by use (CLOCK,
@@ -97,8 +99,10 @@ class BoundedCache {
     }
 
     CacheCounts counts() const {
-        return {m_misses.load(),    m_madeAgain.load(), m_waits.load(),
-                m_bytesMade.load(), m_bytesHeld.load(), m_mostBytesHeld.load()};
+        CacheCounts counts{m_misses.load(),    m_madeAgain.load(), m_waits.load(),
+                           m_bytesMade.load(), m_bytesHeld.load(), m_mostBytesHeld.load()};
+        for (std::size_t i = 0; i < kCacheUsers; ++i) counts.missesOf[i] = m_missesOf[i].load();
+        return counts;
     }
     // Of the cache itself, without its values.
     static std::uint64_t bytesFor(std::size_t keys) { return keys * sizeof(Slot); }
@@ -142,6 +146,8 @@ class BoundedCache {
         }
         const std::uint64_t bytes = slot.value->memoryBytes();
         m_misses.fetch_add(1, std::memory_order_relaxed);
+        m_missesOf[static_cast<std::size_t>(CacheWatch::user())].fetch_add(
+            1, std::memory_order_relaxed);
         if (std::exchange(slot.wasMade, true)) m_madeAgain.fetch_add(1, std::memory_order_relaxed);
         m_bytesMade.fetch_add(bytes, std::memory_order_relaxed);
         const std::uint64_t held = m_bytesHeld.fetch_add(bytes, std::memory_order_relaxed) + bytes;
@@ -177,6 +183,7 @@ class BoundedCache {
     std::atomic<std::size_t> m_hand{0};
     std::atomic<std::uint64_t> m_misses{0}, m_madeAgain{0}, m_waits{0}, m_bytesMade{0},
         m_bytesHeld{0}, m_mostBytesHeld{0};
+    std::array<std::atomic<std::uint64_t>, kCacheUsers> m_missesOf{};
 };
 
 }  // namespace pm

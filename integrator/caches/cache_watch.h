@@ -9,9 +9,12 @@
 
 namespace pm {
 
-// What a thread is at while it asks.
+// What a thread is at while it asks: what the camera sees, light of lamps, paths that go on from
+// there, rays that gather indirect light, photons.
 enum class CacheUser : std::uint8_t { kCamera, kShadow, kBounce, kGather, kPhoton };
 inline constexpr std::size_t kCacheUsers = 5;
+inline constexpr const char* kCacheUserNames[kCacheUsers] = {"camera", "shadow", "bounce", "gather",
+                                                             "photon"};
 
 // One look-up of a cache.
 struct CacheAsked {
@@ -41,22 +44,16 @@ class CacheWatch {
         CacheWatch* m_before;
     };
 
-    // What the thread does from here on while it lives; nothing on a thread without a watch.
+    // What the calling thread is at while it lives.
     class As {
       public:
-        explicit As(CacheUser user) {
-            if (t_current) m_before = std::exchange(t_user, user);
-            m_isWatched = t_current != nullptr;
-        }
-        ~As() {
-            if (m_isWatched) t_user = m_before;
-        }
+        explicit As(CacheUser user) : m_before(std::exchange(t_user, user)) {}
+        ~As() { t_user = m_before; }
         As(const As&) = delete;
         As& operator=(const As&) = delete;
 
       private:
-        bool m_isWatched;
-        CacheUser m_before = CacheUser::kCamera;
+        CacheUser m_before;
     };
 
     static CacheWatch* current() { return t_current; }

@@ -37,8 +37,9 @@ struct GroupShape {
             const LimitGroups& groups = of(args->geometryUserPtr);
             TriangleGroup::Hit hit;
             const ShearedRay ray = sheared(rayHit.ray);
-            if (!groups.pin(args->primID)
-                     ->nearest(ray, nearEnd(rayHit.ray), farEnd(rayHit.ray), hit))
+            const double tNear = nearEnd(rayHit.ray), tFar = farEnd(rayHit.ray);
+            if (!groups.mayMeet(args->primID, ray, tNear, tFar) ||
+                !groups.pin(args->primID)->nearest(ray, tNear, tFar, hit))
                 return;
             rayHit.ray.tfar = static_cast<float>(hit.t);
             rayHit.hit = {};
@@ -60,11 +61,15 @@ struct GroupShape {
                     visitAll(args->geometryUserPtr, args->primID, args->geomID, rtcRay, query);
                 return;
             }
+            const LimitGroups& groups = of(args->geometryUserPtr);
+            const ShearedRay ray = sheared(rtcRay);
+            const double tNear = nearEnd(rtcRay);
             double tFar = farEnd(rtcRay);
-            isOccluded = of(args->geometryUserPtr)
-                             .pin(args->primID)
-                             ->walk(sheared(rtcRay), nearEnd(rtcRay), tFar,
-                                    [](std::uint32_t, double) { return true; });
+            isOccluded =
+                groups.mayMeet(args->primID, ray, tNear, tFar) &&
+                groups.pin(args->primID)->walk(ray, tNear, tFar, [](std::uint32_t, double) {
+                    return true;
+                });
         });
         if (isOccluded) rtcRay.tfar = -std::numeric_limits<float>::infinity();
     }
@@ -96,12 +101,14 @@ struct GroupShape {
     static bool visitAll(void* user, std::uint32_t group, std::uint32_t geometry,
                          const RTCRay& rtcRay, RayQuery& query) {
         const LimitGroups& groups = of(user);
+        const ShearedRay ray = sheared(rtcRay);
+        const double tNear = nearEnd(rtcRay);
         double tFar = farEnd(rtcRay);
-        return groups.pin(group)->walk(
-            sheared(rtcRay), nearEnd(rtcRay), tFar, [&](std::uint32_t triangle, double t) {
-                return query.isStoppedBy(
-                    {geometry, groups.firstTriangle(group) + triangle, static_cast<float>(t)});
-            });
+        if (!groups.mayMeet(group, ray, tNear, tFar)) return false;
+        return groups.pin(group)->walk(ray, tNear, tFar, [&](std::uint32_t triangle, double t) {
+            return query.isStoppedBy(
+                {geometry, groups.firstTriangle(group) + triangle, static_cast<float>(t)});
+        });
     }
 };
 

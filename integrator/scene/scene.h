@@ -50,6 +50,7 @@ class Scene {
     bool meet(const Ray& ray, Surface& surface) const;
     // By anything that any ray meets.
     bool occluded(Ray ray) const {
+        const CacheWatch::As as(CacheUser::kShadow);
         ray.viewer = kAllRays;
         return m_tracer.occluded(ray);
     }

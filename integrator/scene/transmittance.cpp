@@ -87,6 +87,7 @@ bool Scene::isNone(const Ray& ray, const RayHit& hit) const {
 }
 
 Rgb Scene::transmittance(const Ray& asked) const {
+    const CacheWatch::As as(CacheUser::kShadow);
     Ray ray = asked;
     ray.viewer = kShadowRays;
     if (!m_letsThrough && !m_media) return m_tracer.occluded(ray) ? Rgb{} : Rgb(1.0f);

@@ -38,6 +38,7 @@ LimitGroups::LimitGroups(std::shared_ptr<const LimitShape> shape, const Transfor
     : m_shape(std::move(shape)),
       m_placed{*m_shape, toScene, std::move(heights), edgeRates(*m_shape, toScene, rule, cancel)} {
     listGroups(cancel);
+    m_met = std::vector<MetBox>(m_groups.size());
     findBoxes(cancel);
 }
 
@@ -203,7 +204,7 @@ void LimitGroups::forEachCageTriangle(
 }
 
 std::uint64_t LimitGroups::memoryBytes() const {
-    return m_items.size() * sizeof(Item) + m_groups.size() * sizeof(Group) +
+    return m_items.size() * sizeof(Item) + m_groups.size() * (sizeof(Group) + sizeof(MetBox)) +
            m_placed.rates.size() * sizeof(std::uint16_t) + GroupCache::bytesFor(m_groups.size());
 }
 

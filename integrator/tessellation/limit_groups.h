@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -52,7 +53,17 @@ class LimitGroups {
         m_firstKey = firstKey;
     }
     GroupCache::Pin pin(std::uint32_t group) const {
-        return m_cache->get(m_firstKey + group, [&](std::size_t) { return make(group); });
+        return m_cache->get(m_firstKey + group, [&](std::size_t) {
+            auto made = make(group);
+            m_met[group].note(*made);
+            return made;
+        });
+    }
+    // False: the ray meets no triangle of the group between the two, as is known since the group
+    // was first made: box() has to be as wide as the displacement may be anywhere, and most rays
+    // in it pass by. Nothing is made.
+    bool mayMeet(std::uint32_t group, const ShearedRay& ray, double tNear, double tFar) const {
+        return m_met[group].mayMeet(ray, tNear, tFar);
     }
 
     // Calls visit for the triangles of the cage itself that are of a slot and have a surface, in
@@ -71,6 +82,26 @@ class LimitGroups {
         std::uint32_t firstItem, firstTriangle, slot;
         Box3d box;
     };
+    // The box of a group's triangles, from when it is first made on.
+    class MetBox {
+      public:
+        // One thread at a time.
+        void note(const TriangleGroup& made) {
+            if (m_isKnown.load(std::memory_order_relaxed)) return;
+            m_lo = made.lo();
+            m_hi = made.hi();
+            m_isKnown.store(true, std::memory_order_release);
+        }
+        bool mayMeet(const ShearedRay& ray, double tNear, double tFar) const {
+            double in;
+            return !m_isKnown.load(std::memory_order_acquire) ||
+                   ray.meetsBox(m_lo, m_hi, tNear, tFar, in);
+        }
+
+      private:
+        Vec3f m_lo, m_hi;
+        std::atomic<bool> m_isKnown{false};
+    };
     void listGroups(const CancelCheck& cancel);
     std::vector<std::uint32_t> facesInOrder(const CancelCheck& cancel) const;
     std::uint32_t slotOf(std::uint32_t face) const;
@@ -81,6 +112,7 @@ class LimitGroups {
     PlacedLimit m_placed;
     std::vector<Item> m_items;
     std::vector<Group> m_groups;
+    mutable std::vector<MetBox> m_met;  // of each
     Box3d m_box;
     std::uint64_t m_triangleCount = 0;
     GroupCache* m_cache = nullptr;

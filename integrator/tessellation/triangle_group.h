@@ -32,6 +32,9 @@ class TriangleGroup {
         return m_points[m_triangles[triangle][corner]];
     }
     std::uint64_t memoryBytes() const;
+    // What walk() asks first of a ray: whether it meets the box of all.
+    const Vec3f& lo() const { return m_nodes[0].lo; }
+    const Vec3f& hi() const { return m_nodes[0].hi; }
 
     // Calls stops(triangle, t) for all that the line meets in [tNear, tFar], in no order, until one
     // stops it: then true. It may lessen tFar on the way.

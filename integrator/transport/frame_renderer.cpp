@@ -92,6 +92,7 @@ struct FrameRenderer::Impl {
     Plan plan;
     const Camera camera;
     const PhotonSource* photonSource = nullptr;
+    PhotonPaging* photonPaging = nullptr;
     std::unique_ptr<Prepared> prepared;
     std::uint32_t lastPass = 0;  // begun or added
     bool badValuesReported = false, cutsReported = false;
@@ -121,6 +122,7 @@ void FrameRenderer::Impl::prepare(const std::atomic<bool>& cancelled) {
     if (plan.lampSamples == 0)
         plan.lampSamples = findLampSamples(*scene, lights, camera, settings, plan, cancel);
     if (photonSource) made->photons.readFrom(*photonSource);
+    if (photonPaging) made->photons.pageMaps(*photonPaging);
     const std::lock_guard lock(mutex);
     counters.lampSamples = plan.lampSamples;
     prepared = std::move(made);
@@ -206,6 +208,11 @@ void FrameRenderer::prepare(const std::atomic<bool>& cancelled) {
 void FrameRenderer::readPhotons(const PhotonSource& source) {
     m_impl->photonSource = &source;
     if (m_impl->prepared) m_impl->prepared->photons.readFrom(source);
+}
+
+void FrameRenderer::pageMaps(PhotonPaging& paging) {
+    m_impl->photonPaging = &paging;
+    if (m_impl->prepared) m_impl->prepared->photons.pageMaps(paging);
 }
 
 void FrameRenderer::tracePass(std::uint32_t pass, PhotonSink& sink,

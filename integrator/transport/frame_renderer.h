@@ -19,6 +19,7 @@
 
 namespace pm {
 
+class PhotonPaging;
 class PhotonSink;
 class PhotonSource;
 class Scene;
@@ -66,6 +67,10 @@ class FrameRenderer {
     // Before the first pass: from now on photons are read from `source` in place of being traced.
     // It must outlive this, and hold what tracePass() wrote of the same lights, surfaces and plan.
     void readPhotons(const PhotonSource& source);
+    // Before the first pass: the passes' maps of global, caustic and refocused photons are kept in
+    // pages, for the same picture. It must outlive this. Errors of its files come out of what
+    // begins, adds and renders passes.
+    void pageMaps(PhotonPaging& paging);
     // Traces the photons of pass `pass` into the sink, before those of the first call the pilots'.
     // No map is built, no pixel can be rendered. The rest as beginPass.
     void tracePass(std::uint32_t pass, PhotonSink& sink, const std::atomic<bool>& cancelled,

@@ -13,6 +13,7 @@
 #include "plugin/session/frame_samples.h"
 #include "plugin/session/layer_table.h"
 #include "plugin/session/memory_limit.h"
+#include "plugin/session/page_plan.h"
 #include "plugin/session/pixel_reader.h"
 #include "plugin/session/render_photons.h"
 #include "plugin/values/call_error.h"
@@ -69,6 +70,13 @@ std::uint64_t pointBytes(const Plan& plan, const RenderSettings& settings, const
         rects.push_back(grid.cellRect(cell));
     return GatherPoints::memoryBytes(settings.width, settings.height, plan.gatherSpacing, rects,
                                      grid.window(), bucketsHeld);
+}
+
+// The same of a whole frame.
+std::uint64_t framePointBytes(const Plan& plan, const RenderSettings& settings) {
+    if (!plan.globalMap) return 0;
+    return GatherPoints::memoryBytes(settings.width, settings.height, plan.gatherSpacing,
+                                     settings.window);
 }
 
 // Why the passes of a bucket can't all be made before the next one; empty where they can.
@@ -133,8 +141,11 @@ BucketGrid bucketsOf(const SettingValues& values) {
     return {wholeAtoms(window), size == 0 ? autoBucketSize(window) : size};
 }
 
-MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues& values,
-                      const BucketGrid& grid, std::uint64_t texelBytes) {
+namespace {
+
+// With all maps in memory.
+MemoryPlan planInMemory(const Scene& scene, const Plan& plan, const SettingValues& values,
+                        const BucketGrid& grid, std::uint64_t texelBytes) {
     const RenderSettings settings = values.toRenderSettings();
     const ChannelLayout layout = channelLayout(settings);
     const std::uint64_t threads = threadsOf(values);
@@ -177,6 +188,33 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
     return memory;
 }
 
+}  // namespace
+
+MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues& values,
+                      const BucketGrid& grid, std::uint64_t texelBytes) {
+    MemoryPlan memory = planInMemory(scene, plan, values, grid, texelBytes);
+    const RenderSettings settings = values.toRenderSettings();
+    if (!memory.byBuckets) {
+        planPages(plan, values, framePointBytes(plan, settings), memory);
+        return memory;
+    }
+    MemoryPlan ofFrame = memory;
+    planPages(
+        plan, values,
+        pointBytes(plan, settings, grid, values.word(Setting::kBucketOrder), memory.bucketsHeld),
+        memory);
+    if (memory.need.total() <= memory.limit && memory.pages == 0) return memory;
+    if (values.word(Setting::kDelivery) == "buckets") return memory;
+    // The frame with the maps of one pass, where that leaves more room for their pages.
+    ofFrame.byBuckets = false;
+    ofFrame.bucketsHeld = 0;
+    ofFrame.need = ofFrame.whole;
+    planPages(plan, values, framePointBytes(plan, settings), ofFrame);
+    return ofFrame.need.total() <= ofFrame.limit && ofFrame.pagedShare() >= memory.pagedShare()
+               ? ofFrame
+               : memory;
+}
+
 std::string MemoryPlan::explain() const {
     std::string text = fmt::format("memory: {}", figures(need));
     if (byBuckets)
@@ -185,7 +223,13 @@ std::string MemoryPlan::explain() const {
             toGib(whole.total()));
     text += fmt::format(", the limit is {:.2f} GiB", toGib(limit));
     if (need.total() > limit) text += ": the render would be refused";
-    return text + "\n";
+    text += "\n";
+    if (pages > 0)
+        text += fmt::format(
+            "photon pages: of {:.2f} GiB of photons {:.2f} GiB are held at once, the rest is read "
+            "again from scratch files\n",
+            toGib(pagedBytes), toGib(std::min(pages, pagedBytes)));
+    return text;
 }
 
 void MemoryPlan::check() const {

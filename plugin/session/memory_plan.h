@@ -32,8 +32,14 @@ struct MemoryPlan {
     MemoryNeed need;                // as it is to be done
     MemoryNeed whole;               // with the whole frame
     std::uint32_t bucketsHeld = 0;  // by buckets: in work or waiting for the host, at most
+    std::uint64_t pages = 0;  // bytes that pages of photon maps take at once; 0: maps are in memory
+    std::uint64_t pagedBytes = 0;  // of all pages of the maps that there are at once
     std::string whyWhole;  // why it can't be done by buckets; empty where it can or isn't asked for
 
+    // Of the photon maps, what is held of their pages.
+    double pagedShare() const {
+        return pagedBytes == 0 ? 0.0 : static_cast<double>(pages) / static_cast<double>(pagedBytes);
+    }
     // For --explain; ends with a line break.
     std::string explain() const;
     // CallError MEMORY with all figures where the need is above the limit.

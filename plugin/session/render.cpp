@@ -104,7 +104,9 @@ void Render::start() {
     checkDelivery(m_settings);
     auto made = std::make_shared<RenderWork>(m_scene->scene, m_scene->identity, m_settings,
                                              m_scene->textures->texelBytes());
-    made->divideMemory(std::make_unique<RenderCaches>(m_scene, made->memory()));
+    RenderPages* const pages = made->pages();
+    made->divideMemory(std::make_unique<RenderCaches>(m_scene, made->memory(),
+                                                      pages ? &pages->paging() : nullptr));
     m_events.open({[made](std::uint32_t bucket) { made->beforeDelivery(bucket); },
                    [made](std::uint32_t bucket) { made->afterDelivery(bucket); }});
     // The threads wait for m_mutex, so they see the state that is set last.

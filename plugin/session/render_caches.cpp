@@ -13,13 +13,14 @@ namespace {
 // To ask what textures missed takes some microseconds a file.
 constexpr std::uint32_t kBucketsBetweenMoves = 16;
 // The least that is of use: some groups or tiles for each thread.
-constexpr std::uint64_t kLeastGroups = std::uint64_t{8} << 20;
+constexpr std::uint64_t kLeastGroups = std::uint64_t{8} << 20, kLeastPages = kLeastGroups;
 
-std::uint64_t plannedBytes(const MemoryNeed& need) {
-    return need.textures + need.groups;
+std::uint64_t plannedBytes(const MemoryPlan& plan) {
+    return plan.need.textures + plan.need.groups + plan.pages;
 }
 
-std::vector<LedgerCache> cachesOf(const RenderScene& scene) {
+std::vector<LedgerCache> cachesOf(const RenderScene& scene, const MemoryPlan& plan,
+                                  PhotonPaging* photons) {
     std::vector<LedgerCache> caches;
     const auto add = [&](const char* name, std::uint64_t least, std::uint64_t whole, auto setBudget,
                          auto bytesMissed) {
@@ -38,13 +39,19 @@ std::vector<LedgerCache> cachesOf(const RenderScene& scene) {
         "textures", TextureSystem::kLeastBytes, textures.texelBytes(),
         [&system](std::uint64_t bytes) { system.holdAtMost(bytes); },
         [&textures] { return textures.reads().bytes; });
+    if (photons)
+        add(
+            "photons", std::min(plan.pages, kLeastPages), std::max(plan.pagedBytes, plan.pages),
+            [photons](std::uint64_t bytes) { photons->setBudget(bytes); },
+            [photons] { return photons->counts().bytesMade; });
     return caches;
 }
 
 }  // namespace
 
-RenderCaches::RenderCaches(std::shared_ptr<const RenderScene> scene, const MemoryPlan& plan)
-    : m_scene(std::move(scene)), m_ledger(plannedBytes(plan.need), cachesOf(*m_scene)) {}
+RenderCaches::RenderCaches(std::shared_ptr<const RenderScene> scene, const MemoryPlan& plan,
+                           PhotonPaging* photons)
+    : m_scene(std::move(scene)), m_ledger(plannedBytes(plan), cachesOf(*m_scene, plan, photons)) {}
 
 void RenderCaches::bucketDone() {
     if (m_buckets.fetch_add(1, std::memory_order_relaxed) % kBucketsBetweenMoves ==

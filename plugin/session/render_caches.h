@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "integrator/photons/map/photon_pages.h"
 #include "plugin/session/memory_ledger.h"
 #include "plugin/session/memory_plan.h"
 #include "plugin/session/render_scene.h"
@@ -17,8 +18,10 @@ namespace pm::plugin {
 // them together. Threads: all functions from any, at once.
 class RenderCaches {
   public:
-    // scene: the render's; is kept.
-    RenderCaches(std::shared_ptr<const RenderScene> scene, const MemoryPlan& plan);
+    // scene: the render's; is kept. photons: null where photon maps are in memory; must outlive
+    // this but for its end.
+    RenderCaches(std::shared_ptr<const RenderScene> scene, const MemoryPlan& plan,
+                 PhotonPaging* photons);
 
     // A bucket is done; from time to time memory moves.
     void bucketDone();

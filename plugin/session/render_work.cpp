@@ -58,6 +58,7 @@ RenderWork::RenderWork(std::shared_ptr<const Scene> scene, const Identity& scene
       m_grid(bucketsOf(values)),
       m_memory(planMemory(*m_scene, m_plan, values, m_grid, texelBytes)),
       m_layout(channelLayout(m_settings)),
+      m_pages(m_memory.pages > 0 ? std::make_unique<RenderPages>(values, m_memory) : nullptr),
       m_photons(values, sceneIdentity, *m_scene, m_plan),
       m_clock(endsOf(m_stopRule, m_settings.isAdaptive()), m_plan.tracePhotons) {
     m_memory.check();
@@ -104,6 +105,7 @@ void RenderWork::makePlaces() {
 void RenderWork::makeRenderer() {
     m_renderer = m_arena.execute(
         [this] { return std::make_unique<FrameRenderer>(m_scene, m_settings, m_plan); });
+    if (m_pages) m_renderer->pageMaps(m_pages->paging());
     if (m_photons.source() != nullptr) m_renderer->readPhotons(*m_photons.source());
 }
 

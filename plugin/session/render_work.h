@@ -24,6 +24,7 @@
 #include "plugin/session/memory_plan.h"
 #include "plugin/session/progress_clock.h"
 #include "plugin/session/render_caches.h"
+#include "plugin/session/render_pages.h"
 #include "plugin/session/render_photons.h"
 #include "plugin/session/render_pieces.h"
 #include "plugin/session/setting_values.h"
@@ -90,6 +91,7 @@ class RenderWork {
     RenderCounters counters() const { return m_renderer->counters(); }
     const Scene& scene() const { return *m_scene; }
     const Plan& plan() const { return m_plan; }
+    RenderPages* pages() const { return m_pages.get(); }  // null: maps are in memory
     const RenderPhotons& photons() const { return m_photons; }
     const MemoryPlan& memory() const { return m_memory; }
     // The pixels that can be read now; by buckets null where no bucket is being delivered.
@@ -160,7 +162,8 @@ class RenderWork {
     std::uint32_t m_timedPasses = 0;  // that secondsPerBucket is the mean of
     bool m_isCorrelated = false;      // the next bucket is chosen while rendering
     ChannelLayout m_layout;
-    RenderPhotons m_photons;  // outlives who reads from it:
+    std::unique_ptr<RenderPages> m_pages;  // outlives the renderer, as does
+    RenderPhotons m_photons;               // outlives who reads from it:
     std::unique_ptr<FrameRenderer> m_renderer;
     std::shared_ptr<FrameStore> m_frame;         // the whole one
     std::unique_ptr<BucketPasses> m_buckets;     // or, by buckets, these, and no pieces

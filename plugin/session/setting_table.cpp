@@ -133,6 +133,16 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
      "A line that a part keeps for the host that merges it, as how the picture is to be shown: "
      "nothing is refused for it. Of a merge, the lines of all its parts, each once.",
      "None."},
+    {Setting::kPhotonPages, "photonPagesMib", SettingType::kNumber, "MiB", "0", 0, 1048576, 1, "",
+     false,
+     "Photon maps are kept in scratch files, in pages of which so much is in memory at once; 0 = "
+     "only where they would not fit the memory limit otherwise.",
+     "Time grows where pages are read again and again; on disk up to 60 bytes a photon that "
+     "landed."},
+    {Setting::kScratchFolder, "scratchFolder", SettingType::kText, "", "", 0, 0, 1, "", false,
+     "Folder of the scratch files of photon maps that are kept in pages; they have no name there "
+     "and are gone with the process. Empty: that of the environment variable TMPDIR, else /tmp.",
+     "A disk of its own for them is as fast as it reads."},
 }};
 
 static_assert(isInOrderOfIds(kSettings));

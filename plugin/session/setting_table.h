@@ -45,6 +45,8 @@ enum class Setting : std::size_t {
     kPhotonMap,
     kPhotonsOnly,
     kHostNote,
+    kPhotonPages,
+    kScratchFolder,
     kCount
 };
 inline constexpr std::size_t kSettingCount = static_cast<std::size_t>(Setting::kCount);

@@ -102,10 +102,12 @@ Json texturesJson(const SceneTextures& textures) {
 // Of triangles that are cut where rays meet them; by all renders of the scene.
 Json geometryJson(const Scene& scene) {
     const CacheCounts counts = scene.groupCounts();
-    return {{"budgetBytes", scene.groupBudget()},   {"misses", counts.misses},
-            {"madeAgain", counts.madeAgain},        {"waits", counts.waits},
-            {"bytesMade", counts.bytesMade},        {"bytesHeld", counts.bytesHeld},
-            {"mostBytesHeld", counts.mostBytesHeld}};
+    Json missesOf;
+    for (std::size_t i = 0; i < kCacheUsers; ++i) missesOf[kCacheUserNames[i]] = counts.missesOf[i];
+    return {{"budgetBytes", scene.groupBudget()},    {"misses", counts.misses},
+            {"madeAgain", counts.madeAgain},         {"waits", counts.waits},
+            {"bytesMade", counts.bytesMade},         {"bytesHeld", counts.bytesHeld},
+            {"mostBytesHeld", counts.mostBytesHeld}, {"missesOf", std::move(missesOf)}};
 }
 
 Json warningsJson(const Scene& scene, RenderWork& work) {
@@ -218,6 +220,8 @@ std::string Render::statisticsJson() const {
     json["memory"] = memoryJson(*running, counters);
     json["textureCache"] = texturesJson(*m_scene->textures);
     json["geometryCache"] = geometryJson(*m_scene->scene);
+    if (const RenderPages* const pages = running->pages())
+        json["photonPages"] = pages->statistics();
     if (const RenderCaches* const caches = running->caches()) json["caches"] = caches->statistics();
     json["plan"] = planJson(running->plan(), counters);
     json["warnings"] = warningsJson(running->scene(), *running);

@@ -85,12 +85,16 @@ class Cluster:
     """nodes: names; up: those that are started at once. All have this machine's processors, and run
     one task at a time when it asks for a whole node, as pm_host farm does."""
 
-    def __init__(self, folder, nodes=("n1", "n2"), up=None):
+    def __init__(self, folder, nodes=("n1", "n2"), up=None, network=None, weights=()):
+        """network: a Network of these nodes; None: all are on loopback. weights: of nodes, in their order;
+        those with less come first."""
         self.folder = pathlib.Path(folder)
         assert " " not in str(folder), f"{folder}: slurm.conf can't have blanks in names"
         for name in ("state", "log"):
             (self.folder / name).mkdir(parents=True)
         self.nodes = tuple(nodes)
+        self.network = network
+        self.weights = dict(zip(nodes, weights))
         self.slurmds = {}
         self.controller = None
         self.munge = Munge(self.folder / "munge")
@@ -112,8 +116,9 @@ class Cluster:
             self.ports = free_ports(1 + len(self.nodes))
         self.user = subprocess.run(["id", "-un"], capture_output=True, text=True, check=True).stdout.strip()
         folder = self.folder
+        controller = self.network.controller if self.network else LOOPBACK
         lines = [
-            "ClusterName=pm", f"SlurmctldHost=localhost({LOOPBACK})", f"SlurmctldPort={self.ports[0]}",
+            "ClusterName=pm", f"SlurmctldHost=localhost({controller})", f"SlurmctldPort={self.ports[0]}",
             f"AuthInfo=socket={munge.socket},cred_expire=5", f"SlurmUser={self.user}", f"SlurmdUser={self.user}",
             f"StateSaveLocation={folder / 'state'}", f"SlurmdSpoolDir={folder}/spool-%n",
             f"SlurmctldPidFile={folder / 'slurmctld.pid'}", f"SlurmdPidFile={folder}/%n.pid",
@@ -125,8 +130,9 @@ class Cluster:
             "PropagateResourceLimitsExcept=FSIZE",
         ]
         for name, port in zip(self.nodes, self.ports[1:]):
-            lines.append(f"NodeName={name} NodeHostname=localhost NodeAddr={LOOPBACK} Port={port} "
-                         f"CPUs={os.cpu_count()} RealMemory=500 State=UNKNOWN")
+            address = self.network.address(name) if self.network else LOOPBACK
+            lines.append(f"NodeName={name} NodeHostname=localhost NodeAddr={address} Port={port} "
+                         f"CPUs={os.cpu_count()} RealMemory=500 Weight={self.weights.get(name, 1)} State=UNKNOWN")
         lines += ["PartitionName=render Nodes=ALL Default=YES MaxTime=INFINITE State=UP PriorityTier=1",
                   "PartitionName=urgent Nodes=ALL MaxTime=INFINITE State=UP PriorityTier=10"]
         file.write_text("\n".join(lines) + "\n")
@@ -149,7 +155,8 @@ class Cluster:
     def start_node(self, name, *before):
         """before: a shell's commands that come first, as a limit."""
         (self.folder / f"spool-{name}").mkdir(exist_ok=True)
-        command = "; ".join([*before, f'exec slurmd -D -N {name} -f "{self.conf}"'])
+        inside = self.network.inside(name) + " " if self.network else ""
+        command = "; ".join([*before, f'exec {inside}slurmd -D -N {name} -f "{self.conf}"'])
         self.slurmds[name] = subprocess.Popen(["sh", "-c", command], env=self.environment(), cwd=self.folder,
                                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 

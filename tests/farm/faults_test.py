@@ -22,6 +22,7 @@ import unittest
 
 from cluster import Cluster, Munge, missing_programs, wait_for
 from job import SCENE, Farm, Job, children, is_alive, kill
+from network import Network, can_make_networks
 
 ALL = os.environ.get("PM_FARM") == "all"
 # Some seconds a run, so that there is time for a fault; one thread each, as nodes share the machine.
@@ -64,11 +65,11 @@ class Faults(unittest.TestCase):
         self.folder = pathlib.Path(folder.name)
         self.cluster = None
 
-    def up_with(self, nodes=("n1", "n2"), up=None):
+    def up_with(self, nodes=("n1", "n2"), up=None, **more):
         # slurm.conf can't have blanks in names, as the job's folder has them.
         folder = tempfile.TemporaryDirectory(prefix="pm_cluster.", ignore_cleanup_errors=True)
         self.addCleanup(folder.cleanup)
-        self.cluster = Cluster(folder.name, nodes, up)
+        self.cluster = Cluster(folder.name, nodes, up, **more)
         self.addCleanup(self.cluster.stop)
         return self.cluster
 
@@ -102,6 +103,14 @@ class Faults(unittest.TestCase):
         attempts = farm.job.attempts()
         self.assertEqual({a.machine for a in attempts}, {"n1", "n2"})
         self.assertEqual([a.code for a in attempts], [0] * (RUNS + 1))
+
+    @long_one
+    def test_near_nodes_come_first(self):
+        self.up_with(weights=(10, 1))
+        farm = self.farm().start()
+        self.assert_same_bytes(farm)
+        first = min(farm.job.attempts(), key=lambda attempt: attempt.start)
+        self.assertEqual((first.task, first.machine), (1, "n2"), "photons are alone, on the nearest")
 
     def test_task_is_killed(self):
         self.up_with()
@@ -195,6 +204,28 @@ class Faults(unittest.TestCase):
 
     @long_one
     def test_node_is_cut_off(self):
+        if not can_make_networks():
+            return self.node_stands_still()  # as it looks from elsewhere
+        network = Network(self.nodes)
+        self.addCleanup(network.remove)
+        cluster = self.up_with(network=network)
+        farm = self.farm().start()
+        victim = farm.job.wait_for_run("n2")
+        network.pull("n2")
+        # Its disk would be away as well, and who writes to it would stand still.
+        kill(children(victim.process), signal.SIGSTOP)
+        again = lambda: [a for a in farm.job.attempts() if a.task == victim.task and a.machine == "n1"]
+        wait_for(again, "the task on n1")
+        network.plug_in("n2")
+        kill(children(victim.process), signal.SIGCONT)
+        self.assert_same_bytes(farm)
+        self.assertIn("not responding", (cluster.folder / "log" / "slurmctld").read_text())
+
+    @long_one
+    def test_node_stands_still(self):
+        self.node_stands_still()
+
+    def node_stands_still(self):
         cluster = self.up_with()
         farm = self.farm().start()
         victim = farm.job.wait_for_run("n2")

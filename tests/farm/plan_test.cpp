@@ -44,6 +44,19 @@ TEST(RunCut, ADearBucketIsARunOfItsOwn) {
     EXPECT_EQ(runs[1].last, 4u);
 }
 
+TEST(RunCut, RunsAreAsManyAsPay) {
+    EXPECT_EQ(runCount({0, 1}, 1, 0), 1u);
+    EXPECT_EQ(runCount({10, 1}, 1, 8), 8u) << "one for each machine";
+    EXPECT_EQ(runCount({100, 0.1}, 1, 1), 3u) << "half a minute each";
+    EXPECT_EQ(runCount({36000, 0.1}, 1, 10), 60u) << "six for each machine";
+    EXPECT_EQ(runCount({1e9, 0.1}, 1, 100), 300u);
+    EXPECT_EQ(runCount({1e9, 0.1}, 1, 1000), 1000u);
+    EXPECT_EQ(runCount({3600, 0.1}, 10, 20), 120u) << "of half a minute";
+    // sqrt(3600 * 4 / 80) = 13.4: of maps that cost 40 s each run pays for, twelve.
+    EXPECT_EQ(runCount({3600, 40}, 1, 4), 12u);
+    EXPECT_EQ(runCount({3600, 40}, 1, 64), 64u);
+}
+
 // The cost of the dearest run is what the farm waits for: no more than a bucket above the mean.
 TEST(RunCut, NoRunIsFarAboveTheMean) {
     std::vector<double> costs(256);

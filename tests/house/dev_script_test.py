@@ -43,7 +43,7 @@ class DevScript(unittest.TestCase):
             self.program(self.tools / name, text)
         self.program(self.root / "build/release/bin/pm_host", HOST)
         lists = re.findall(r"^(?:\w+_)?packages=\((.*?)\)", DEV.read_text(), re.DOTALL | re.MULTILINE)
-        self.assertEqual(len(lists), 3)
+        self.assertEqual(len(lists), 4)
         self.packages = " ".join(lists).split()
 
     @staticmethod
@@ -145,6 +145,14 @@ class DevScript(unittest.TestCase):
             self.assertIn(f"ctest --test-dir {self.root}/build/{name} ", " ".join(self.calls))
             self.assertTrue(self.calls[-2].endswith("-R x"), self.calls)
         self.assertIn(f"suppressions={self.root}/tests/tsan_suppressions.txt:", self.calls[-1])
+
+    def test_farms_are_tried_with_slurm(self):
+        done = self.dev("test", "--farm", "--verbose", missing=("slurmctld", "munge"))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("apt-get install -y --no-install-recommends slurmctld munge", self.calls)
+        self.assertTrue(any(c.startswith("ninja") and c.endswith(" pm_host pm_plugin pm_test_farm")
+                            for c in self.calls), self.calls)
+        self.assertIn("-R ^(farm|pm_test_farm)\\. --verbose", " ".join(self.calls))
 
     def test_missing_packages_as_root(self):
         done = self.dev("setup", missing=("cmake", "libosd-dev"))

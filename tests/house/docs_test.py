@@ -47,7 +47,7 @@ def unknown_options(host):
         if document.name == "CHANGELOG.md":
             continue
         for line in document.read_text(encoding="utf-8").splitlines():
-            others = r"cmake|ctest|gtest|dev (?:bench|format|fuzz|install|lint|test)|pm_bench|find_package|_test\.py"
+            others = r"cmake|ctest|gtest|dev (?:bench|format|fuzz|install|lint|test)|pm_bench|find_package|_test\.py|munge[d.]|sinfo|slurm-option="
             is_ours = not re.search(others, line)
             for option in re.findall(r"(?<![\w-])--[a-z][a-z-]+", line) if is_ours else ():
                 if option != "--prefix" and not re.search(rf"{option}\b", known):

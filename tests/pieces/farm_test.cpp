@@ -2,8 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 // Three machines render runs of one picture's buckets, and pm_host merge makes the picture of them:
 // the command line of docs/farm.md.
+#include <cstring>
 #include <nlohmann/json.hpp>
+#include <span>
 
+#include "plugin/storage/piece_file.h"
 #include "tests/robust/host_process.h"
 
 namespace pm::host::test {
@@ -57,6 +60,41 @@ TEST_F(Farm, MergedPartsAreTheBytesOfALocalRender) {
     EXPECT_EQ(json.at("passesDone"), 2);
     EXPECT_EQ(json.at("stopReason"), "passes done");
     EXPECT_EQ(json.at("exitCode"), 0);
+}
+
+// A part whose head says another vendor, with its checksum put right.
+std::string byAnotherVendor(const std::string& part) {
+    constexpr std::size_t kMagicBytes = 8, kRecordHeadBytes = 24, kLengthAt = kMagicBytes + 8;
+    std::uint64_t length = 0;
+    std::memcpy(&length, part.data() + kLengthAt, sizeof length);
+    auto head = nlohmann::ordered_json::parse(part.substr(kMagicBytes + kRecordHeadBytes, length));
+    EXPECT_FALSE(head.at("processorVendor").get<std::string>().empty());
+    head["processorVendor"] = "Another one";
+    const std::string text = head.dump();
+    std::vector<std::byte> record;
+    plugin::appendRecord(plugin::PieceRecord::kHead, std::as_bytes(std::span(text)), record);
+    return part.substr(0, kMagicBytes) +
+           std::string(reinterpret_cast<const char*>(record.data()), record.size()) +
+           part.substr(kMagicBytes + kRecordHeadBytes + length);
+}
+
+TEST_F(Farm, UnlikeVendorsAreTold) {
+    makeParts();
+    const Outcome alike = merge({"--stats", "one.json"});
+    ASSERT_EQ(alike.exitCode, 0) << alike.err;
+    EXPECT_EQ(alike.err.find("vendor"), std::string::npos) << alike.err;
+    const std::string picture = readText(path("m.exr"));
+    write("p2.pmpart", byAnotherVendor(readText(path("p2.pmpart"))));
+    const Outcome mixed = merge({"--stats", "two.json"});
+    ASSERT_EQ(mixed.exitCode, 0) << mixed.err;
+    EXPECT_NE(mixed.err.find("unlike vendors"), std::string::npos) << mixed.err;
+    EXPECT_NE(mixed.err.find("Another one"), std::string::npos) << mixed.err;
+    EXPECT_TRUE(readText(path("m.exr")) == picture);
+    const auto vendors = [this](const char* file) {
+        return nlohmann::json::parse(readText(path(file))).at("processorVendors").size();
+    };
+    EXPECT_EQ(vendors("one.json"), 1u);
+    EXPECT_EQ(vendors("two.json"), 2u);
 }
 
 // Parts keep how bright they are to be shown; a merge may be told otherwise.

@@ -42,6 +42,25 @@ TEST_F(ProgressLines, alfIsAllThatStandardOutputHas) {
     EXPECT_EQ(outcome.err.find("ALF_PROGRESS"), std::string::npos);
 }
 
+TEST_F(ProgressLines, openjdTellsPercentAndStatus) {
+    const Outcome outcome = renderTelling("openjd", "3");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+    const std::vector<std::string> lines = linesOf(outcome.out);
+    ASSERT_GE(lines.size(), 4u);
+    ASSERT_EQ(lines.size() % 2, 0u);
+    const std::regex percent("openjd_progress: ([0-9]+\\.[0-9])"), status("openjd_status: .+");
+    double before = -1;
+    for (std::size_t i = 0; i < lines.size(); i += 2) {
+        std::smatch match;
+        ASSERT_TRUE(std::regex_match(lines[i], match, percent)) << lines[i];
+        EXPECT_TRUE(std::regex_match(lines[i + 1], status)) << lines[i + 1];
+        EXPECT_GT(std::stod(match[1]), before);
+        before = std::stod(match[1]);
+    }
+    EXPECT_TRUE(outcome.out.ends_with("openjd_progress: 100.0\nopenjd_status: done\n"));
+    EXPECT_EQ(outcome.err.find("openjd"), std::string::npos);
+}
+
 TEST_F(ProgressLines, jsonIsOneObjectALine) {
     const Outcome outcome = renderTelling("json", "3");
     ASSERT_EQ(outcome.exitCode, 0) << outcome.err;

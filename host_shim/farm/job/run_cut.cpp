@@ -8,6 +8,12 @@
 namespace pm::host {
 namespace {
 
+// A second of dispatch is nothing to half a minute, and a machine that is slower than others has
+// less to end with where there are several runs for each.
+constexpr double kShortestRunSeconds = 30;
+constexpr std::size_t kRunsOfAMachine = 6;
+constexpr std::size_t kMostRuns = 300;
+
 // Sums of what was before, from 0 to all.
 std::vector<double> sumsOf(const std::vector<double>& costs) {
     std::vector<double> sums{0};
@@ -47,6 +53,21 @@ std::vector<BucketRun> cutRuns(const std::vector<double>& pilotCosts, std::uint3
         first = last;
     }
     return cut;
+}
+
+std::uint32_t runCount(const FrameSeconds& seconds, std::size_t frames, std::size_t machines) {
+    const std::size_t count = std::max<std::size_t>(machines, 1);
+    const double work = std::max(seconds.buckets, 0.0);
+    // n runs cost n eachRun / machines, for each frame, and half a run of waiting, work / 2n.
+    const double best =
+        std::sqrt(work * static_cast<double>(count) /
+                  (2 * std::max(seconds.eachRun, 1e-3) * static_cast<double>(frames)));
+    const auto useful = static_cast<std::size_t>(
+        std::clamp(std::min(best, work / kShortestRunSeconds), 0.0, double{kMostRuns}));
+    const std::size_t least = (count + frames - 1) / frames;
+    const std::size_t most = std::max(least, std::min(kRunsOfAMachine * count, kMostRuns));
+    const std::size_t runs = std::clamp(useful, least, most);
+    return static_cast<std::uint32_t>(runs - runs % least);
 }
 
 }  // namespace pm::host

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "integrator/photons/estimate/surface_estimate.h"
 #include "integrator/photons/trace/disc_trials.h"
@@ -41,9 +42,9 @@ std::uint32_t countOf(std::uint32_t estimatePhotons) {
 
 }  // namespace
 
-PilotRadius::PilotRadius(std::span<const Photon> pilot, std::uint32_t estimatePhotons,
-                         float fallback, const CancelCheck& cancel)
-    : m_pilot(pilot, cancel),
+PilotRadius::PilotRadius(PhotonMap pilot, std::uint32_t estimatePhotons, float fallback,
+                         const CancelCheck& cancel)
+    : m_pilot(std::move(pilot)),
       m_count(countOf(estimatePhotons)),
       m_typical(typicalOf(m_pilot, estimatePhotons, fallback)),
       m_ofPhotons(m_pilot.size()) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "integrator/photons/estimate/surface_patches.h"
@@ -30,6 +31,9 @@ class PilotRadius {
     // fallback: the typical radius where the pilot found too little; scene units, > 0. Throws
     // Error(kCancelled) soon after cancel is set.
     PilotRadius(std::span<const Photon> pilot, std::uint32_t estimatePhotons, float fallback,
+                const CancelCheck& cancel = {})
+        : PilotRadius(PhotonMap(pilot, cancel), estimatePhotons, fallback, cancel) {}
+    PilotRadius(PhotonMap pilot, std::uint32_t estimatePhotons, float fallback,
                 const CancelCheck& cancel = {});
 
     // One for all places: what half of the pilot's photons need; scene units, > 0.
@@ -63,7 +67,10 @@ class CausticMap {
     // cancel is set.
     CausticMap(std::span<const Photon> photons, const PilotRadius& radius, float radiusFactor,
                const SurfacePatches* patches = nullptr, const CancelCheck& cancel = {})
-        : m_map(photons, cancel),
+        : CausticMap(PhotonMap(photons, cancel), radius, radiusFactor, patches) {}
+    CausticMap(PhotonMap map, const PilotRadius& radius, float radiusFactor,
+               const SurfacePatches* patches = nullptr)
+        : m_map(std::move(map)),
           m_radius(radius),
           m_radiusFactor(radiusFactor),
           m_patches(patches) {}

@@ -39,11 +39,11 @@ inline constexpr std::size_t kZeroed = std::size_t{1} << 18;
 
 // Not 0 bytes: that may be answered by a null pointer.
 template <typename T>
-std::size_t bytesOf(std::size_t count) {
+constexpr std::size_t bytesOf(std::size_t count) {
     return std::max<std::size_t>(count, 1) * sizeof(T);
 }
 
-inline std::size_t alignmentOf(std::size_t bytes) {
+constexpr std::size_t alignmentOf(std::size_t bytes) {
     return bytes >= kLargePage ? kLargePage : kLine;
 }
 
@@ -56,16 +56,22 @@ inline void wishForLargePages([[maybe_unused]] void* memory, [[maybe_unused]] st
 
 }  // namespace big_array
 
+// What an array of so many takes: whole units of its alignment, as std::aligned_alloc wants them.
+template <typename T>
+constexpr std::size_t bigArrayBytes(std::size_t count) {
+    const std::size_t wanted = big_array::bytesOf<T>(count);
+    const std::size_t alignment = big_array::alignmentOf(wanted);
+    return (wanted + alignment - 1) / alignment * alignment;
+}
+
 // Not initialised. Throws std::bad_alloc.
 template <typename T>
 BigArray<T> makeBigArray(std::size_t count) {
     static_assert(std::is_trivially_copyable_v<T> && std::is_trivially_destructible_v<T> &&
                   alignof(T) <= big_array::kLine);
-    const std::size_t wanted = big_array::bytesOf<T>(count);
-    const std::size_t alignment = big_array::alignmentOf(wanted);
-    // Whole units of the alignment, as std::aligned_alloc wants them.
-    const std::size_t bytes = (wanted + alignment - 1) / alignment * alignment;
-    void* const memory = std::aligned_alloc(alignment, bytes);
+    const std::size_t bytes = bigArrayBytes<T>(count);
+    void* const memory =
+        std::aligned_alloc(big_array::alignmentOf(big_array::bytesOf<T>(count)), bytes);
     if (!memory) throw std::bad_alloc();
     big_array::wishForLargePages(memory, bytes);
     return BigArray<T>(static_cast<T*>(memory));

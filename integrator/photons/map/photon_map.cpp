@@ -8,6 +8,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
+
+#include "integrator/photons/map/paged_tree.h"
 
 namespace pm {
 
@@ -62,7 +65,14 @@ float nthOf(std::span<float> numbers, std::size_t count, std::uint32_t n) {
 }  // namespace
 
 PhotonMap::PhotonMap(std::span<const Photon> photons, const CancelCheck& cancel, float coreRadius)
-    : m_tree(buildPhotonTree(photons, cancel)),
+    : PhotonMap(buildPhotonTree(photons, cancel), coreRadius) {}
+
+PhotonMap::PhotonMap(std::unique_ptr<PhotonSpool> photons, PhotonPaging& paging,
+                     const CancelCheck& cancel, float coreRadius)
+    : PhotonMap(buildPagedTree(std::move(photons), paging, cancel), coreRadius) {}
+
+PhotonMap::PhotonMap(PhotonTree tree, float coreRadius)
+    : m_tree(std::move(tree)),
       m_coreRadius(coreRadius),
       m_largest(std::max(maxAbsComponent(m_tree.lo), maxAbsComponent(m_tree.hi))) {
     const float tolerance = PhotonGate::kRounding * m_largest;
@@ -80,9 +90,10 @@ void PhotonMap::findWithin(const PhotonQuery& query, float reach, NearestPhotons
     std::size_t count = 0;
     const PhotonGate gate = this->gate(query.position, query.normal);
     std::uint64_t last = keyOf(reach, ~0u);
+    LeafReader reader(m_tree);
     visitLeaves(query.position, last, [&](std::uint32_t leaf) {
         std::array<float, PhotonLeaf::kSize> distances;
-        std::uint32_t found = m_tree.leaves[leaf].findWithin(gate, reach, distances.data());
+        std::uint32_t found = reader.places(leaf).findWithin(gate, reach, distances.data());
         for (; found != 0; found &= found - 1) {
             const auto i = static_cast<std::uint32_t>(std::countr_zero(found));
             const std::uint32_t index = leaf * PhotonLeaf::kSize + i;
@@ -109,7 +120,7 @@ float PhotonMap::firstReach(const PhotonQuery& query, const NearestPhotons& near
     // A leaf is about a square with the point somewhere inside.
     const std::uint32_t leaf = leafOf(query.position);
     std::array<float, PhotonLeaf::kSize> distances;
-    std::uint32_t found = m_tree.leaves[leaf].findWithin(
+    std::uint32_t found = LeafReader(m_tree).places(leaf).findWithin(
         gate(query.position, query.normal), std::numeric_limits<float>::max(), distances.data());
     if (std::popcount(found) < kColdPhotons) return std::numeric_limits<float>::infinity();
     float farthest = 0.0f;
@@ -158,8 +169,9 @@ void PhotonMap::findNearest(const PhotonQuery& query, NearestPhotons& nearest) c
 TwoRadii PhotonMap::fluxWithin(const PhotonGate& gate, float radius) const {
     FluxSums sums;
     const float reach = radius * radius;
+    LeafReader reader(m_tree);
     visitWithin(gate.position, reach, [&](std::uint32_t leaf) {
-        m_tree.leaves[leaf].addWithin(gate, reach, m_tree.fluxes[leaf], sums);
+        reader.places(leaf).addWithin(gate, reach, reader.fluxes(leaf), sums);
     });
     return radiiOf(sums);
 }
@@ -206,9 +218,10 @@ TwoRadii PhotonMap::fluxWithin(const Vec3f& position, const Vec3f& normal, float
     if (!leaves) return fluxWithin(position, normal, radius);
     FluxSums sums;
     const PhotonGate gate = this->gate(position, normal);
+    LeafReader reader(m_tree);
     for (std::uint32_t i = 0; i < leaves->count; ++i) {
         const std::uint32_t leaf = leaves->numbers[i];
-        m_tree.leaves[leaf].addWithin(gate, radius * radius, m_tree.fluxes[leaf], sums);
+        reader.places(leaf).addWithin(gate, radius * radius, reader.fluxes(leaf), sums);
     }
     return radiiOf(sums);
 }
@@ -231,10 +244,11 @@ std::size_t PhotonMap::findDistances(const PhotonQuery& query, float reach,
     const PhotonGate gate = this->gate(query.position, query.normal);
     distances.resize((leaves.numbers.size() + 1) * PhotonLeaf::kSize);
     std::size_t count = 0;
+    LeafReader reader(m_tree);
     for (std::uint32_t i = 0; i < leaves.count; ++i) {
         const std::uint32_t leaf = leaves.numbers[i];
         std::array<float, PhotonLeaf::kSize> all;
-        std::uint32_t found = m_tree.leaves[leaf].findWithin(gate, reach, all.data());
+        std::uint32_t found = reader.places(leaf).findWithin(gate, reach, all.data());
         for (; found != 0; found &= found - 1) {
             const auto k = static_cast<std::uint32_t>(std::countr_zero(found));
             distances[count] = all[k];
@@ -293,8 +307,9 @@ float PhotonMap::typicalRadius(std::uint32_t count) const {
 }
 
 std::uint64_t PhotonMap::memoryBytes() const {
-    return m_tree.leafCount * sizeof(PhotonLeaf) + m_tree.leafCount * sizeof(LeafFluxes) +
-           m_tree.nodeCount() * sizeof(PhotonTree::Node);
+    const std::uint64_t nodes = m_tree.nodeCount() * sizeof(PhotonTree::Node);
+    if (m_tree.pages) return nodes + m_tree.pages->memoryBytes();
+    return m_tree.leafCount * sizeof(PhotonLeaf) + m_tree.leafCount * sizeof(LeafFluxes) + nodes;
 }
 
 }  // namespace pm

@@ -12,6 +12,7 @@
 
 #include "integrator/photons/map/photon.h"
 #include "integrator/photons/map/photon_leaf.h"
+#include "integrator/photons/map/photon_spool.h"
 #include "integrator/photons/map/photon_tree.h"
 #include "integrator/values/rgb.h"
 #include "integrator/values/vec.h"
@@ -101,20 +102,30 @@ class PhotonMap {
     // are not rounded as those there are. Scene units.
     explicit PhotonMap(std::span<const Photon> photons, const CancelCheck& cancel = {},
                        float coreRadius = std::numeric_limits<float>::infinity());
+    // The same map, with its photons in pages that are read when they are asked for; all its
+    // functions then throw what reading a file may throw. As buildPagedTree.
+    PhotonMap(std::unique_ptr<PhotonSpool> photons, PhotonPaging& paging,
+              const CancelCheck& cancel = {},
+              float coreRadius = std::numeric_limits<float>::infinity());
 
     // While it is built, the photons that it is built from included; and once it is.
     static constexpr std::uint64_t kBytesPerPhoton = sizeof(Photon) + kTreeBuildBytesPerPhoton;
     static constexpr std::uint64_t kHeldBytesPerPhoton = kTreeBytesPerPhoton;
+    // In pages, without those: the planes of the tree.
+    static constexpr std::uint64_t kPagedBytesPerPhoton = 1;
 
     bool empty() const { return m_tree.size == 0; }
     std::size_t size() const { return m_tree.size; }
     // index: of the photon in the map, below size(); not that of the photons it was built from.
     Photon photon(std::uint32_t index) const {
-        const PhotonLeaf& leaf = m_tree.leaves[index / PhotonLeaf::kSize];
-        const std::uint32_t i = index % PhotonLeaf::kSize;
-        return {leaf.position(i), m_tree.fluxes[index / PhotonLeaf::kSize].at(i), leaf.normal(i)};
+        LeafReader reader(m_tree);
+        const std::uint32_t leaf = index / PhotonLeaf::kSize, i = index % PhotonLeaf::kSize;
+        const PhotonLeaf& places = reader.places(leaf);
+        return {places.position(i), reader.fluxes(leaf).at(i), places.normal(i)};
     }
+    // Without pages: those are PhotonPaging's.
     std::uint64_t memoryBytes() const;
+    bool isPaged() const { return m_tree.pages != nullptr; }
 
     // Finds the query.count nearest accepted photons within query.maxRadius: those of the side the
     // normal points to, of about the same normal, near the plane through the point. Ties go to the
@@ -158,6 +169,7 @@ class PhotonMap {
     }
 
   private:
+    PhotonMap(PhotonTree tree, float coreRadius);
     static TwoRadii radiiOf(const FluxSums& sums) {
         const auto rgb = [](const std::array<double, 3>& c) {
             return Rgb(static_cast<float>(c[0]), static_cast<float>(c[1]),
@@ -271,7 +283,7 @@ void PhotonMap::visitLeaves(const Vec3f& position, const std::uint64_t& last,
             far.leastKey = keyOf(far.away.lengthSquared(), far.firstLeaf * PhotonLeaf::kSize);
             if (far.leastKey > last) continue;
             stack[depth++] = far;
-            if (far.leafCount == 1) m_tree.leaves[far.firstLeaf].prefetch();
+            if (far.leafCount == 1 && m_tree.leaves) m_tree.leaves[far.firstLeaf].prefetch();
         }
         visit(at.firstLeaf);
     }
@@ -314,16 +326,17 @@ TwoRadii PhotonMap::fluxWithin(const Vec3f& position, const Vec3f& normal, float
     FluxSums sums;
     const float reach = radius * radius;
     const PhotonGate gate = this->gate(position, normal);
+    LeafReader reader(m_tree);
     visitWithin(position, reach, [&](std::uint32_t leaf) {
         std::array<float, PhotonLeaf::kSize> distances;
-        std::uint32_t found = m_tree.leaves[leaf].findWithin(gate, reach, distances.data());
+        std::uint32_t found = reader.places(leaf).findWithin(gate, reach, distances.data());
         for (std::uint32_t left = found; left != 0; left &= left - 1)
             if (!accept(leaf * PhotonLeaf::kSize +
                         static_cast<std::uint32_t>(std::countr_zero(left))))
                 found &= ~(left & -left);
         if (found == 0) return;
         const std::uint32_t narrow = found & PhotonLeaf::compare(distances.data(), 0.5f * reach);
-        m_tree.fluxes[leaf].add(found, narrow, sums);
+        reader.fluxes(leaf).add(found, narrow, sums);
     });
     return radiiOf(sums);
 }
@@ -333,9 +346,10 @@ void PhotonMap::visitAccepted(const Vec3f& position, const Vec3f& normal, float 
                               NearestPhotons& nearest, const Visit& visit) const {
     const float reach = radius * radius;
     const PhotonGate gate = this->gate(position, normal);
+    LeafReader reader(m_tree);
     const auto visitLeaf = [&](std::uint32_t leaf) {
         std::array<float, PhotonLeaf::kSize> distances;
-        std::uint32_t found = m_tree.leaves[leaf].findWithin(gate, reach, distances.data());
+        std::uint32_t found = reader.places(leaf).findWithin(gate, reach, distances.data());
         for (; found != 0; found &= found - 1) {
             const auto i = static_cast<std::uint32_t>(std::countr_zero(found));
             visit(leaf * PhotonLeaf::kSize + i, distances[i]);

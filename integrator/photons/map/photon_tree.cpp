@@ -356,6 +356,10 @@ class Builder {
 
 }  // namespace
 
+std::uint64_t treeBuildBytes(std::uint64_t photons) {
+    return 2 * bigArrayBytes<Entry>(photons) + bigArrayBytes<std::uint8_t>(photons);
+}
+
 PhotonTree buildPhotonTree(std::span<const Photon> photons, const CancelCheck& cancel) {
     PhotonTree tree;
     if (photons.empty()) return tree;

@@ -124,6 +124,7 @@ class PhotonWalk {
     // Returns the flux that landed as asked for, W, summed over the channels.
     double walk(const EmittedPhoton& photon, std::uint32_t index, Sampler& sampler,
                 Batch& batch) const {
+        const CacheWatch::As as(CacheUser::kPhoton);
         Waiting waiting;
         Part& first = waiting.parts[waiting.count++];
         first = {photon.ray, photon.flux, {.index = index}};
@@ -437,6 +438,46 @@ void join(std::vector<Batch>& batches, std::vector<T> Batch::*member, BigVector<
     });
 }
 
+// The first round's batches, and the fewest of any.
+constexpr std::size_t kFirstRound = 16;
+// Of what a round gave there are its batches, which have grown, and what is joined of them.
+constexpr std::uint64_t kCopies = 3;
+
+// Those of the request from batch `first` on, in parallel.
+void traceBatches(const PhotonWalk& walk, const PhotonTraceRequest& request, std::size_t first,
+                  std::vector<Batch>& batches, const std::atomic<bool>& cancelled,
+                  const std::function<void(double)>& progress) {
+    const auto all = static_cast<double>((request.count + kBatchSize - 1) / kBatchSize);
+    std::mutex progressMutex;
+    std::size_t done = first;
+    tbb::parallel_for(std::size_t{0}, batches.size(), [&](std::size_t b) {
+        if (cancelled.load(std::memory_order_relaxed)) return;
+        const std::uint64_t end = std::min(request.count, (first + b + 1) * kBatchSize);
+        // Where next to nothing is absorbed a single photon takes its time.
+        for (std::uint64_t i = (first + b) * kBatchSize;
+             i < end && !cancelled.load(std::memory_order_relaxed); ++i)
+            walk.trace(i, batches[b]);
+        if (!progress) return;
+        const std::lock_guard lock(progressMutex);
+        progress(static_cast<double>(++done) / all);
+    });
+}
+
+PhotonTraceResult joined(std::vector<Batch>& batches, const CancelCheck& check) {
+    PhotonTraceResult part;
+    join(batches, &Batch::photons, part.photons, check);
+    join(batches, &Batch::descended, part.descended, check);
+    join(batches, &Batch::received, part.received, check);
+    join(batches, &Batch::records, part.records, check);
+    return part;
+}
+
+std::uint64_t bytesOf(const PhotonTraceResult& part) {
+    return (part.photons.size() + part.descended.size()) * sizeof(Photon) +
+           part.received.size() * sizeof(ReceivedPhoton) +
+           part.records.size() * sizeof(EmissionRecord);
+}
+
 }  // namespace
 
 PhotonBalance& PhotonBalance::operator+=(const PhotonBalance& other) {
@@ -451,40 +492,49 @@ PhotonBalance& PhotonBalance::operator+=(const PhotonBalance& other) {
     return *this;
 }
 
+PhotonTraceResult traceInRounds(const Scene& scene, const LightSampler& lights,
+                                const PhotonTraceRequest& request,
+                                const std::atomic<bool>& cancelled,
+                                const std::function<void(double)>& progress,
+                                const TraceRounds& rounds) {
+    PhotonTraceResult sums;
+    if (request.aim) sums.focus = request.aim->focus();
+    if (request.count == 0 || lights.empty()) return sums;
+    const PhotonWalk walk(scene, lights, request);
+    const CancelCheck check(cancelled);
+    const std::size_t batchCount = (request.count + kBatchSize - 1) / kBatchSize;
+    std::size_t size = rounds.bytes == TraceRounds::kAll ? batchCount : kFirstRound;
+    for (std::size_t first = 0; first < batchCount;) {
+        std::vector<Batch> batches(std::min(size, batchCount - first));
+        traceBatches(walk, request, first, batches, cancelled, progress);
+        check.throwIfSet("tracing photons");
+        PhotonTraceResult part = joined(batches, check);
+        for (const Batch& batch : batches) {
+            sums.balance += batch.balance;
+            sums.metCaster += batch.metCaster;
+        }
+        first += batches.size();
+        size = std::max(kFirstRound,
+                        static_cast<std::size_t>(static_cast<double>(rounds.bytes / kCopies) *
+                                                 static_cast<double>(batches.size()) /
+                                                 static_cast<double>(bytesOf(part) + 1)));
+        rounds.take(std::move(part));
+    }
+    return sums;
+}
+
 PhotonTraceResult tracePhotons(const Scene& scene, const LightSampler& lights,
                                const PhotonTraceRequest& request,
                                const std::atomic<bool>& cancelled,
                                const std::function<void(double)>& progress) {
-    PhotonTraceResult result;
-    if (request.aim) result.focus = request.aim->focus();
-    if (request.count == 0 || lights.empty()) return result;
-    const PhotonWalk walk(scene, lights, request);
-    const std::size_t batchCount = (request.count + kBatchSize - 1) / kBatchSize;
-    std::vector<Batch> batches(batchCount);
-    std::mutex progressMutex;
-    std::size_t done = 0;
-    tbb::parallel_for(std::size_t{0}, batchCount, [&](std::size_t b) {
-        if (cancelled.load(std::memory_order_relaxed)) return;
-        const std::uint64_t end = std::min(request.count, (b + 1) * kBatchSize);
-        // Where next to nothing is absorbed a single photon takes its time.
-        for (std::uint64_t i = b * kBatchSize;
-             i < end && !cancelled.load(std::memory_order_relaxed); ++i)
-            walk.trace(i, batches[b]);
-        if (!progress) return;
-        const std::lock_guard lock(progressMutex);
-        progress(static_cast<double>(++done) / static_cast<double>(batchCount));
-    });
-    const CancelCheck check(cancelled);
-    check.throwIfSet("tracing photons");
-    join(batches, &Batch::photons, result.photons, check);
-    join(batches, &Batch::descended, result.descended, check);
-    join(batches, &Batch::received, result.received, check);
-    join(batches, &Batch::records, result.records, check);
-    for (const Batch& batch : batches) {
-        result.balance += batch.balance;
-        result.metCaster += batch.metCaster;
-    }
-    return result;
+    PhotonTraceResult all;
+    const PhotonTraceResult sums =
+        traceInRounds(scene, lights, request, cancelled, progress,
+                      {TraceRounds::kAll, [&](PhotonTraceResult part) { all = std::move(part); }});
+    all.balance = sums.balance;
+    all.focus = sums.focus;
+    all.metCaster = sums.metCaster;
+    return all;
 }
 
 }  // namespace pm

@@ -87,4 +87,20 @@ PhotonTraceResult tracePhotons(const Scene& scene, const LightSampler& lights,
                                const std::atomic<bool>& cancelled,
                                const std::function<void(double)>& progress);
 
+// What was traced is taken in rounds.
+struct TraceRounds {
+    static constexpr std::uint64_t kAll = ~std::uint64_t{0};  // one round
+
+    std::uint64_t bytes = kAll;  // about so many at once, copies included; at least 8192 photons'
+    // Takes the photons and records of a round, which follow those of the round before.
+    std::function<void(PhotonTraceResult part)> take;
+};
+// tracePhotons() in rounds; returns all but photons and records. The same bits for any rounds.
+// Errors: those of take, too.
+PhotonTraceResult traceInRounds(const Scene& scene, const LightSampler& lights,
+                                const PhotonTraceRequest& request,
+                                const std::atomic<bool>& cancelled,
+                                const std::function<void(double)>& progress,
+                                const TraceRounds& rounds);
+
 }  // namespace pm

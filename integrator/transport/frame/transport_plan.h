@@ -68,6 +68,15 @@ struct Plan {
     std::uint64_t pilotMapBytes() const;
     std::uint64_t passMapBytes(std::uint32_t pass) const;
 
+    // Where maps of global, caustic and refocused photons are in pages: those of one pass, ...
+    std::uint64_t pagedBytes() const;
+    // ... and of the pilots, which stay; ...
+    std::uint64_t pagedPilotBytes() const;
+    // ... what the maps of passes first to last take beside, with pointBytes of gather points each;
+    // without what they are built in, which is the pages' business.
+    std::uint64_t bytesBesidePages(std::uint32_t first, std::uint32_t last,
+                                   std::uint64_t pointBytes) const;
+
     // Emitted once a render, to find the radii of the estimates.
     std::uint64_t globalPilotPhotons() const;
     std::uint64_t causticPilotPhotons() const;

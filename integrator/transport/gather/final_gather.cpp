@@ -72,6 +72,7 @@ void setEnd(const Scene& scene, const GatherEnds& ends, const GatherWay& way, co
 
 Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray, float cosine,
                       Sampler& sampler) {
+    const CacheWatch::As as(CacheUser::kGather);
     Gathered result;
     GatherWay way{PathWalk(ray, scene.coneAround(ray.direction, ends.width)), {}};
     bool atOnce = true;

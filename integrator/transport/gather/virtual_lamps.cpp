@@ -85,6 +85,7 @@ TwoRadii VirtualLamps::gathered(const Vec3f& position, const Vec3f& normal, floa
 // and the share of light that comes from there. False: something is in the way.
 bool VirtualLamps::reach(const Ray& ray, const Vec3f& place, float tolerance, Surface& met,
                          float& share) const {
+    const CacheWatch::As as(CacheUser::kShadow);
     share = 1.0f;
     Ray next = ray;
     RayFootprint footprint = m_scene.coneAround(ray.direction);

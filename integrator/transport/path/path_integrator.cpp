@@ -14,6 +14,7 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler,
     LastScatter last;
     last.direction = ray.direction;
     while (true) {
+        const CacheWatch::As as(path.user());
         Surface surface;
         ++result.rays;
         if (!m_scene.intersect(path.ray, surface, &path.footprint)) {

@@ -42,6 +42,10 @@ struct PathWalk : Carried {
                  Sampler& sampler, bool isPart = false);
     // It ended for the number of its events: what it would have found is missing.
     bool isCut() const { return m_isCut; }
+    // For caches that it asks.
+    CacheUser user() const {
+        return m_events.count() > 0 ? CacheUser::kBounce : CacheUser::kCamera;
+    }
 
   private:
     EventCount m_events;

@@ -126,6 +126,7 @@ void PhotonIntegrator::follow(Branch& branch, const Tree& tree) const {
     PathWalk& path = branch.path;
     SampleRadiance& result = tree.result;
     while (true) {
+        const CacheWatch::As as(path.user());
         Surface surface;
         ++result.rays;
         const PathClass found = branch.state.classify();

@@ -11,13 +11,6 @@
 
 namespace pm {
 
-std::vector<Photon> refocusedOf(std::span<const Photon> descended) {
-    std::vector<Photon> found;
-    std::ranges::copy_if(descended, std::back_inserter(found),
-                         [](const Photon& photon) { return photon.normal.isMarked(); });
-    return found;
-}
-
 std::vector<Photon> photonsOf(std::span<const ReceivedPhoton> received) {
     std::vector<Photon> photons(received.size());
     std::ranges::transform(received, photons.begin(), &ReceivedPhoton::photon);
@@ -33,27 +26,35 @@ BigVector<Photon> join(std::span<const Photon> first, std::span<const Photon> se
     return all;
 }
 
-PhotonTraceResult joinHalves(PhotonTraceResult first, PhotonTraceResult second) {
-    for (Photon& photon : second.photons) photon.normal.mark();
-    PhotonTraceResult both;
-    both.photons = join(first.photons, second.photons);
-    both.descended = join(first.descended, second.descended);
-    for (BigVector<Photon>* const photons : {&both.photons, &both.descended})
+void halve(PhotonTraceResult& part, bool isSecond) {
+    if (isSecond)
+        for (Photon& photon : part.photons) photon.normal.mark();
+    for (BigVector<Photon>* const photons : {&part.photons, &part.descended})
         for (Photon& photon : *photons) photon.flux *= 0.5f;
-    both.received = std::move(first.received);
-    for (ReceivedPhoton& received : both.received) received.photon.normal.unmark();
-    for (ReceivedPhoton& received : second.received) {
-        received.photon.normal.mark();
-        both.received.push_back(received);
+    for (ReceivedPhoton& received : part.received) {
+        if (isSecond)
+            received.photon.normal.mark();
+        else
+            received.photon.normal.unmark();
+        received.photon.flux *= 0.5f;
     }
-    for (ReceivedPhoton& received : both.received) received.photon.flux *= 0.5f;
-    both.balance = first.balance;
-    both.balance += second.balance;
-    for (double* const flux : {&both.balance.fluxEmitted, &both.balance.fluxAbsorbed,
-                               &both.balance.fluxEscaped, &both.balance.fluxLost})
+}
+
+PhotonBalance ofHalves(PhotonBalance first, const PhotonBalance& second) {
+    first += second;
+    for (double* const flux :
+         {&first.fluxEmitted, &first.fluxAbsorbed, &first.fluxEscaped, &first.fluxLost})
         *flux *= 0.5;
-    both.focus = first.focus;
-    return both;
+    return first;
+}
+
+void append(PhotonTraceResult& all, PhotonTraceResult part) {
+    const auto add = [](BigVector<Photon>& photons, BigVector<Photon>& more) {
+        photons = photons.empty() ? std::move(more) : join(photons, more);
+    };
+    add(all.photons, part.photons);
+    add(all.descended, part.descended);
+    all.received.insert(all.received.end(), part.received.begin(), part.received.end());
 }
 
 }  // namespace pm

@@ -11,17 +11,19 @@
 
 namespace pm {
 
-// Of the photons that are descended from caustics, those that have been refocused, in their order.
-std::vector<Photon> refocusedOf(std::span<const Photon> descended);
-
 // Those that glossy lobes received, as a pilot of radii takes them.
 std::vector<Photon> photonsOf(std::span<const ReceivedPhoton> received);
 
 // The second after the first. Works in parallel in the calling TBB arena.
 BigVector<Photon> join(std::span<const Photon> first, std::span<const Photon> second);
 
-// As one the two halves of a pilot, traced independently of each other; the photons of the second
-// are marked. Each half is of all the light, so that both together have half of their flux.
-PhotonTraceResult joinHalves(PhotonTraceResult first, PhotonTraceResult second);
+// A pilot is traced in two halves, independently of each other; each is of all the light, so that
+// both together have half of their flux. Halves that of a part; the photons of the second are
+// marked.
+void halve(PhotonTraceResult& part, bool isSecond);
+// What becomes of the light of both.
+PhotonBalance ofHalves(PhotonBalance first, const PhotonBalance& second);
+// What a round gave, behind what those before it gave.
+void append(PhotonTraceResult& all, PhotonTraceResult part);
 
 }  // namespace pm

@@ -72,9 +72,10 @@ std::uint64_t PhotonPass::PassMaps::memoryBytes() const {
 // A map of so many photons was just built, as the last one of these.
 void PhotonPass::noteBuilding(const PassMaps& maps, std::size_t photons) {
     const std::lock_guard lock(m_mutex);
-    m_peakMapBytes = std::max(m_peakMapBytes, heldMapBytes() + maps.memoryBytes() +
-                                                  photons * (PhotonMap::kBytesPerPhoton -
-                                                             PhotonMap::kHeldBytesPerPhoton));
+    const std::uint64_t building =
+        m_paging ? m_paging->mostBuildBytes()
+                 : photons * (PhotonMap::kBytesPerPhoton - PhotonMap::kHeldBytesPerPhoton);
+    m_peakMapBytes = std::max(m_peakMapBytes, heldMapBytes() + maps.memoryBytes() + building);
 }
 
 // Patches and gather points grow as a pass is rendered.
@@ -84,6 +85,7 @@ std::uint64_t PhotonPass::heldMapBytes() const {
          {m_causticRadius.get(), m_refocusedRadius.get(), m_receivedRadius.get()})
         if (radius) held += radius->memoryBytes();
     for (const PassMaps& maps : m_held) held += maps.memoryBytes();
+    if (m_paging) held += m_paging->counts().bytesHeld;
     return held;
 }
 
@@ -105,7 +107,7 @@ void PhotonPass::dropMaps() {
 }
 
 PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
-                                    Control& control) {
+                                    Control& control, const TraceRounds& rounds) {
     const Stopwatch watch;
     const auto part = [&](double fraction) {
         if (control.progress)
@@ -122,9 +124,16 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
     PhotonTraceResult result =
         m_source ? m_source->read(kind, pass, control.cancelled)
         : kind == PhotonKind::kCausticPilot
-            ? tracePilotOfCaustics(request, control, part)
-            : tracePhotons(m_scene, m_lights, request, control.cancelled, part);
-    if (m_source) part(1.0);
+            ? tracePilotOfCaustics(request, control, part, rounds)
+            : traceInRounds(m_scene, m_lights, request, control.cancelled, part, rounds);
+    if (m_source) {
+        part(1.0);
+        // What a source gives comes at once.
+        PhotonTraceResult rest;
+        rest.balance = result.balance;
+        rest.focus = result.focus;
+        rounds.take(std::exchange(result, std::move(rest)));
+    }
     control.photonsBefore += count;
     this->count(kind, result.balance);
     const std::lock_guard lock(m_mutex);
@@ -132,23 +141,45 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
     return result;
 }
 
+PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
+                                    Control& control) {
+    PhotonTraceResult all;
+    const PhotonTraceResult rest =
+        trace(kind, count, pass, control,
+              {TraceRounds::kAll, [&](PhotonTraceResult part) { append(all, std::move(part)); }});
+    all.balance = rest.balance;
+    all.focus = rest.focus;
+    return all;
+}
+
+// In files where maps are in pages.
+PhotonPass::ForMaps PhotonPass::traceForMaps(PhotonKind kind, std::uint64_t count,
+                                             std::uint32_t pass, Control& control) {
+    ForMaps traced{TracedPhotons(m_paging), TracedPhotons(m_paging), {}};
+    TraceRounds rounds;
+    if (m_paging) rounds.bytes = m_paging->buildBudget();
+    rounds.take = [&](PhotonTraceResult part) {
+        traced.photons.append(std::move(part.photons));
+        traced.descended.append(std::move(part.descended));
+        traced.received.insert(traced.received.end(), part.received.begin(), part.received.end());
+    };
+    traced.focus = trace(kind, count, pass, control, rounds).focus;
+    return traced;
+}
+
 // Returns the descended photons, which gather rays read beside the global ones.
-BigVector<Photon> PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
-    PhotonTraceResult traced =
-        trace(PhotonKind::kCaustic, m_plan.causticPhotons, maps.pass, control);
+TracedPhotons PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
+    ForMaps traced = traceForMaps(PhotonKind::kCaustic, m_plan.causticPhotons, maps.pass, control);
     const Stopwatch watch;
     const CancelCheck check(control.cancelled);
     const float factor = radiusFactor(maps.pass);
     const std::size_t landed = traced.photons.size();
-    maps.caustic = std::make_unique<CausticMap>(traced.photons, *m_causticRadius, factor,
-                                                m_patches.get(), check);
-    BigVector<Photon>().swap(traced.photons);
+    maps.caustic = std::make_unique<CausticMap>(traced.photons.intoMap(check), *m_causticRadius,
+                                                factor, m_patches.get());
     noteBuilding(maps, landed);
     if (m_plan.receivedMap) {
-        maps.received = std::make_unique<ReceivedMap>(
-            m_scene, std::vector(traced.received.begin(), traced.received.end()), *m_receivedRadius,
-            factor, check);
-        BigVector<ReceivedPhoton>().swap(traced.received);
+        maps.received = std::make_unique<ReceivedMap>(m_scene, std::move(traced.received),
+                                                      *m_receivedRadius, factor, check);
         noteBuilding(maps, maps.received->size());
     }
     if (m_plan.descent > 0.0f) {
@@ -156,8 +187,8 @@ BigVector<Photon> PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
         maps.lamps = std::make_unique<VirtualLamps>(m_scene, maps.caustic->photons(),
                                                     radius * factor, patchesOfSites(radius), factor,
                                                     combineBits(m_settings.seed, maps.pass), check);
-        maps.refocusedPhotons = std::make_unique<PhotonMap>(refocusedOf(traced.descended), check,
-                                                            m_scene.coreRadiusIfAny());
+        maps.refocusedPhotons = std::make_unique<PhotonMap>(
+            traced.descended.refocused().intoMap(check, m_scene.coreRadiusIfAny()));
         maps.refocused = std::make_unique<SurfaceEstimate>(m_scene, *maps.refocusedPhotons,
                                                            m_refocusedRadius->typical() * factor);
         noteBuilding(maps, maps.refocusedPhotons->size());
@@ -175,14 +206,13 @@ const SurfacePatches* PhotonPass::patchesOfSites(float radius) const {
     return m_scene.meanTriangleArea() > disc ? m_patches.get() : nullptr;
 }
 
-void PhotonPass::buildIndirect(PassMaps& maps, BigVector<Photon> descended, Control& control) {
-    PhotonTraceResult traced = trace(PhotonKind::kGlobal, m_plan.globalPhotons, maps.pass, control);
+void PhotonPass::buildIndirect(PassMaps& maps, TracedPhotons descended, Control& control) {
+    ForMaps traced = traceForMaps(PhotonKind::kGlobal, m_plan.globalPhotons, maps.pass, control);
     const Stopwatch watch;
     const float factor = radiusFactor(maps.pass);
-    if (!descended.empty()) traced.photons = join(traced.photons, descended);
-    BigVector<Photon>().swap(descended);
-    maps.global = std::make_unique<PhotonMap>(traced.photons, CancelCheck(control.cancelled),
-                                              m_scene.coreRadiusIfAny());
+    traced.photons.append(std::move(descended));
+    maps.global = std::make_unique<PhotonMap>(
+        traced.photons.intoMap(CancelCheck(control.cancelled), m_scene.coreRadiusIfAny()));
     noteBuilding(maps, maps.global->size());
     maps.sites = std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor,
                                                    patchesOfSites(m_globalRadius), factor, m_focus);
@@ -211,7 +241,7 @@ void PhotonPass::buildMaps(std::uint32_t pass, Control& control) {
         m_peakMapBytes = peakMapBytes();
         m_patches->makeRoom();
     }
-    BigVector<Photon> descended;
+    TracedPhotons descended(m_paging);
     if (m_plan.causticMap) descended = buildCaustics(maps, control);
     if (m_plan.globalMap) buildIndirect(maps, std::move(descended), control);
     const std::lock_guard lock(m_mutex);

@@ -17,6 +17,7 @@
 #include "integrator/photons/estimate/irradiance_sites.h"
 #include "integrator/photons/estimate/received_map.h"
 #include "integrator/photons/map/photon_map.h"
+#include "integrator/photons/map/photon_pages.h"
 #include "integrator/photons/trace/photon_store.h"
 #include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/scene/camera.h"
@@ -24,6 +25,7 @@
 #include "integrator/transport/frame/render_settings.h"
 #include "integrator/transport/frame/transport_plan.h"
 #include "integrator/transport/photon/photon_integrator.h"
+#include "integrator/transport/photon/traced_photons.h"
 #include "integrator/values/notice.h"
 
 namespace pm {
@@ -41,6 +43,7 @@ class PhotonPass {
 
     // As FrameRenderer::readPhotons and tracePass.
     void readFrom(const PhotonSource& source) { m_source = &source; }
+    void pageMaps(PhotonPaging& paging) { m_paging = &paging; }
     void traceInto(PhotonSink& sink, std::uint32_t pass, const std::atomic<bool>& cancelled,
                    const std::function<void(double)>& progress);
 
@@ -88,21 +91,33 @@ class PhotonPass {
         std::uint64_t memoryBytes() const;
     };
     // Photons of one kind, traced, or read where there is a source of them.
+    // rounds: take the photons; what is returned has none.
+    PhotonTraceResult trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
+                            Control& control, const TraceRounds& rounds);
+    // All at once.
     PhotonTraceResult trace(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
                             Control& control);
+    struct ForMaps {
+        TracedPhotons photons, descended;
+        std::vector<ReceivedPhoton> received;
+        Focus focus{};
+    };
+    ForMaps traceForMaps(PhotonKind kind, std::uint64_t count, std::uint32_t pass,
+                         Control& control);
     PhotonTraceResult tracePilotOfCaustics(PhotonTraceRequest request, const Control& control,
-                                           const std::function<void(double)>& progress) const;
-    BigVector<Photon> buildCaustics(PassMaps& maps, Control& control);
+                                           const std::function<void(double)>& progress,
+                                           const TraceRounds& rounds) const;
+    TracedPhotons buildCaustics(PassMaps& maps, Control& control);
     // At which gather rays read caustics.
     float radiusOfGathered() const;
     const SurfacePatches* patchesOfSites(float radius) const;
-    void buildIndirect(PassMaps& maps, BigVector<Photon> descended, Control& control);
+    void buildIndirect(PassMaps& maps, TracedPhotons descended, Control& control);
     void findFocus(const CancelCheck& check);
     void aim(Control& control);
-    BigVector<Photon> findCausticRadii(float fallback, Control& control);
+    TracedPhotons findCausticRadii(float fallback, Control& control);
     void chooseGatherRays(const PhotonMap& pilot, const CancelCheck& check);
     void findRadii(Control& control);
-    void findGlobalRadius(std::span<const Photon> pilot, float fallback, const CancelCheck& check);
+    void findGlobalRadius(TracedPhotons pilot, float fallback, const CancelCheck& check);
     void buildMaps(std::uint32_t pass, Control& control);
     void count(PhotonKind kind, const PhotonBalance& balance);
 
@@ -117,6 +132,7 @@ class PhotonPass {
     const Plan& m_plan;
     const RenderSettings& m_settings;
     const PhotonSource* m_source = nullptr;  // null: photons are traced
+    PhotonPaging* m_paging = nullptr;        // null: maps are in memory
     bool m_pilotsAreKept = false;            // by the sink
     // Of the first pass, scene units.
     bool m_haveRadii = false;

@@ -27,13 +27,6 @@ constexpr float kRadiusOfGathered = 2.0f;
 // Caustics' radii, which rise slowly beside bright light, are to hold so many times K photons.
 constexpr double kSoughtInCaustics = 1.6;
 
-BigVector<Photon> inFocus(std::span<const Photon> photons, const Focus& focus) {
-    BigVector<Photon> found;
-    for (const Photon& photon : photons)
-        if (focus.levelAt(photon.position) == 0) found.push_back(photon);
-    return found;
-}
-
 // Where a pilot finds next to nothing, estimates reach a hundredth of what is in focus.
 float fallbackIn(const Focus& focus) {
     return 0.01f / std::sqrt(focus.inverseRadiusSquared);
@@ -97,65 +90,74 @@ void PhotonPass::chooseGatherRays(const PhotonMap& pilot, const CancelCheck& che
 }
 
 // In two halves: what one shows of where light is uneven, the other can be asked about.
-PhotonTraceResult PhotonPass::tracePilotOfCaustics(
-    PhotonTraceRequest request, const Control& control,
-    const std::function<void(double)>& progress) const {
+PhotonTraceResult PhotonPass::tracePilotOfCaustics(PhotonTraceRequest request,
+                                                   const Control& control,
+                                                   const std::function<void(double)>& progress,
+                                                   const TraceRounds& rounds) const {
     request.count = (request.count + 1) / 2;
-    PhotonTraceResult first = tracePhotons(m_scene, m_lights, request, control.cancelled,
-                                           [&](double fraction) { progress(0.5 * fraction); });
+    const auto traceHalf = [&](bool isSecond) {
+        const TraceRounds halved{rounds.bytes, [&](PhotonTraceResult part) {
+                                     halve(part, isSecond);
+                                     rounds.take(std::move(part));
+                                 }};
+        return traceInRounds(
+            m_scene, m_lights, request, control.cancelled,
+            [&](double fraction) { progress(0.5 * (fraction + (isSecond ? 1.0 : 0.0))); }, halved);
+    };
+    PhotonTraceResult both = traceHalf(false);
     request.pass = kPilotOfSecondHalf;
-    PhotonTraceResult second =
-        tracePhotons(m_scene, m_lights, request, control.cancelled,
-                     [&](double fraction) { progress(0.5 + 0.5 * fraction); });
-    return joinHalves(std::move(first), std::move(second));
+    both.balance = ofHalves(both.balance, traceHalf(true).balance);
+    return both;
 }
 
 // Of caustics and of refocused light. Returns the pilot's descended photons.
-BigVector<Photon> PhotonPass::findCausticRadii(float fallback, Control& control) {
+TracedPhotons PhotonPass::findCausticRadii(float fallback, Control& control) {
     if (!m_source) aim(control);
     const CancelCheck check(control.cancelled);
-    PhotonTraceResult pilot =
-        trace(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(), kPilotOfRadii, control);
+    ForMaps pilot = traceForMaps(PhotonKind::kCausticPilot, m_plan.causticPilotPhotons(),
+                                 kPilotOfRadii, control);
     const auto sought = static_cast<std::uint32_t>(kSoughtInCaustics * m_settings.estimatePhotons);
-    m_causticRadius = std::make_unique<PilotRadius>(pilot.photons, sought, fallback, check);
+    m_causticRadius =
+        std::make_unique<PilotRadius>(pilot.photons.intoMap(check), sought, fallback, check);
     if (m_plan.receivedMap)
         m_receivedRadius =
             std::make_unique<PilotRadius>(photonsOf(pilot.received), sought, fallback, check);
     if (m_plan.descent > 0.0f)
-        m_refocusedRadius =
-            std::make_unique<PilotRadius>(refocusedOf(pilot.descended), sought, fallback, check);
+        m_refocusedRadius = std::make_unique<PilotRadius>(
+            pilot.descended.refocused().intoMap(check), sought, fallback, check);
     return std::move(pilot.descended);
 }
 
 // Of what is in focus; gather rays read what is beyond, too.
-void PhotonPass::findGlobalRadius(std::span<const Photon> pilot, float fallback,
-                                  const CancelCheck& check) {
+void PhotonPass::findGlobalRadius(TracedPhotons pilot, float fallback, const CancelCheck& check) {
     if (m_focus.isEverywhere()) {
-        const PhotonMap map(pilot, check, m_scene.coreRadiusIfAny());
+        const PhotonMap map = pilot.intoMap(check, m_scene.coreRadiusIfAny());
         m_globalRadius = PilotRadius::typicalOf(map, m_settings.estimatePhotons, fallback);
         chooseGatherRays(map, check);
-    } else {
-        m_globalRadius = PilotRadius::typicalOf(PhotonMap(inFocus(pilot, m_focus), check),
-                                                m_settings.estimatePhotons, fallbackIn(m_focus));
-        chooseGatherRays(PhotonMap(pilot, check, m_scene.coreRadiusIfAny()), check);
+        return;
     }
+    TracedPhotons focused =
+        pilot.those([&](const Photon& photon) { return m_focus.levelAt(photon.position) == 0; });
+    m_globalRadius = PilotRadius::typicalOf(focused.intoMap(check), m_settings.estimatePhotons,
+                                            fallbackIn(m_focus));
+    chooseGatherRays(pilot.intoMap(check, m_scene.coreRadiusIfAny()), check);
 }
 
 void PhotonPass::findRadii(Control& control) {
     // Where a pilot finds next to nothing, estimates reach a hundredth of the scene.
     const auto fallback = static_cast<float>(0.01 * m_scene.coreRadius());
     const CancelCheck check(control.cancelled);
-    BigVector<Photon> global;
+    TracedPhotons global(m_paging);
     if (m_plan.globalMap) {
         if (!m_source) findFocus(check);
-        PhotonTraceResult pilot =
-            trace(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0, control);
+        ForMaps pilot =
+            traceForMaps(PhotonKind::kGlobalPilot, m_plan.globalPilotPhotons(), 0, control);
         // Of photons that are read, that of the view which they were made for.
         m_focus = pilot.focus;
         global = std::move(pilot.photons);
     }
-    if (m_plan.causticMap) global = join(global, findCausticRadii(fallback, control));
-    if (m_plan.globalMap) findGlobalRadius(global, fallback, check);
+    if (m_plan.causticMap) global.append(findCausticRadii(fallback, control));
+    if (m_plan.globalMap) findGlobalRadius(std::move(global), fallback, check);
     // By the sites' radius, so that they know nothing of caustics.
     const bool byCaustics = m_causticRadius && !m_plan.globalMap;
     m_patches = std::make_unique<SurfacePatches>(

@@ -108,6 +108,30 @@ std::uint64_t Plan::memoryBytes(std::uint32_t passes, std::uint64_t pointBytes) 
     return heldMapBytes(passes) + pointBytes * passes + buildingMapBytes() + patchBytes;
 }
 
+std::uint64_t Plan::pagedBytes() const {
+    return (globalLandings() + descendedLandings() + causticLandings() + refocusedLandings()) *
+           PhotonMap::kHeldBytesPerPhoton;
+}
+
+std::uint64_t Plan::pagedPilotBytes() const {
+    return (causticLandings() + refocusedLandings()) / PilotRadius::kPilotShare *
+           PhotonMap::kHeldBytesPerPhoton;
+}
+
+std::uint64_t Plan::bytesBesidePages(std::uint32_t first, std::uint32_t last,
+                                     std::uint64_t pointBytes) const {
+    const auto planes = [](std::uint64_t paged) {
+        return paged / PhotonMap::kHeldBytesPerPhoton * PhotonMap::kPagedBytesPerPhoton;
+    };
+    std::uint64_t bytes =
+        pilotMapBytes() - pagedPilotBytes() + planes(pagedPilotBytes()) + patchBytes +
+        receivedLandings() * (ReceivedMap::kBytesPerPhoton - ReceivedMap::kHeldBytesPerPhoton +
+                              sizeof(ReceivedPhoton));
+    for (std::uint32_t pass = first; pass <= last; ++pass)
+        bytes += passMapBytes(pass) - pagedBytes() + planes(pagedBytes()) + pointBytes;
+    return bytes;
+}
+
 // In the order in which PhotonPass makes the maps; a map's photons go when it is built, before
 // those maps are there that come after it.
 std::uint64_t Plan::buildingMapBytes(std::uint32_t pass) const {

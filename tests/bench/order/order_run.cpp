@@ -51,6 +51,13 @@ class AtomTimes {
     }
 
     std::vector<std::vector<double>> take() { return std::move(m_seconds); }
+    std::vector<std::uint32_t> cells() const {
+        std::vector<std::uint32_t> cells(m_begun.load());
+        for (std::size_t cell = 0; cell < m_places.size(); ++cell)
+            if (!m_seconds[m_places[cell]].empty())
+                cells[m_places[cell]] = static_cast<std::uint32_t>(cell);
+        return cells;
+    }
 
   private:
     std::atomic<std::size_t> m_begun{0};
@@ -132,6 +139,7 @@ BucketTimes OrderScene::render(const BucketSetting& setting) {
     const double prepareStart = processorSeconds();
     times.prepareSeconds = secondsOf([&] { beginPass(setting.threads); });
     times.prepareProcessorSeconds = processorSeconds() - prepareStart;
+    if (setting.prepared) setting.prepared();
     WorkerArena arena(setting.threads);
     const BucketGrid grid(m_settings.window, setting.size);
     const BucketOrder& named = *findBucketOrder(setting.order);
@@ -148,12 +156,16 @@ BucketTimes OrderScene::render(const BucketSetting& setting) {
         // Not elapsed time: what other programs take meanwhile is no part of an atom.
         const double start = threadSeconds();
         Target& target = targets[static_cast<std::size_t>(worker)];
-        target.render(*m_renderer, atom);
+        const auto render = [&] { target.render(*m_renderer, atom); };
+        if (setting.around)
+            setting.around(cell, render);
+        else
+            render();
         copyInto(target, atom, rect, channels, bucket);
         atoms.at(cell, rect, atom) = threadSeconds() - start;
     };
     work.deliver = [](const RenderedBucket&) {};
-    CorrelatedChoice choice(grid, order, setting.threads);
+    CorrelatedChoice choice(grid, order, setting.threads, setting.missing);
     std::vector<double> choiceSeconds(targets.size());
     if (named.isCorrelated) {
         work.choose = [&](int worker) {
@@ -172,6 +184,7 @@ BucketTimes OrderScene::render(const BucketSetting& setting) {
         [&] { times.idleSeconds = runBuckets(arena, grid, order, {}, work).idleSeconds; });
     times.processorSeconds = processorSeconds() - processorStart;
     times.choiceSeconds = std::accumulate(choiceSeconds.begin(), choiceSeconds.end(), 0.0);
+    times.cells = atoms.cells();
     times.atoms = atoms.take();
     return times;
 }

@@ -4,12 +4,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame_renderer.h"
+#include "scheduler/film/correlated_choice.h"
 
 namespace pm::bench {
 
@@ -17,6 +19,11 @@ struct BucketSetting {
     std::string order = "hilbert";
     std::int32_t size = 32;  // pixels
     int threads = 1;
+    // All of these may be empty. Photons and maps are made, the buckets not begun.
+    std::function<void()> prepared;
+    // Renders an atom of a bucket, on the thread that does.
+    std::function<void(std::uint32_t cell, const std::function<void()>& render)> around;
+    CorrelatedChoice::Missing missing;
 };
 
 struct BucketTimes {
@@ -25,6 +32,7 @@ struct BucketTimes {
     double idleSeconds = 0;                                  // of workers at the end, summed
     double choiceSeconds = 0;                // of it, spent choosing (order "correlated")
     std::vector<std::vector<double>> atoms;  // processor seconds of each, by bucket as begun
+    std::vector<std::uint32_t> cells;        // of the buckets as begun
 };
 
 // A scene ready to be rendered again and again. Threads: one call at a time.

@@ -179,6 +179,27 @@ TEST(LimitGroups, AreOfNeighbours) {
 
 // Every shape of OpenSubdiv's, under each rule: all that lies in boxes, and closed where its cage
 // is.
+// Boxes are as wide as the displacement may be; once made, a group is asked for by those rays alone
+// that meet its own box, though it is no longer held.
+TEST(LimitGroups, AreNotMadeAgainForRaysThatPassBy) {
+    const Waves waves(3.0, 0.0);  // of one height everywhere
+    SubdivisionCage cage = withSeams(gridCage(2));
+    LimitGroups groups = groupsOf(cage, {}, {&waves});
+    GroupCache cache(groups.groupCount(), 0);
+    groups.keepIn(cache, 0);
+    const Box3d& box = groups.box(0);
+    const double top = groups.pin(0)->hi().z;
+    ASSERT_LT(top, box.hi.z - 1.0);
+    const Vec3d middle = 0.5 * (box.lo + box.hi);
+    const ShearedRay down(Vec3f(Vec3d{middle.x, middle.y, box.hi.z}), {0, 0, -1});
+    const ShearedRay by(Vec3f(Vec3d{box.lo.x - 1.0, middle.y, top + 0.5}), {1, 0, 0});
+    EXPECT_TRUE(groups.mayMeet(0, down, 0.0, 100.0));
+    EXPECT_FALSE(groups.mayMeet(0, down, 0.0, 0.5)) << "ends before";
+    EXPECT_FALSE(groups.mayMeet(0, by, 0.0, 100.0));
+    LimitGroups other = groupsOf(cage, {}, {&waves});
+    EXPECT_TRUE(other.mayMeet(0, by, 0.0, 100.0)) << "nothing is known yet";
+}
+
 TEST(LimitGroups, OfEveryRegressionShape) {
     const auto files = objFiles(PM_SHARED_DATA "/subdiv");
     if (files.empty()) GTEST_SKIP() << "no ../shared/data/subdiv";

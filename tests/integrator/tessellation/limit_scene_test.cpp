@@ -113,6 +113,19 @@ TEST(LimitScene, CutsNothingThatNoRayMeets) {
     EXPECT_GT(scene->groupCounts().bytesHeld, 10'000u);
 }
 
+TEST(LimitScene, TellsForWhomItCut) {
+    const auto scene = onDemand(gridCage(64), 8).build();
+    Surface surface;
+    const CacheWatch::As as(CacheUser::kGather);
+    ASSERT_TRUE(scene->intersect({{10.3f, 4.1f, 5}, {0, 0, -1}}, surface));
+    ASSERT_TRUE(scene->occluded({{-10.3f, 4.1f, 5}, {0, 0, -1}}));
+    EXPECT_EQ(scene->transmittance({{-10.3f, -14.1f, 5}, {0, 0, -1}}), Rgb(0.0f));
+    const CacheCounts counts = scene->groupCounts();
+    using Misses = std::array<std::uint64_t, kCacheUsers>;
+    EXPECT_EQ(counts.missesOf, (Misses{0, 2, 0, 1, 0}));
+    EXPECT_EQ(counts.misses, 3u);
+}
+
 // What rays from inside of a closed shape miss. The closest a ray can aim: at corners of triangles,
 // where most of them meet.
 std::size_t missedFromInside(const Scene& scene, std::uint64_t rays) {

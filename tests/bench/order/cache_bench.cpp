@@ -1,0 +1,338 @@
+// SPDX-License-Identifier: Apache-2.0
+// SPDX-FileCopyrightText: The pm authors
+// What order gains where memory is short: misses and time of bounded caches, rendered and replayed.
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <map>
+#include <numeric>
+#include <thread>
+
+#include "plugin/session/bucket_needs.h"
+#include "scheduler/buckets/bucket_order.h"
+#include "tests/bench/order/cache_replay.h"
+#include "tests/bench/order/cache_scenes.h"
+#include "tests/bench/order/order_run.h"
+#include "tests/bench/plot/log_plot.h"
+#include "tests/bench/plot/ratios.h"
+#include "tests/bench/plot/report.h"
+
+namespace pm::bench {
+namespace {
+
+constexpr std::int32_t kBucketPixels = 16;
+constexpr std::array<std::uint64_t, 6> kShares{32, 16, 8, 4, 2, 1};  // of the working set
+constexpr std::uint32_t kStoreMicroseconds = 1000;
+constexpr int kRandomSeeds = 5;
+const std::vector<std::string> kPlayed{"hilbert", "row", "random", "correlated"};
+
+// The paper's network: whoever misses waits.
+class PauseWatch : public CacheWatch {
+  public:
+    explicit PauseWatch(std::uint32_t microseconds) : m_microseconds(microseconds) {}
+    void asked(const CacheAsked& what) override {
+        if (what.missed && m_microseconds > 0)
+            std::this_thread::sleep_for(std::chrono::microseconds(m_microseconds));
+    }
+
+  private:
+    std::uint32_t m_microseconds;
+};
+
+struct CacheRun {
+    double seconds = 0;  // of the buckets
+    std::uint64_t misses = 0;
+    std::vector<std::uint32_t> cells;  // as begun
+};
+
+struct Asked {
+    std::string order = "hilbert";
+    std::uint64_t budget = 0;
+    int threads = 1;
+    std::uint32_t pause = 0;  // microseconds a miss
+};
+
+class CacheBench {
+  public:
+    explicit CacheBench(CacheScene scene)
+        : m_scene(std::move(scene)),
+          m_grid(m_scene.settings.window, kBucketPixels),
+          m_order(m_scene.name, m_scene.scene, m_scene.settings) {}
+
+    const CacheScene& scene() const { return m_scene; }
+    const CacheTrace& trace() const { return m_trace; }
+    std::uint64_t workingSet() const { return m_trace.workingSet(); }
+    double secondsOf(std::uint32_t cell) const { return m_seconds[cell]; }
+
+    // Renders with all in memory, and writes down what each bucket asks for.
+    void observe() {
+        const BucketTimes plain = m_order.render(settingOf({.budget = ~std::uint64_t{0} >> 1}));
+        m_seconds.assign(m_grid.cellCount(), 0.0);
+        for (std::size_t i = 0; i < plain.cells.size(); ++i)
+            m_seconds[plain.cells[i]] =
+                std::accumulate(plain.atoms[i].begin(), plain.atoms[i].end(), 0.0);
+        TraceWatch watch(m_grid.cellCount());
+        BucketSetting setting = settingOf({.budget = ~std::uint64_t{0} >> 1});
+        setting.around = [&](std::uint32_t cell, const std::function<void()>& render) {
+            const CacheWatch::Scope scope(&watch);
+            watch.begin(cell);
+            render();
+        };
+        m_order.render(setting);
+        m_trace = watch.take();
+    }
+
+    CacheRun run(const Asked& asked) {
+        BucketSetting setting = settingOf(asked);
+        std::uint64_t before = 0;
+        setting.prepared = [&, inner = setting.prepared] {
+            inner();
+            before = m_scene.misses();
+        };
+        std::unique_ptr<plugin::BucketNeeds> needs;
+        if (asked.order == "correlated" && m_scene.groups) {
+            needs = std::make_unique<plugin::BucketNeeds>(m_grid, *m_scene.groups);
+            setting.missing = [&](std::uint32_t cell) { return needs->missing(cell); };
+        }
+        setting.around = [&](std::uint32_t cell, const std::function<void()>& render) {
+            PauseWatch pause(m_scene.setPause ? 0 : asked.pause);
+            const CacheWatch::Scope scope(&pause);
+            const plugin::BucketNeeds::Noting noting(needs.get(), cell);
+            render();
+        };
+        if (m_scene.setPause) m_scene.setPause(asked.pause);
+        const BucketTimes times = m_order.render(setting);
+        if (m_scene.setPause) m_scene.setPause(0);
+        return {times.seconds, m_scene.misses() - before, times.cells};
+    }
+
+    // seed: of random; correlated: as chosen with an eighth of the working set.
+    std::vector<std::uint32_t> cellsOf(const std::string& order, std::uint64_t seed = 1) {
+        if (order != "correlated")
+            return findBucketOrder(order)->cells(m_grid.columns(), m_grid.rows(), seed);
+        if (m_correlated.empty()) m_correlated = run({.order = order, .budget = budgetOf(8)}).cells;
+        return m_correlated;
+    }
+    std::uint64_t budgetOf(std::uint64_t share) const { return workingSet() / share; }
+
+  private:
+    BucketSetting settingOf(const Asked& asked) {
+        BucketSetting setting{asked.order, kBucketPixels, asked.threads, {}, {}, {}};
+        setting.prepared = [this, budget = asked.budget] {
+            m_scene.empty();
+            m_scene.setBudget(budget);
+        };
+        return setting;
+    }
+
+    CacheScene m_scene;
+    BucketGrid m_grid;
+    OrderScene m_order;
+    CacheTrace m_trace;
+    std::vector<double> m_seconds;  // of each bucket, all in memory
+    std::vector<std::uint32_t> m_correlated;
+};
+
+// Means over seeds where the order has some.
+double missesOf(CacheBench& bench, const std::string& order, const CacheRules& rules) {
+    const int seeds = order == "random" ? kRandomSeeds : 1;
+    double sum = 0;
+    for (int seed = 1; seed <= seeds; ++seed)
+        sum += static_cast<double>(
+            replayCaches(bench.trace(), bench.cellsOf(order, static_cast<std::uint64_t>(seed)),
+                         rules)
+                .misses);
+    return sum / seeds;
+}
+
+void tellMisses(Report& report, CacheBench& bench, const std::string& plotFile) {
+    std::vector<std::string> header{"order"};
+    for (const std::uint64_t share : kShares) header.push_back(fmt::format("1/{}", share));
+    for (const int threads : {1, 2}) {
+        report.table(
+            fmt::format("{}: misses by size of the cache, as a share of the working set "
+                        "({:.0f} MiB, {} {}), replayed, {} thread{}",
+                        bench.scene().name, static_cast<double>(bench.workingSet()) / 0x1p20,
+                        bench.trace().bytes.size(), bench.scene().unit, threads,
+                        threads > 1 ? "s" : ""),
+            header);
+        LogPlot plot;
+        plot.title = bench.scene().name + ": misses by size of the cache";
+        plot.xLabel = "cache over working set";
+        plot.yLabel = "misses";
+        for (const BucketOrder& order : bucketOrders()) {
+            std::vector<std::string> row{std::string(order.name)};
+            PlotLine line{std::string(order.name), {}, false};
+            for (const std::uint64_t share : kShares) {
+                const double misses =
+                    missesOf(bench, std::string(order.name),
+                             {.budget = bench.budgetOf(share), .threads = threads});
+                row.push_back(fmt::format("{:.0f}", misses));
+                line.points.emplace_back(1.0 / static_cast<double>(share), misses);
+            }
+            report.row(row);
+            plot.lines.push_back(std::move(line));
+        }
+        if (threads == 1 && !plotFile.empty()) writeSvg(plotFile, plot);
+    }
+}
+
+void tellUsers(Report& report, std::vector<std::unique_ptr<CacheBench>>& benches) {
+    report.table("Whose misses they are, Hilbert's order, a cache of an eighth of the working set",
+                 {"scene", "camera", "lamps", "paths that go on", "gather rays", "photons"});
+    for (const auto& bench : benches) {
+        const CacheReplay all =
+            replayCaches(bench->trace(), bench->cellsOf("hilbert"), {.budget = bench->budgetOf(8)});
+        std::vector<std::string> row{bench->scene().name};
+        for (const std::uint64_t misses : all.missesOf)
+            row.push_back(fmt::format(
+                "{:.1f} %", 100.0 * static_cast<double>(misses) / static_cast<double>(all.misses)));
+        report.row(row);
+    }
+}
+
+void tellTimes(Report& report, CacheBench& bench, int turns) {
+    std::vector<std::string> header{"cache", "threads", "a miss costs"};
+    for (const std::string& order : kPlayed) header.push_back(order);
+    header.push_back("misses " + kPlayed[0]);
+    header.push_back("replayed over counted, " + kPlayed[0]);
+    for (std::size_t i = 1; i < kPlayed.size(); ++i)
+        header.push_back(fmt::format("time {} / hilbert", kPlayed[i]));
+    report.table(fmt::format("{}: rendered, seconds of the buckets by the clock, median of {} "
+                             "interleaved turns; ratios with their 95 % interval",
+                             bench.scene().name, turns),
+                 header);
+    for (const std::uint64_t share : {32u, 8u, 2u, 1u}) {
+        const std::uint64_t budget = std::max(bench.budgetOf(share), bench.scene().leastBudget);
+        for (const int threads : {1, 2}) {
+            for (const std::uint32_t pause : {0u, kStoreMicroseconds}) {
+                std::vector<std::vector<double>> seconds(kPlayed.size());
+                std::uint64_t misses = 0;
+                for (int turn = 0; turn < turns; ++turn) {
+                    for (std::size_t i = 0; i < kPlayed.size(); ++i) {
+                        const std::size_t at =
+                            (static_cast<std::size_t>(turn) + i) % kPlayed.size();
+                        const CacheRun run = bench.run({kPlayed[at], budget, threads, pause});
+                        seconds[at].push_back(run.seconds);
+                        if (at == 0) misses = run.misses;
+                    }
+                }
+                std::vector<std::string> row{
+                    fmt::format("1/{} ({:.0f} MiB)", share, static_cast<double>(budget) / 0x1p20),
+                    std::to_string(threads), pause > 0 ? "1 ms more" : "as here"};
+                for (const auto& times : seconds) row.push_back(show(spreadOf(times).median));
+                const double replayed =
+                    missesOf(bench, "hilbert", {.budget = budget, .threads = threads});
+                row.push_back(std::to_string(misses));
+                row.push_back(fmt::format("{:.2f}", replayed / static_cast<double>(misses)));
+                for (std::size_t i = 1; i < kPlayed.size(); ++i) {
+                    std::vector<double> ratios;
+                    for (std::size_t turn = 0; turn < seconds[i].size(); ++turn)
+                        ratios.push_back(seconds[i][turn] / seconds[0][turn]);
+                    row.push_back(showRatios(ratios));
+                }
+                report.row(row);
+            }
+        }
+    }
+}
+
+// Each machine renders a run of the order and has a cache of its own; nothing else is shared.
+double secondsOfMachines(CacheBench& bench, const std::vector<std::uint32_t>& cells,
+                         std::size_t machines, std::uint64_t budget) {
+    double most = 0;
+    for (std::size_t machine = 0; machine < machines; ++machine) {
+        const std::size_t begin = cells.size() * machine / machines;
+        const std::size_t end = cells.size() * (machine + 1) / machines;
+        const auto run = std::span(cells).subspan(begin, end - begin);
+        const CacheReplay replay = replayCaches(bench.trace(), run, {.budget = budget});
+        double seconds = 1e-6 * kStoreMicroseconds * static_cast<double>(replay.misses);
+        for (const std::uint32_t cell : run) seconds += bench.secondsOf(cell);
+        most = std::max(most, seconds);
+    }
+    return most;
+}
+
+void tellMachines(Report& report, CacheBench& bench) {
+    report.table(
+        fmt::format("{}: machines, each with one run of the order and a cache of its own, 1 ms a "
+                    "miss; replayed seconds of the slowest, and what Hilbert's order gains over "
+                    "the others",
+                    bench.scene().name),
+        {"cache", "machines", "hilbert", "row", "random", "gain over row", "gain over random"});
+    for (const std::uint64_t share : {32u, 8u, 2u, 1u}) {
+        const std::uint64_t budget = bench.budgetOf(share);
+        for (const std::size_t machines : {1u, 2u, 4u, 8u}) {
+            std::map<std::string, double> seconds;
+            for (const std::string order : {"hilbert", "row", "random"}) {
+                const int seeds = order == "random" ? kRandomSeeds : 1;
+                for (int seed = 1; seed <= seeds; ++seed)
+                    seconds[order] +=
+                        secondsOfMachines(bench,
+                                          bench.cellsOf(order, static_cast<std::uint64_t>(seed)),
+                                          machines, budget) /
+                        seeds;
+            }
+            const auto gain = [&](const char* over) {
+                return fmt::format("{:.0f} %", 100 * (1 - seconds["hilbert"] / seconds[over]));
+            };
+            report.row({fmt::format("1/{}", share), std::to_string(machines),
+                        show(seconds["hilbert"]), show(seconds["row"]), show(seconds["random"]),
+                        gain("row"), gain("random")});
+        }
+    }
+}
+
+int runProgram(int argc, char** argv) {
+    std::string csvFile, docsFile, only, folder = "/tmp", plots;
+    int turns = 3;
+    std::int32_t side = 256;
+    bool quick = false;
+    CLI::App app("Bucket orders where memory is short");
+    app.add_option("--csv", csvFile, "also write the tables to this CSV file");
+    app.add_option("--docs", docsFile, "also put the tables into this Markdown file");
+    app.add_option("--plots", plots, "a folder for plots (none)");
+    app.add_option("--turns", turns, "turns of each rival (3)")->check(CLI::Range(2, 1000));
+    app.add_option("--side", side, "pixels of a picture's side (256)")->check(CLI::Range(32, 4096));
+    app.add_option("--folder", folder, "for pictures of 300 MB (/tmp)");
+    app.add_flag("--quick", quick, "2 turns, 96 pixels");
+    app.add_option("--only", only, "one scene")->check(CLI::IsMember({"landscape", "room"}));
+    CLI11_PARSE(app, argc, argv);
+    try {
+        if (quick) {
+            turns = 2;
+            side = 96;
+        }
+        std::vector<std::unique_ptr<CacheBench>> benches;
+        if (only != "room") benches.push_back(std::make_unique<CacheBench>(landscape(side)));
+        if (only != "landscape")
+            benches.push_back(std::make_unique<CacheBench>(texturedRoom(side, folder)));
+        Report report("pm_bench_order_caches");
+        for (const auto& bench : benches) bench->observe();
+        tellUsers(report, benches);
+        std::size_t number = 0;
+        for (const auto& bench : benches) {
+            const std::string plot =
+                plots.empty() ? "" : fmt::format("{}/cache_misses_{}.svg", plots, ++number);
+            tellMisses(report, *bench, plot);
+            tellMachines(report, *bench);
+            tellTimes(report, *bench, turns);
+        }
+        report.publish(csvFile, docsFile);
+        return 0;
+    } catch (const std::exception& e) {
+        fmt::print(stderr, "pm_bench_order_caches: {}\n", e.what());
+        return 1;
+    }
+}
+
+}  // namespace
+}  // namespace pm::bench
+
+int main(int argc, char** argv) {
+    return pm::bench::runProgram(argc, argv);
+}
