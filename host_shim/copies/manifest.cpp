@@ -40,6 +40,8 @@ std::vector<std::string> placesOf(const Json& json, bool mayBeAll) {
 }
 
 PackedFile fileOf(const Json& json) {
+    if (!json.at("bytes").is_number_unsigned())
+        throw std::runtime_error("'bytes' is no whole number from 0 on");
     PackedFile file{placeOf(json.at("place")), json.at("bytes").get<std::uint64_t>(),
                     json.at("sha256").get<std::string>()};
     if (!isSha256(file.sha256))

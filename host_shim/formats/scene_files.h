@@ -24,7 +24,7 @@ struct SceneFileRules {
     bool isTrusted{true};                            // else nothing is opened that lies elsewhere
     std::vector<std::filesystem::path> alsoAllowed;  // for scenes that are not trusted
     // Absolute names below `was` mean the same below `is`; others mean nothing then.
-    std::optional<MovedFolder> moved;
+    std::optional<MovedFolder> moved{};
 };
 
 // The one place where names in scene files (libraries and pictures) become files that are opened.

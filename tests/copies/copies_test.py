@@ -16,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 import threading
+import time
 import unittest
 
 from server import Server
@@ -157,6 +158,22 @@ class Renders(Copies):
         self.assertNotIn("leaf.png", said)
         self.assertEqual(far, local)
 
+    def test_tiles(self):
+        (self.project / "tex").mkdir()
+        for tile, picture in (("1001", "leaf.png"), ("1002", "checker.png"), ("1011", "checker.png")):
+            shutil.copy(SCENES / picture, self.project / "tex" / f"t.{tile}.png")
+        library = self.project / "scenes.mtl"
+        text = library.read_text()
+        self.assertIn("map_Kd checker.png", text)
+        library.write_text(text.replace("map_Kd checker.png", "map_Kd Tex/t.<UDIM>.png"))
+        local, _ = self.render(self.scene, name="local.exr")
+        self.pack()
+        self.hide_project()
+        self.assertEqual(self.render(self.serve().url())[0], local)
+        places = [file["place"] for file in self.manifest()["files"]]
+        self.assertEqual([place for place in places if place.startswith("tex/")],
+                         ["tex/t.1001.png", "tex/t.1002.png", "tex/t.1011.png"])
+
     def test_parts_of_copies_and_of_the_original_go_together(self):
         self.pack()
         server = self.serve()
@@ -286,8 +303,9 @@ class Faults(Copies):
                                     ({"place": "elsewhere"}, first, "is not among its files"),
                                     ({"place": second + "/x"}, second, "is a file and a folder"),
                                     ({"sha256": "../../x"}, first, "is no SHA-256"),
-                                    ({"bytes": 1 << 60}, first, "are too many"), ({"bytes": -1}, first, "are too many"),
-                                    ({"bytes": "1"}, first, "can't be understood")):
+                                    ({"bytes": 1 << 60}, first, "are too many"), 
+                                    ({"bytes": -1}, first, "no whole number"), ({"bytes": 1e300}, first, "no whole number"),
+                                    ({"bytes": "1"}, first, "no whole number"), ({"bytes": None}, first, "no whole number")):
             manifest = json.loads(json.dumps(good))
             manifest["files"][0].update(change)
             manifest["scene"] = scene
@@ -310,7 +328,12 @@ class Sharing(Copies):
     def test_two_at_once_fetch_once(self):
         self.pack()
         server = self.serve()
+        server.pause = threading.Event()
         workers = [self.start(server.url(), f"{i}.exr") for i in range(3)]
+        while server.asked.count("/manifest.json") < 3:
+            time.sleep(0.01)
+        time.sleep(1)  # all want the same now
+        server.pause.set()
         for worker in workers:
             self.assertEqual(worker.wait(120), 0, worker.stderr.read())
         objects = server.objects()
@@ -323,12 +346,37 @@ class Sharing(Copies):
         server.pause = threading.Event()
         worker = self.start(server.url(), "killed.exr")
         while not any("/objects/" in path for path in server.asked):
-            pass
+            time.sleep(0.01)
         worker.kill()
         worker.wait()
         server.pause.set()
         self.render(server.url())
         self.assertEqual([file for file in self.cached() if ".tmp." in file], [], "what it left is removed")
+
+    def test_interrupted_while_it_fetches(self):
+        self.pack()
+        server = self.serve()
+        server.pause = threading.Event()
+        self.addCleanup(server.pause.set)
+        worker = self.start(server.url(), "interrupted.exr")
+        while not any("/objects/" in path for path in server.asked):
+            time.sleep(0.01)
+        worker.send_signal(signal.SIGINT)
+        self.assertEqual(worker.wait(10), 130)
+        self.assertEqual(self.cached(), [])
+
+    def test_farm_of_a_fetched_scene(self):
+        self.pack()
+        server = self.serve()
+        farm = ("--bucket-size", "8", "--copies", self.copies)
+        local, _ = self.render(self.scene, *farm[:2], name="local.exr")
+        printed = self.host("farm", server.url(), *OPTIONS, *farm, "--engine", "commands", "--job", "job", "--runs", "2",
+                            "-o", "farm.exr").stdout
+        self.hide_project()
+        for command in (line for line in printed.splitlines() if not line.startswith("#")):
+            subprocess.run(command, shell=True, check=True, env=self.variables, cwd=self.folder, capture_output=True)
+        self.assertEqual((self.folder / "farm.exr").read_bytes(), local)
+        self.assertEqual(len(server.objects()), 4)
 
     def test_room_is_made_by_what_is_not_used(self):
         for name in ("a", "b", "c"):

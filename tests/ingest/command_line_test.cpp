@@ -268,10 +268,48 @@ TEST(CommandLine, helpNamesEveryOptionAndAsksThePlugin) {
     EXPECT_NE(text.find(mergeHelpText()), std::string::npos);
     EXPECT_NE(text.find(cacheHelpText()), std::string::npos);
     EXPECT_NE(text.find(checkHelpText()), std::string::npos);
-    EXPECT_TRUE(text.ends_with(farmHelpText()));
+    EXPECT_NE(text.find(farmHelpText()), std::string::npos);
+    EXPECT_NE(text.find(packHelpText()), std::string::npos);
+    EXPECT_TRUE(text.ends_with(watchHelpText()));
     EXPECT_EQ(mergeHelpText().find("SCENE"), std::string::npos) << mergeHelpText();
     EXPECT_TRUE(parseCommandLine({"merge", "-h"}).helpOfMerge);
     EXPECT_FALSE(parseCommandLine({"-h"}).helpOfMerge);
+}
+
+TEST(CommandLine, addressesAreScenes) {
+    const auto output = [](const std::string& scene) {
+        return parseCommandLine({scene}).outputs.at(0).string();
+    };
+    EXPECT_EQ(output("http://server:8000/shots/table/manifest.json"), "table.exr");
+    EXPECT_EQ(output("https://server/table/manifest.json?key=a/b"), "table.exr");
+    EXPECT_EQ(output("http://server:8000/manifest.json"), "picture.exr");
+    EXPECT_EQ(output("http://server"), "picture.exr");
+    EXPECT_EQ(output("file:///srv/packs/table/manifest.json"), "table.exr");
+    EXPECT_EQ(output("http:/table/chair.obj"), "chair.exr") << "a file";
+    // Escaped bytes are no patterns for frames.
+    const std::string escaped = "http://server/%d0%91%20d/manifest.json";
+    EXPECT_EQ(parseCommandLine({escaped}).scene.string(), escaped);
+    EXPECT_EQ(parseCommandLine({"http://s/%20d.%04d/m.json", "--frame", "7"}).scene.string(),
+              "http://s/%20d.0007/m.json");
+    EXPECT_EQ(parseCommandLine({"s.obj", "--copies", "c", "--copies-limit", "0.5"}).copiesGib, 0.5);
+    EXPECT_TRUE(refusal({"--copies-limit", "-1"}).starts_with("2 --copies-limit '-1'"));
+}
+
+TEST(CommandLine, packsAndWatchesWantWhatTheyNeed) {
+    EXPECT_TRUE(parseCommandLine({"pack", "s.obj", "-o", "folder", "--aa", "2"}).pack);
+    const Options watch = parseCommandLine({"watch", "parts", "-o", "p.exr", "--interval", "0.5"});
+    EXPECT_EQ(watch.watch->intervalSeconds, 0.5);
+    EXPECT_EQ(watch.merge, (std::vector<std::filesystem::path>{"parts"}));
+    for (const std::vector<std::string>& words : std::vector<std::vector<std::string>>{
+             {"pack", "s.obj"},
+             {"pack", "-o", "folder"},
+             {"pack", "s.obj", "-o", "a", "-o", "b"},
+             {"pack", "s.obj", "-o", "a", "--frames", "1-2"},
+             {"watch", "p.pmpart"},
+             {"watch", "-o", "p.exr"},
+             {"watch", "p.pmpart", "-o", "p.exr", "--page", "p.txt"}})
+        EXPECT_TRUE(errorOf([&] { parseCommandLine(words); }).starts_with("2 "))
+            << words[0] << " " << words[1];
 }
 
 TEST(CommandLine, checksHaveOptionsOfTheirOwn) {

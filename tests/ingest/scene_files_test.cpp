@@ -119,6 +119,18 @@ TEST_F(SceneFilesTest, WhatIsNotTrustedReadsBelowItsFolderOnly) {
     EXPECT_EQ(found(untrusted, "../scene2/x.png"), "none");
 }
 
+TEST_F(SceneFilesTest, AbsoluteNamesOfASceneThatWasMoved) {
+    SceneFileRules rules{{}, false, {m_world}};
+    rules.moved = {"/project/shots", m_world};
+    EXPECT_EQ(found(rules, "/project/shots/library/blue.png"), "library/blue.png");
+    EXPECT_EQ(found(rules, "/project/shots/Library/BLUE.png"), "library/blue.png");
+    EXPECT_EQ(found(rules, "/project/shots2/secret.png"), "none");
+    // What lies on this machine is not meant, nor what its tail would lead to elsewhere.
+    EXPECT_EQ(found(rules, (m_world / "library/tex/green.png").string()), "none");
+    EXPECT_EQ(found(rules, (m_world / "scene/blue.png").string()), "scene/blue.png") << "its tail";
+    EXPECT_EQ(found(rules, "/project/shots/../shots/secret.png"), "none");
+}
+
 // Libraries and pictures go the same way, and what is refused is told with its line.
 TEST_F(SceneFilesTest, EveryNameOfASceneIsAsked) {
     const std::string geometry = "usemtl m\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
