@@ -197,21 +197,29 @@ def main():
     parser.add_argument("--quick", action="store_true", help="small frames")
     parser.add_argument("--turns", type=int, default=1, help="of each real farm; that which other programs disturb least counts")
     asked = parser.parse_args()
-    size, passes = ("320x180", 2) if asked.quick else ("960x540", 2)
+    size, passes = ("320x180", 2) if asked.quick else ("640x360", 2)
     real_size, real_passes = ("160x120", 16) if asked.quick else ("480x360", 48)
     with tempfile.TemporaryDirectory(prefix="pm farm bench ") as folder:
         bench = Bench(asked.host.resolve(), folder)
-        costs = {"schema": "pm-farm-costs/1", "cores": os.cpu_count(),
-                 "frames": [bench.frame(name, scene, (*options, "--bucket-size", "16"), size, passes) for name, scene, options in FRAMES]}
+        costs = {"schema": "pm-farm-costs/1", "cores": os.cpu_count(), "frames": []}
+        for name, scene, options in FRAMES:
+            costs["frames"].append(bench.frame(name, scene, (*options, "--bucket-size", "16"), size, passes))
         words = ["--size", real_size, "--passes", str(real_passes), "--threads", "1"]
+        costs["preempted"] = bench.preempted([BOX, *words, "-q"])
         costs["sharedSpeed"] = bench.shared_speed([BOX, "--size", real_size, "--passes", "8", "--threads", "1", "-q"])
+        write(asked.out, costs)  # a replay needs no more
         if missing_programs():
             print("measure_farm.py: no real farms: Slurm is not installed", file=sys.stderr)
-        else:
-            costs["real"] = bench.frame("the real one", BOX, (), real_size, real_passes)
-            costs.update(validation(bench, words, asked.turns, costs["real"]))
-        costs["preempted"] = bench.preempted([BOX, *words, "-q"])
-    asked.out.write_text(json.dumps(rounded(costs)) + "\n")
+            return
+        costs["real"] = bench.frame("the real one", BOX, (), real_size, real_passes)
+        costs.update(validation(bench, words, asked.turns, costs["real"]))
+        write(asked.out, costs)
+
+
+def write(file, costs):
+    new = file.with_name(file.name + ".tmp")
+    new.write_text(json.dumps(rounded(costs)) + "\n")
+    new.rename(file)
 
 
 if __name__ == "__main__":
