@@ -244,20 +244,23 @@ void tellFaults(const MeasuredFarm& farm, Report& report) {
 }
 
 void plotScale(const MeasuredFarm& farm, const std::filesystem::path& file) {
-    LogPlot plot{
-        "What a farm gains, replayed", "workers", "times as fast as one worker", {}, 0, ""};
+    LogPlot plot{"An hour's frame on a farm, replayed; photons by each run",
+                 "workers",
+                 "times as fast as one worker",
+                 {},
+                 0,
+                 ""};
     PlotLine ideal{"all of it", {}, true};
     for (const int workers : kWorkers) ideal.points.emplace_back(workers, workers);
     plot.lines.push_back(ideal);
-    for (const double length : kLengths)
-        for (const MeasuredFrame& frame : farm.frames) {
-            const FarmCosts costs = frame.lastingFor(length);
-            PlotLine line{fmt::format("{}, {}", frame.name, lengthName(length)), {}, false};
-            for (const int workers : kWorkers)
-                line.points.emplace_back(
-                    workers, workers * efficiency(costs, rulesOf(farm, workers, kUsual, true)));
-            plot.lines.push_back(line);
-        }
+    for (const MeasuredFrame& frame : farm.frames) {
+        const FarmCosts costs = frame.lastingFor(kHour);
+        PlotLine line{frame.name, {}, false};
+        for (const int workers : kWorkers)
+            line.points.emplace_back(
+                workers, workers * efficiency(costs, rulesOf(farm, workers, kUsual, false)));
+        plot.lines.push_back(line);
+    }
     writeSvg(file, plot);
 }
 
