@@ -327,6 +327,10 @@ void addFarmOptions(CLI::App& app, Typed& typed, Options& options) {
         ->type_name("OPTION")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_flag(
+        "--photons-each", farm.photonsEach,
+        "each run traces all photons; else they are traced once, and a file of them is read "
+        "by all");
     app.add_flag("--dry-run", farm.dryRun, "print what would be done, and do nothing");
 }
 

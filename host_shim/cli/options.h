@@ -60,6 +60,7 @@ struct FarmOptions {
     std::string engine;                     // slurm, parallel or commands
     int runs{0};                            // of each frame; 0 = by predicted cost
     std::filesystem::path job;              // the folder that keeps what is done
+    bool photonsEach{};                     // each run traces its photons
     bool dryRun{};                          // prints what would be done
     int tries{3};                           // of a task
     int atOnce{1};                          // of parallel: tasks on a machine

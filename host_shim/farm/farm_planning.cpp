@@ -100,7 +100,8 @@ class Planning {
         return words;
     }
     void addPhotons(FarmPlan& plan) const {
-        if (!m_pilot.hasPhotons || !m_frames.front().photonMap.empty()) return;
+        if (!m_pilot.hasPhotons || m_farm.photonsEach || !m_frames.front().photonMap.empty())
+            return;
         for (std::size_t i = 0; i < m_frames.size(); ++i) {
             FarmTask task;
             task.kind = FarmTask::Kind::kPhotons;
@@ -135,7 +136,9 @@ class Planning {
         const auto given = static_cast<double>(numberGiven(m_farm, "--photons", 0));
         const double more = given > 0 ? std::max(1.0, given / kPilotPhotons)
                                       : pixels / std::max(m_pilot.pixels, 1.0);
-        return m_pilot.startSeconds + m_pilot.mapSeconds * more * passes;
+        const double ofAPass =
+            m_pilot.mapSeconds + (m_farm.photonsEach ? m_pilot.photonSeconds : 0);
+        return m_pilot.startSeconds + ofAPass * more * passes;
     }
     void addRun(std::size_t frame, const BucketRun& run, double scale, FarmPlan& plan) const {
         FarmTask task;

@@ -49,14 +49,18 @@ class Farm {
                                          : farmCommands(m_plan, m_folder));
             return 0;
         }
+        int code = 0;
         try {
             renderAll();
+            code = writePictures();
         } catch (...) {
             m_engine->cancel();
             writePage();
             throw;
         }
-        const int code = writePictures();
+        // Who has been started twice has nothing left to do. Not earlier: those whose parts have
+        // just come are about to end by themselves.
+        if (!m_engine->unfinished().empty()) m_engine->cancel();
         writePage();
         return code;
     }
@@ -101,8 +105,6 @@ class Farm {
                 toStart = board.open();
             }
         }
-        // One that was started twice has nothing left to do.
-        if (!m_engine->unfinished().empty()) m_engine->cancel();
         progress.update(1, 0);
     }
     void reopenDamaged(TaskBoard& board) {

@@ -20,10 +20,11 @@ const Names& ofTheFarm() {
 
 // Of the picture that is made of parts, or set anew for each task.
 const Names& notOfTasks() {
-    static const Names names{"--output",      "--stats",       "--log",      "--report",
-                             "--reference",   "--error-limit", "--exr-half", "--make-output-path",
-                             "--frame",       "--frames",      "--runs",     "--isa",
-                             "--bucket-size", "--photon-map"};
+    static const Names names{
+        "--output",      "--stats",       "--log",         "--report",
+        "--reference",   "--error-limit", "--exr-half",    "--make-output-path",
+        "--frame",       "--frames",      "--runs",        "--isa",
+        "--bucket-size", "--photon-map",  "--photons-each"};
     return names;
 }
 

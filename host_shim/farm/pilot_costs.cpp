@@ -82,7 +82,9 @@ void readStatistics(const fs::path& file, PilotFindings& findings) {
     findings.hasPhotons = json.at("plan").value("tracePhotons", false);
     const auto& phases = json.at("phases");
     const auto seconds = [&](const char* name) { return phases.value(name, 0.0); };
-    findings.mapSeconds = seconds("mapSeconds") / std::max(json.value("passesDone", 1.0), 1.0);
+    const double passes = std::max(json.value("passesDone", 1.0), 1.0);
+    findings.mapSeconds = seconds("mapSeconds") / passes;
+    findings.photonSeconds = seconds("photonSeconds") / passes;
     findings.startSeconds =
         std::max(0.0, seconds("elapsedSeconds") - seconds("writePicturesSeconds") -
                           seconds("renderSeconds") - seconds("beginPassSeconds"));

@@ -15,6 +15,7 @@ struct PilotFindings {
     double pixels{};                    // that it rendered
     double startSeconds{};              // of the process, until its first pass
     double mapSeconds{};                // a pass
+    double photonSeconds{};             // of tracing, a pass
     std::string isa;                    // of this machine, or the one that was asked for
     bool hasPhotons{};                  // the render reads photons
     bool measuresExposure{};            // a render with these options would measure its exposure

@@ -127,7 +127,7 @@ class Cluster:
             "SwitchType=switch/none", "ReturnToService=2", "SlurmdTimeout=6", "MessageTimeout=5", "KillWait=1",
             "SchedulerParameters=batch_sched_delay=0,bf_interval=1", "SelectType=select/cons_tres",
             "SelectTypeParameters=CR_Core", "PreemptType=preempt/partition_prio", "PreemptMode=REQUEUE",
-            "PropagateResourceLimitsExcept=FSIZE",
+            "PropagateResourceLimitsExcept=FSIZE", "PropagatePrioProcess=1",
         ]
         for name, port in zip(self.nodes, self.ports[1:]):
             address = self.network.address(name) if self.network else LOOPBACK

@@ -68,6 +68,16 @@ class Farms(unittest.TestCase):
         self.assertEqual(other.start().wait(), 2)
         self.assertIn("--seed: not given there, 5 here", other.said())
 
+    @needs_parallel
+    def test_each_run_may_trace_its_photons(self):
+        farm = self.farm("parallel", "--runs", "3", "--photons-each", "-o", "farm.png")
+        self.assert_same_bytes(farm, self.local())
+        self.assertEqual([a.code for a in farm.job.attempts()], [0] * 3)
+        self.assertEqual(list(farm.job.folder.rglob("*.pmphotons")), [])
+        once = self.farm("parallel", "--runs", "3", "-o", "farm.png")
+        self.assertEqual(once.start().wait(), 2, "another plan")
+        self.assertIn("--photons-each", once.said())
+
     def test_runs_cost_about_the_same(self):
         farm = self.farm("commands", "--runs", "4")
         farm.start().wait()

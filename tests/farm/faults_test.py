@@ -262,7 +262,8 @@ class Faults(unittest.TestCase):
         self.assert_same_bytes(farm)
         its = [a for a in farm.job.attempts() if a.task == victim.task]
         self.assertIsNone(its[0].end)
-        self.assertEqual((its[-1].machine, its[-1].code), ("n1", 0))
+        self.assertEqual(its[-1].machine, "n1")
+        self.assertIn(its[-1].code, (0, None))  # its part may come just before its end is noted
         self.assertIn("down", cluster.state_of("n2"))
 
     @long_one

@@ -55,6 +55,7 @@ int runProgram(int argc, char** argv) {
         tellReal(farm, report);
         tellScale(farm, report);
         tellNetworks(farm, report);
+        tellPaper(farm, report);
         tellFaults(farm, report);
         if (!plotFile.empty()) plotScale(farm, plotFile);
         report.publish(csvFile, docsFile);

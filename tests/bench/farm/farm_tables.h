@@ -17,6 +17,8 @@ void tellReal(const MeasuredFarm& farm, Report& report);
 void tellScale(const MeasuredFarm& farm, Report& report);
 // The same by kinds of network, runs for each worker, and with slow workers.
 void tellNetworks(const MeasuredFarm& farm, Report& report);
+// The paper's 1 to 8 computers.
+void tellPaper(const MeasuredFarm& farm, Report& report);
 // What preemption costs, replayed and measured.
 void tellFaults(const MeasuredFarm& farm, Report& report);
 // Draws what tellScale() tells.

@@ -9,6 +9,7 @@ usage: measure_farm.py PM_HOST OUT.json [--quick] [--turns N]
 import argparse
 import csv
 import json
+import math
 import os
 import pathlib
 import signal
@@ -24,12 +25,15 @@ from cluster import Cluster, environment, missing_programs, stop  # noqa: E402
 from job import Farm  # noqa: E402
 
 BOX = ROOT / "scenes" / "cornell_box" / "cornell_box.obj"
+GLASS = ROOT / "scenes" / "caustic_glass" / "caustic_glass.obj"
 FRAMES = (
-    ("a box, photon maps", BOX, ()),
-    ("a box, photon maps, --aa 5", BOX, ("--aa", "5")),
-    ("a box, paths", BOX, ("--integrator", "path")),
-    ("caustics of glass, photon maps, --aa 5", ROOT / "scenes" / "caustic_glass" / "caustic_glass.obj", ("--aa", "5")),
+    ("a box, photon maps", BOX, (), "640x360"),
+    ("a box, photon maps, --aa 5", BOX, ("--aa", "5"), "640x360"),
+    ("a box, paths", BOX, ("--integrator", "path"), "640x360"),
+    ("glass, photon maps, --aa 5", GLASS, ("--aa", "5"), "640x360"),
 )
+BUCKETS = ("--bucket-size", "16")
+TURNS = 3
 WORKERS = (1, 2, 4)
 RUNS = 8
 PREEMPTED_EVERY = 30.0  # processor seconds
@@ -62,38 +66,50 @@ class Bench:
         file = lambda suffix: self.folder / f"frame.{suffix}"
         words = [scene, *options, "--size", size, "--threads", "1", "-q"]
         all_passes = ("--passes", str(passes))
-        whole = self.run(*words, *all_passes, "--bucket-times", file("csv"), "--stats", file("json"), "-o", file("pmpart"))
-        with open(file("csv")) as lines:
-            buckets = [float(row["seconds"]) for row in csv.DictReader(lines)]
-        # Those are elapsed seconds, in which other programs have a part.
-        taken = whole * self.share("renderSeconds") / sum(buckets)
-        buckets = [seconds * taken for seconds in buckets]
-        photons, photon_bytes, reads = 0.0, 0, ()
-        if json.loads(file("json").read_text())["plan"]["tracePhotons"]:
+        whole = photons = start = maps = math.inf
+        buckets = []
+        # Some are elapsed seconds, in which other programs have a part: the least of some turns has little.
+        for _ in range(TURNS):
+            whole = min(whole, self.run(*words, *all_passes, "--bucket-times", file("csv"), "--stats", file("json"),
+                                        "-o", file("pmpart")))
+            with open(file("csv")) as lines:
+                turn = [float(row["seconds"]) for row in csv.DictReader(lines)]
+            buckets = [min(both) for both in zip(buckets or turn, turn)]
+            photons = min(photons, self.phase("photonSeconds"))
+        photon_bytes, reads = 0, ()
+        if photons > 0:
             map_file = file("pmphotons")
             self.run(*words, *all_passes, "--photons-only", "--photon-map", map_file)
             photon_bytes, reads = map_file.stat().st_size, ("--photon-map", map_file)
-            photons = whole * self.share("photonSeconds")
-        # What a run costs besides its buckets.
-        alone = self.run(*words, *all_passes, *reads, "--buckets", "0:1", "--stats", file("json"), "-o", self.folder / "one.pmpart")
-        maps = alone * self.share("beginPassSeconds")
-        start = max(0.0, alone - maps - buckets[0])
+        for _ in range(TURNS):  # what a run costs besides its buckets
+            alone = self.run(*words, *all_passes, *reads, "--buckets", "0:1", "--stats", file("json"), "-o",
+                             self.folder / "one.pmpart")
+            maps = min(maps, self.phase("beginPassSeconds"))
+            start = min(start, max(0.0, alone - maps - buckets[0]))
         merge = self.run("merge", file("pmpart"), "-o", file("exr"), "-o", file("png"), "-q")
-        job = self.folder / f"job {name}"
-        pilot = self.run("farm", *words[:-1], *all_passes, "--engine", "commands", "--runs", len(buckets), "--job", job,
-                         "-o", file("exr"))
-        runs = [task for task in json.loads((job / "plan.json").read_text())["tasks"] if task["kind"] == "run"]
-        assert len(runs) == len(buckets), f"{len(runs)} runs of {len(buckets)} buckets"
+        pilot, predicted = self.pilot(words[:-1] + [*all_passes], len(buckets))
         staged = sum(part.stat().st_size for part in scene.parent.iterdir() if part.is_file())
         return {"name": name, "size": size, "passes": passes, "buckets": buckets,
-                "pilot": [run["predictedThreadSeconds"] for run in runs], "pilotSeconds": pilot, "startSeconds": start,
+                "pilot": predicted, "pilotSeconds": pilot, "startSeconds": start,
                 "mapSeconds": maps, "photonSeconds": photons, "mergeSeconds": merge, "sceneBytes": staged,
                 "photonBytes": photon_bytes, "partBytes": file("pmpart").stat().st_size, "wholeSeconds": whole}
 
-    def share(self, phase):
-        """Of the last frame's time; shares are the same whatever else the machine does."""
-        phases = json.loads((self.folder / "frame.json").read_text())["phases"]
-        return phases.get(phase, 0.0) / phases["elapsedSeconds"]
+    def pilot(self, words, buckets):
+        """Processor seconds until a farm has its plan, and what it predicts of each bucket; the least of some turns."""
+        seconds, predicted = math.inf, []
+        for _ in range(TURNS):
+            job = pathlib.Path(tempfile.mkdtemp(dir=self.folder))
+            seconds = min(seconds, self.run("farm", *words, "--engine", "commands", "--runs", buckets, "--job", job / "job",
+                                            "-o", "pilot.exr"))
+            tasks = json.loads((job / "job" / "plan.json").read_text())["tasks"]
+            its = [task["predictedThreadSeconds"] for task in tasks if task["kind"] == "run"]
+            assert len(its) == buckets, f"{len(its)} runs of {buckets} buckets"
+            predicted = [min(both) for both in zip(predicted or its, its)]
+        return seconds, predicted
+
+    def phase(self, name):
+        """Elapsed seconds of the last frame."""
+        return json.loads((self.folder / "frame.json").read_text())["phases"].get(name, 0.0)
 
     def shared_speed(self, words):
         """Of a thread where another one is at work, over one alone."""
@@ -197,21 +213,29 @@ def main():
     parser.add_argument("--quick", action="store_true", help="small frames")
     parser.add_argument("--turns", type=int, default=1, help="of each real farm; that which other programs disturb least counts")
     asked = parser.parse_args()
-    size, passes = ("320x180", 2) if asked.quick else ("960x540", 2)
     real_size, real_passes = ("160x120", 16) if asked.quick else ("480x360", 48)
     with tempfile.TemporaryDirectory(prefix="pm farm bench ") as folder:
         bench = Bench(asked.host.resolve(), folder)
-        costs = {"schema": "pm-farm-costs/1", "cores": os.cpu_count(),
-                 "frames": [bench.frame(name, scene, (*options, "--bucket-size", "16"), size, passes) for name, scene, options in FRAMES]}
+        costs = {"schema": "pm-farm-costs/1", "cores": os.cpu_count(), "frames": []}
+        for name, scene, options, size in FRAMES:
+            size = "320x180" if asked.quick else size
+            costs["frames"].append(bench.frame(name, scene, (*options, *BUCKETS), size, 2))
         words = ["--size", real_size, "--passes", str(real_passes), "--threads", "1"]
+        costs["preempted"] = bench.preempted([BOX, *words, "-q"])
         costs["sharedSpeed"] = bench.shared_speed([BOX, "--size", real_size, "--passes", "8", "--threads", "1", "-q"])
+        write(asked.out, costs)  # a replay needs no more
         if missing_programs():
             print("measure_farm.py: no real farms: Slurm is not installed", file=sys.stderr)
-        else:
-            costs["real"] = bench.frame("the real one", BOX, (), real_size, real_passes)
-            costs.update(validation(bench, words, asked.turns, costs["real"]))
-        costs["preempted"] = bench.preempted([BOX, *words, "-q"])
-    asked.out.write_text(json.dumps(rounded(costs)) + "\n")
+            return
+        costs["real"] = bench.frame("the real one", BOX, (), real_size, real_passes)
+        costs.update(validation(bench, words, asked.turns, costs["real"]))
+        write(asked.out, costs)
+
+
+def write(file, costs):
+    new = file.with_name(file.name + ".tmp")
+    new.write_text(json.dumps(rounded(costs)) + "\n")
+    new.rename(file)
 
 
 if __name__ == "__main__":
