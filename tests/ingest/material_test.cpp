@@ -102,7 +102,6 @@ TEST(Material, valuesOutOfRangeAreClampedWithTheLine) {
 TEST(Material, whatIsUnknownOrNotRenderedIsSaid) {
     EXPECT_TRUE(read("Kdd 0.5 0.5 0.5\n")
                     .heard.has(Warning::kMaterialValue, "a.mtl:2: material m: 'Kdd 0.5 0.5 0.5'"));
-    EXPECT_TRUE(read("disp d.png\n").heard.has(Warning::kMaterialPart, "is not displaced yet"));
     EXPECT_TRUE(read("refl -type sphere s.png\n")
                     .heard.has(Warning::kMaterialPart, "mirrors show the scene, not a picture"));
     EXPECT_TRUE(
