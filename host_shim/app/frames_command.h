@@ -7,8 +7,8 @@
 
 namespace pm::host {
 
-// pm_host SCENE, which may be the address of a packed scene. Returns the exit code. Errors: those of
-// takeCopies.
+// pm_host SCENE, which may be the address of a packed scene. Returns the exit code. Errors: those
+// of takeCopies.
 int runScene(Options options, Log& log);
 
 // pm_host SCENE --frames A-B: renders one frame after the other. One that fails does not end the

@@ -34,6 +34,8 @@ struct CacheCounts {
 // several values, but must not make one inside of make().
 template <typename Value>
 class BoundedCache {
+    struct Slot;
+
   public:
     // budget: bytes.
     BoundedCache(std::size_t keys, std::uint64_t budget) : m_slots(keys), m_budget(budget) {}
@@ -59,12 +61,12 @@ class BoundedCache {
 
       private:
         friend class BoundedCache;
-        explicit Pin(typename BoundedCache::Slot* slot) : m_slot(slot) {}
+        explicit Pin(Slot* slot) : m_slot(slot) {}
         void release() {
             if (m_slot) m_slot->state.fetch_sub(1, std::memory_order_release);
             m_slot = nullptr;
         }
-        typename BoundedCache::Slot* m_slot = nullptr;
+        Slot* m_slot = nullptr;
     };
 
     // The value of a key below the number of keys; make(key) gives a std::unique_ptr<Value> where

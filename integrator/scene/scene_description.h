@@ -19,7 +19,7 @@
 namespace pm {
 
 // When a cage is cut into triangles: all of it before rays are traced, or each part of it where one
-// meets it. kAuto: on demand what is displaced, or too large to be cut whole.
+// meets it. kAuto: on demand what is displaced.
 enum class TessellationTime { kAuto, kOnDemand, kWhole };
 
 struct InstanceDescription {

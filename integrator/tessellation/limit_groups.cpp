@@ -184,8 +184,7 @@ std::unique_ptr<const TriangleGroup> LimitGroups::make(std::uint32_t group) cons
         for (const auto& [a, b, c] : pattern.facets)
             triangles.push_back({first + a, first + b, first + c});
     }
-    points.shrink_to_fit();
-    return std::make_unique<const TriangleGroup>(std::move(points), std::move(triangles));
+    return std::make_unique<const TriangleGroup>(points, triangles);
 }
 
 void LimitGroups::forEachCageTriangle(

@@ -16,16 +16,18 @@ constexpr float kMargin = 0x1p-21f;
 
 }  // namespace
 
-TriangleGroup::TriangleGroup(std::vector<Point> points, std::vector<Corners> triangles)
-    : m_points(std::move(points)), m_triangles(std::move(triangles)) {
+TriangleGroup::TriangleGroup(const std::vector<Point>& points,
+                             const std::vector<Corners>& triangles)
+    : m_points(points.begin(), points.end()), m_triangles(triangles.begin(), triangles.end()) {
     m_nodes.reserve(m_triangles.size());
     build(0, triangleCount());
     m_nodes.shrink_to_fit();
 }
 
 std::uint64_t TriangleGroup::memoryBytes() const {
-    return sizeof(*this) + m_points.capacity() * sizeof(Point) +
-           m_triangles.capacity() * sizeof(Corners) + m_nodes.capacity() * sizeof(Node);
+    return sizeof(*this) + PageAllocator<Point>::bytesOf(m_points.capacity()) +
+           PageAllocator<Corners>::bytesOf(m_triangles.capacity()) +
+           PageAllocator<Node>::bytesOf(m_nodes.capacity());
 }
 
 TriangleGroup::Node TriangleGroup::nodeOf(std::uint32_t first, std::uint32_t last) const {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "integrator/caches/page_allocator.h"
 #include "integrator/tessellation/sheared_ray.h"
 #include "integrator/values/vec.h"
 
@@ -25,7 +26,7 @@ class TriangleGroup {
     };
 
     // Numbers the triangles anew, near ones near to each other. At least one triangle.
-    TriangleGroup(std::vector<Point> points, std::vector<Corners> triangles);
+    TriangleGroup(const std::vector<Point>& points, const std::vector<Corners>& triangles);
 
     std::uint32_t triangleCount() const { return static_cast<std::uint32_t>(m_triangles.size()); }
     const Point& point(std::uint32_t triangle, std::size_t corner) const {
@@ -74,9 +75,9 @@ class TriangleGroup {
         return {m_points[at[0]].position, m_points[at[1]].position, m_points[at[2]].position};
     }
 
-    std::vector<Point> m_points;
-    std::vector<Corners> m_triangles;
-    std::vector<Node> m_nodes;
+    PagedVector<Point> m_points;
+    PagedVector<Corners> m_triangles;
+    PagedVector<Node> m_nodes;
 };
 
 template <typename Stops>

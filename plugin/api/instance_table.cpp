@@ -62,7 +62,7 @@ constexpr std::array kInstanceRows = {
         {.name = "tessellation",
          .help =
              "When a cage is cut into triangles: onDemand each part of it where a ray meets it, "
-             "whole before any ray; auto: on demand what is displaced or very large.",
+             "whole before any ray; auto: on demand what is displaced.",
          .type = Type::kChoice,
          .maximum = 2,
          .defaultText = "auto",

@@ -20,10 +20,10 @@ struct BucketSetting {
     std::int32_t size = 32;  // pixels
     int threads = 1;
     // All of these may be empty. Photons and maps are made, the buckets not begun.
-    std::function<void()> prepared;
+    std::function<void()> prepared = {};
     // Renders an atom of a bucket, on the thread that does.
-    std::function<void(std::uint32_t cell, const std::function<void()>& render)> around;
-    CorrelatedChoice::Missing missing;
+    std::function<void(std::uint32_t cell, const std::function<void()>& render)> around = {};
+    CorrelatedChoice::Missing missing = {};
 };
 
 struct BucketTimes {
