@@ -36,8 +36,7 @@ float BucketNeeds::missing(std::uint32_t cell) const {
 
 void BucketNeeds::add(std::uint32_t cell, std::vector<std::uint32_t>& keys) {
     std::ranges::sort(keys);
-    const auto repeated = std::ranges::unique(keys);
-    keys.erase(repeated.begin(), repeated.end());
+    keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
     const std::lock_guard lock(m_mutex);
     std::vector<std::uint32_t> both;
     std::ranges::set_union(m_keys[cell], keys, std::back_inserter(both));
