@@ -296,7 +296,8 @@ int runProgram(int argc, char** argv) {
     app.add_option("--csv", csvFile, "also write the tables to this CSV file");
     app.add_option("--docs", docsFile, "also put the tables into this Markdown file");
     app.add_option("--plots", plots, "a folder for plots (none)");
-    app.add_option("--turns", turns, "turns of each rival (3)")->check(CLI::Range(2, 1000));
+    app.add_option("--turns", turns, "turns of each rival (3); 0: replays alone")
+        ->check(CLI::Range(0, 1000));
     app.add_option("--side", side, "pixels of a picture's side (256)")->check(CLI::Range(32, 4096));
     app.add_option("--folder", folder, "for pictures of 300 MB (/tmp)");
     app.add_flag("--quick", quick, "2 turns, 96 pixels");
@@ -325,7 +326,7 @@ int runProgram(int argc, char** argv) {
                 plots.empty() ? "" : fmt::format("{}/cache_misses_{}.svg", plots, ++number);
             tellMisses(report, *bench, plot);
             tellMachines(report, *bench);
-            tellTimes(report, *bench, turns);
+            if (turns > 0) tellTimes(report, *bench, turns);
         }
         report.publish(csvFile, docsFile);
         return 0;
