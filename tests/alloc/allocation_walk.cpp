@@ -8,13 +8,17 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
+#include <ctime>
 #include <filesystem>
 #include <new>
 #include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "tests/alloc/failing_malloc.h"
@@ -50,6 +54,31 @@ void onCrash(int signal) {
     Stack& stack = s_shared->crashed;
     stack.count = backtrace(stack.frames.data(), static_cast<int>(stack.frames.size()));
     _exit(128 + signal);
+}
+
+// On every thread of a child that hangs: which of them is inside of the ray tracer is told; all
+// others wait for it.
+void onHangingThread(int) {
+    Stack stack;
+    stack.count = backtrace(stack.frames.data(), static_cast<int>(stack.frames.size()));
+    for (int i = 0; i < stack.count; ++i) {
+        Dl_info info{};
+        if (dladdr(stack.frames[static_cast<std::size_t>(i)], &info) == 0 || !info.dli_fname)
+            continue;
+        if (std::strstr(info.dli_fname, "libembree3") == nullptr) continue;
+        stack.count -= i;
+        std::copy_n(stack.frames.begin() + i, stack.count, stack.frames.begin());
+        s_shared->crashed = stack;
+        return;
+    }
+}
+
+void onHang(int) {
+    for (const auto& thread : std::filesystem::directory_iterator("/proc/self/task"))
+        tgkill(getpid(), std::stoi(thread.path().filename()), SIGUSR1);
+    const timespec moment{0, 300'000'000};
+    for (int i = 0; i < 3; ++i) nanosleep(&moment, nullptr);  // signals end it early
+    _exit(128 + SIGALRM);
 }
 
 std::string textOf(const Stack& stack) {
@@ -175,6 +204,8 @@ int inChild(const Work& work) {
         for (const int signal : {SIGSEGV, SIGABRT, SIGBUS, SIGFPE, SIGILL}) {
             std::signal(signal, onCrash);
         }
+        std::signal(SIGALRM, onHang);
+        std::signal(SIGUSR1, onHangingThread);
         work();
         _exit(0);
     }
@@ -185,6 +216,7 @@ int inChild(const Work& work) {
 
 // A child that makes no progress is ended by SIGALRM: `alarm` is set anew for each number.
 void goOn() {
+    s_shared->crashed.count = 0;
     alarm(kMostSeconds);
 }
 
@@ -192,6 +224,7 @@ std::string endOf(int status) {
     if (WIFSIGNALED(status) && WTERMSIG(status) == SIGALRM) return "hang";
     if (WIFSIGNALED(status)) return "killed by signal " + std::to_string(WTERMSIG(status));
     const int code = WEXITSTATUS(status);
+    if (code == 128 + SIGALRM) return "hang";
     return code > 128 ? "crash (signal " + std::to_string(code - 128) + ")"
                       : "exit " + std::to_string(code);
 }
@@ -258,8 +291,11 @@ std::vector<Finding> walkFailing(const PmrApi& api, const Walk& walk, const char
         });
         takeFindings(shared, findings);
         if (status == 0) continue;
-        findings.push_back({numbers[shared.done], endOf(status), textOf(shared.failed),
-                            textOf(shared.crashed), belowOf(shared.failed), false});
+        const std::string end = endOf(status);
+        const bool isInside = end == "hang" && shared.crashed.count > 0;
+        findings.push_back({numbers[shared.done], end, textOf(shared.failed),
+                            textOf(shared.crashed),
+                            belowOf(isInside ? shared.crashed : shared.failed), false});
         ++shared.done;
     }
     return findings;
