@@ -102,6 +102,8 @@ void Render::start() {
         throw CallError(CallStatus::kState, "the render was started before");
     m_startTime = std::chrono::steady_clock::now();
     checkDelivery(m_settings);
+    // Before the plan divides memory it traces some photons.
+    m_scene->scene->setGroupBudget(kFirstGroups);
     auto made = std::make_shared<RenderWork>(m_scene->scene, m_scene->identity, m_settings,
                                              m_scene->textures->texelBytes());
     RenderPages* const pages = made->pages();

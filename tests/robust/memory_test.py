@@ -19,8 +19,8 @@ import tempfile
 import zlib
 
 MIB = 1 << 20
-# Heights, of which each is kept as a float of 4 bytes: 128 MiB. Each tile is met by what is cut.
-WIDTH, HEIGHT = 8192, 4096
+# Heights, of which each is kept as a float of 4 bytes: 144 MiB. Each tile is met by what is cut.
+WIDTH, HEIGHT = 8192, 4608
 FACES = 64  # of the ground, along each side
 
 
@@ -135,7 +135,7 @@ def main():
         runs = Runs(os.path.abspath(sys.argv[1]), pathlib.Path(name))
         write_ground(runs.folder)
         runs.within("ground.obj", ground_caches, "--eye", "0,30,50", "--look-at", "0,0,0", "--fov", "45",
-                    "--size", "96x64", "--aa", "1", "--passes", "1", "--photons", "2000")  # fmt: skip
+                    "--size", "64x44", "--aa", "1", "--passes", "1", "--photons", "2000")  # fmt: skip
         source = pathlib.Path(__file__).resolve().parents[2]
         runs.within(str(source / "scenes/cornell_box/cornell_box.obj"), box_caches, "--size", "64x48",
                     "--aa", "1", "--passes", "1", "--photons", "2000000")  # fmt: skip

@@ -62,8 +62,10 @@ TEST_F(Textures, TexelsAreInTheMemoryPlan) {
     useForWalls("large.png");
     const std::string roomy = look({"--memory-limit", "8"}).out;
     EXPECT_NE(roomy.find(", textures 0.12)"), std::string::npos) << roomy;
-    const std::string tight = look({"--memory-limit", "0.8"}).out;
-    EXPECT_NE(tight.find(", textures 0.10)"), std::string::npos) << tight;
+    // All that is left of it, and no more.
+    const std::string tight = look({"--memory-limit", "0.4"}).out;
+    EXPECT_NE(tight.find(", textures 0.0"), std::string::npos) << tight;
+    EXPECT_NE(tight.find("memory: 0.40 GiB"), std::string::npos) << tight;
     ASSERT_EQ(run({"box.obj", "--size", "16x12", "--passes", "1", "--aa", "1", "--photons", "500",
                    "-o", "a.exr"})
                   .exitCode,
