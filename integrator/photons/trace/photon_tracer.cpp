@@ -514,10 +514,13 @@ PhotonTraceResult traceInRounds(const Scene& scene, const LightSampler& lights,
             sums.metCaster += batch.metCaster;
         }
         first += batches.size();
-        size = std::max(kFirstRound,
-                        static_cast<std::size_t>(static_cast<double>(rounds.bytes / kCopies) *
-                                                 static_cast<double>(batches.size()) /
-                                                 static_cast<double>(bytesOf(part) + 1)));
+        // Where next to nothing landed that is more than any number can hold.
+        const double fitting = static_cast<double>(rounds.bytes / kCopies) *
+                               static_cast<double>(batches.size()) /
+                               static_cast<double>(bytesOf(part) + 1);
+        size =
+            std::max(kFirstRound,
+                     static_cast<std::size_t>(std::min(fitting, static_cast<double>(batchCount))));
         rounds.take(std::move(part));
     }
     return sums;
