@@ -38,9 +38,8 @@ struct GroupShape {
             TriangleGroup::Hit hit;
             const ShearedRay ray = sheared(rayHit.ray);
             const double tNear = nearEnd(rayHit.ray), tFar = farEnd(rayHit.ray);
-            if (!groups.mayMeet(args->primID, ray, tNear, tFar) ||
-                !groups.pin(args->primID)->nearest(ray, tNear, tFar, hit))
-                return;
+            const GroupCache::Pin group = groups.pinFor(args->primID, ray, tNear, tFar);
+            if (!group || !group->nearest(ray, tNear, tFar, hit)) return;
             rayHit.ray.tfar = static_cast<float>(hit.t);
             rayHit.hit = {};
             rayHit.hit.Ng_x = 1.0f;
@@ -65,11 +64,9 @@ struct GroupShape {
             const ShearedRay ray = sheared(rtcRay);
             const double tNear = nearEnd(rtcRay);
             double tFar = farEnd(rtcRay);
+            const GroupCache::Pin group = groups.pinFor(args->primID, ray, tNear, tFar);
             isOccluded =
-                groups.mayMeet(args->primID, ray, tNear, tFar) &&
-                groups.pin(args->primID)->walk(ray, tNear, tFar, [](std::uint32_t, double) {
-                    return true;
-                });
+                group && group->walk(ray, tNear, tFar, [](std::uint32_t, double) { return true; });
         });
         if (isOccluded) rtcRay.tfar = -std::numeric_limits<float>::infinity();
     }
@@ -98,16 +95,16 @@ struct GroupShape {
             query.thrown = std::current_exception();
         }
     }
-    static bool visitAll(void* user, std::uint32_t group, std::uint32_t geometry,
+    static bool visitAll(void* user, std::uint32_t number, std::uint32_t geometry,
                          const RTCRay& rtcRay, RayQuery& query) {
         const LimitGroups& groups = of(user);
         const ShearedRay ray = sheared(rtcRay);
         const double tNear = nearEnd(rtcRay);
         double tFar = farEnd(rtcRay);
-        if (!groups.mayMeet(group, ray, tNear, tFar)) return false;
-        return groups.pin(group)->walk(ray, tNear, tFar, [&](std::uint32_t triangle, double t) {
+        const GroupCache::Pin group = groups.pinFor(number, ray, tNear, tFar);
+        return group && group->walk(ray, tNear, tFar, [&](std::uint32_t triangle, double t) {
             return query.isStoppedBy(
-                {geometry, groups.firstTriangle(group) + triangle, static_cast<float>(t)});
+                {geometry, groups.firstTriangle(number) + triangle, static_cast<float>(t)});
         });
     }
 };

@@ -59,11 +59,12 @@ class LimitGroups {
             return made;
         });
     }
-    // False: the ray meets no triangle of the group between the two, as is known since the group
-    // was first made: box() has to be as wide as the displacement may be anywhere, and most rays
-    // in it pass by. Nothing is made.
-    bool mayMeet(std::uint32_t group, const ShearedRay& ray, double tNear, double tFar) const {
-        return m_met[group].mayMeet(ray, tNear, tFar);
+    // The same, or nothing where the ray meets no triangle of the group between the two, as is
+    // known since the group was first made: box() has to be as wide as the displacement may be
+    // anywhere, and most rays in it pass by.
+    GroupCache::Pin pinFor(std::uint32_t group, const ShearedRay& ray, double tNear,
+                           double tFar) const {
+        return m_met[group].mayMeet(ray, tNear, tFar) ? pin(group) : GroupCache::Pin();
     }
 
     // Calls visit for the triangles of the cage itself that are of a slot and have a surface, in

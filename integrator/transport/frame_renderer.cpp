@@ -92,8 +92,7 @@ struct FrameRenderer::Impl {
     Plan plan;
     const Camera camera;
     const PhotonSource* photonSource = nullptr;
-    PhotonPaging* photonPaging = nullptr;
-    float roomForSites = 1.0f;
+    MapPaging paging;
     std::unique_ptr<Prepared> prepared;
     std::uint32_t lastPass = 0;  // begun or added
     bool badValuesReported = false, cutsReported = false;
@@ -123,7 +122,7 @@ void FrameRenderer::Impl::prepare(const std::atomic<bool>& cancelled) {
     if (plan.lampSamples == 0)
         plan.lampSamples = findLampSamples(*scene, lights, camera, settings, plan, cancel);
     if (photonSource) made->photons.readFrom(*photonSource);
-    if (photonPaging) made->photons.pageMaps(*photonPaging, roomForSites);
+    made->photons.pageMaps(paging);
     const std::lock_guard lock(mutex);
     counters.lampSamples = plan.lampSamples;
     prepared = std::move(made);
@@ -211,10 +210,9 @@ void FrameRenderer::readPhotons(const PhotonSource& source) {
     if (m_impl->prepared) m_impl->prepared->photons.readFrom(source);
 }
 
-void FrameRenderer::pageMaps(PhotonPaging& paging, float roomForSites) {
-    m_impl->photonPaging = &paging;
-    m_impl->roomForSites = roomForSites;
-    if (m_impl->prepared) m_impl->prepared->photons.pageMaps(paging, roomForSites);
+void FrameRenderer::pageMaps(const MapPaging& paging) {
+    m_impl->paging = paging;
+    if (m_impl->prepared) m_impl->prepared->photons.pageMaps(paging);
 }
 
 void FrameRenderer::tracePass(std::uint32_t pass, PhotonSink& sink,

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "integrator/transport/frame/channel_layout.h"
+#include "integrator/transport/frame/map_paging.h"
 #include "integrator/transport/frame/render_counters.h"
 #include "integrator/transport/frame/render_settings.h"
 #include "integrator/transport/plan/plan.h"
@@ -19,7 +20,6 @@
 
 namespace pm {
 
-class PhotonPaging;
 class PhotonSink;
 class PhotonSource;
 class Scene;
@@ -68,9 +68,9 @@ class FrameRenderer {
     // It must outlive this, and hold what tracePass() wrote of the same lights, surfaces and plan.
     void readPhotons(const PhotonSource& source);
     // Before the first pass: maps of global, caustic and refocused photons are kept in pages, for
-    // the same picture. roomForSites: see IrradianceSites. paging must outlive this. Errors of its
-    // files come out of what begins, adds and renders passes.
-    void pageMaps(PhotonPaging& paging, float roomForSites = 1.0f);
+    // the same picture. paging.pages must outlive this. Errors of its files come out of what
+    // begins, adds and renders passes.
+    void pageMaps(const MapPaging& paging);
     // Traces the photons of pass `pass` into the sink, before those of the first call the pilots'.
     // No map is built, no pixel can be rendered. The rest as beginPass.
     void tracePass(std::uint32_t pass, PhotonSink& sink, const std::atomic<bool>& cancelled,

@@ -14,8 +14,7 @@ namespace pm::plugin {
 BucketPasses::BucketPasses(const Frame& frame, std::uint32_t bucketsHeld)
     : m_frame(frame),
       m_shelf(static_cast<std::uint32_t>(frame.order.size()), bucketsHeld),
-      m_errors(frame.grid),
-      m_misses(frame.grid.cellCount()) {
+      m_errors(frame.grid) {
     const ChannelLayout layout = channelLayout(frame.settings);
     const Scratch scratch{std::vector<float>(static_cast<std::size_t>(kAtomPixels) *
                                              static_cast<std::size_t>(layout.count)),
@@ -67,7 +66,7 @@ void BucketPasses::finish(const RenderedBucket& bucket, EventQueue& events) {
     finished.passIndex = m_frame.settings.passes - 1;
     finished.seconds = bucket.seconds;
     finished.timedPasses = m_frame.settings.passes;
-    const BucketMisses::Count missed = m_misses.of(bucket.cell);
+    const BucketMisses::Count missed = m_frame.misses.of(bucket.cell);
     finished.cacheMisses = missed.misses;
     finished.cacheBytes = missed.bytes;
     m_shelf.finish(finished, [&events](const BucketInfo& told) { events.bucketFinished(told); });
@@ -97,7 +96,7 @@ BucketRun BucketPasses::run(const FrameRenderer& renderer, WorkerArena& arena, d
     work.render = [&](std::uint32_t cell, const Rect&, const Rect& atom, int worker,
                       std::span<float>) {
         guarded([&] {
-            const BucketMisses::Counting counting(m_misses, cell);
+            const BucketMisses::Counting counting(m_frame.misses, cell);
             renderAtom(renderer, m_shelf.pixels(m_frame.placeOf[cell]), atom,
                        m_scratch[static_cast<std::size_t>(worker)], cancel);
         });

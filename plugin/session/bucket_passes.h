@@ -34,6 +34,7 @@ class BucketPasses {
         const BucketGrid& grid;
         std::span<const std::uint32_t> order;    // cells
         std::span<const std::uint32_t> placeOf;  // of each cell in it
+        BucketMisses& misses;
         int workers = 1;
         bool sharesNoise = true;  // SampleRule::sharesNoise
     };
@@ -69,7 +70,6 @@ class BucketPasses {
     const Frame m_frame;
     BucketShelf m_shelf;
     BucketErrors m_errors;
-    BucketMisses m_misses;
     RenderCaches* m_caches = nullptr;
     std::vector<Scratch> m_scratch;  // one a worker
 };

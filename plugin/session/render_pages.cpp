@@ -2,21 +2,17 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "plugin/session/render_pages.h"
 
+#include "plugin/session/statistics_json.h"
+
 namespace pm::plugin {
 
 Json RenderPages::statistics() const {
-    const CacheCounts counts = m_paging.counts();
-    return {{"budgetBytes", m_paging.budget()},
-            {"wholeBytes", m_paging.mostWholeBytes()},
-            {"misses", counts.misses},
-            {"madeAgain", counts.madeAgain},
-            {"waits", counts.waits},
-            {"bytesRead", counts.bytesMade},
-            {"bytesHeld", counts.bytesHeld},
-            {"mostBytesHeld", counts.mostBytesHeld},
-            {"mostBuildBytes", m_paging.mostBuildBytes()},
-            {"scratchBytesWritten", m_disk.bytesWritten()},
-            {"mostScratchBytes", m_disk.mostBytes()}};
+    Json json = cacheJson(m_paging.counts(), m_paging.budget(), "bytesRead");
+    json["wholeBytes"] = m_paging.mostWholeBytes();
+    json["mostBuildBytes"] = m_paging.mostBuildBytes();
+    json["scratchBytesWritten"] = m_disk.bytesWritten();
+    json["mostScratchBytes"] = m_disk.mostBytes();
+    return json;
 }
 
 }  // namespace pm::plugin

@@ -84,10 +84,11 @@ void RenderWork::orderBuckets(const Identity& sceneIdentity, const SettingValues
 
 // Where pixels go: a frame, or places for buckets.
 void RenderWork::makePlaces() {
+    m_bucketMisses = std::make_unique<BucketMisses>(m_grid.cellCount());
     if (m_memory.byBuckets) {
         m_buckets = std::make_unique<BucketPasses>(
-            BucketPasses::Frame{m_settings, m_grid, m_order, m_orderIndex, m_arena.threads(),
-                                m_plan.tracePhotons},
+            BucketPasses::Frame{m_settings, m_grid, m_order, m_orderIndex, *m_bucketMisses,
+                                m_arena.threads(), m_plan.tracePhotons},
             m_memory.bucketsHeld);
         return;
     }
@@ -95,7 +96,6 @@ void RenderWork::makePlaces() {
     m_bucketTimes.resize(m_grid.cellCount());
     if (m_isCorrelated && m_scene->groupCache())
         m_bucketNeeds = std::make_unique<BucketNeeds>(m_grid, *m_scene->groupCache());
-    m_bucketMisses = std::make_unique<BucketMisses>(m_grid.cellCount());
     const Scratch scratch{std::vector<float>(static_cast<std::size_t>(kAtomPixels) *
                                              static_cast<std::size_t>(m_layout.count)),
                           std::vector<SampleRun>(kAtomPixels)};
@@ -105,7 +105,10 @@ void RenderWork::makePlaces() {
 void RenderWork::makeRenderer() {
     m_renderer = m_arena.execute(
         [this] { return std::make_unique<FrameRenderer>(m_scene, m_settings, m_plan); });
-    if (m_pages) m_renderer->pageMaps(m_pages->paging(), m_memory.roomForSites);
+    if (m_pages)
+        m_renderer->pageMaps(
+            {&m_pages->paging(), m_memory.roomForSites,
+             static_cast<float>(m_order.size()) / static_cast<float>(m_grid.cellCount())});
     if (m_photons.source() != nullptr) m_renderer->readPhotons(*m_photons.source());
 }
 

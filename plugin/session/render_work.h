@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
@@ -92,6 +93,11 @@ class RenderWork {
     const Scene& scene() const { return *m_scene; }
     const Plan& plan() const { return m_plan; }
     RenderPages* pages() const { return m_pages.get(); }  // null: maps are in memory
+    // What textures missed in the buckets so far, by CacheUser.
+    std::array<std::uint64_t, kCacheUsers> texelMissesOf() const {
+        return m_bucketMisses ? m_bucketMisses->texelMissesOf()
+                              : std::array<std::uint64_t, kCacheUsers>{};
+    }
     const RenderPhotons& photons() const { return m_photons; }
     const MemoryPlan& memory() const { return m_memory; }
     // The pixels that can be read now; by buckets null where no bucket is being delivered.
@@ -170,7 +176,7 @@ class RenderWork {
     std::vector<Scratch> m_scratch;              // one a worker
     std::vector<BucketTime> m_bucketTimes;       // by cell, each its worker's; pass by pass
     std::unique_ptr<BucketNeeds> m_bucketNeeds;  // of correlated, where something is cut on demand
-    std::unique_ptr<BucketMisses> m_bucketMisses;  // pass by pass
+    std::unique_ptr<BucketMisses> m_bucketMisses;  // null: photons alone
     ProgressClock m_clock;
     WarningLog m_warnings;
 

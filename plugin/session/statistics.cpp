@@ -89,25 +89,16 @@ Json memoryJson(const RenderWork& work, const RenderCounters& counters) {
             {"processBytes", need.process},      {"peakResidentBytes", peakResidentBytes()}};
 }
 
-Json texturesJson(const SceneTextures& textures) {
+Json texturesJson(const SceneTextures& textures,
+                  const std::array<std::uint64_t, kCacheUsers>& missesOf) {
     const TextureReads reads = textures.reads();
     return {{"texels", textures.texels()},
             {"texelsRead", reads.texelsOnce},
             {"misses", reads.tiles},
             {"bytesRead", reads.bytes},
             {"tilesReadOnce", reads.tilesOnce},
-            {"bytesReadOnce", reads.bytesOnce}};
-}
-
-// Of triangles that are cut where rays meet them; by all renders of the scene.
-Json geometryJson(const Scene& scene) {
-    const CacheCounts counts = scene.groupCounts();
-    Json missesOf;
-    for (std::size_t i = 0; i < kCacheUsers; ++i) missesOf[kCacheUserNames[i]] = counts.missesOf[i];
-    return {{"budgetBytes", scene.groupBudget()},    {"misses", counts.misses},
-            {"madeAgain", counts.madeAgain},         {"waits", counts.waits},
-            {"bytesMade", counts.bytesMade},         {"bytesHeld", counts.bytesHeld},
-            {"mostBytesHeld", counts.mostBytesHeld}, {"missesOf", std::move(missesOf)}};
+            {"bytesReadOnce", reads.bytesOnce},
+            {"missesOf", missesOfJson(missesOf)}};
 }
 
 Json warningsJson(const Scene& scene, RenderWork& work) {
@@ -218,8 +209,10 @@ std::string Render::statisticsJson() const {
     json["counters"]["triangles"] = running->scene().triangleCount();
     json["buckets"] = bucketJson(*running, progress);
     json["memory"] = memoryJson(*running, counters);
-    json["textureCache"] = texturesJson(*m_scene->textures);
-    json["geometryCache"] = geometryJson(*m_scene->scene);
+    json["textureCache"] = texturesJson(*m_scene->textures, running->texelMissesOf());
+    // Of triangles that are cut where rays meet them; by all renders of the scene.
+    json["geometryCache"] =
+        cacheJson(m_scene->scene->groupCounts(), m_scene->scene->groupBudget(), "bytesMade");
     if (const RenderPages* const pages = running->pages())
         json["photonPages"] = pages->statistics();
     if (const RenderCaches* const caches = running->caches()) json["caches"] = caches->statistics();

@@ -26,6 +26,23 @@ Json settingsJson(const SettingValues& values) {
     return json;
 }
 
+Json missesOfJson(const std::array<std::uint64_t, kCacheUsers>& misses) {
+    Json json;
+    for (std::size_t i = 0; i < kCacheUsers; ++i) json[kCacheUserNames[i]] = misses[i];
+    return json;
+}
+
+Json cacheJson(const CacheCounts& counts, std::uint64_t budget, const char* made) {
+    return {{"budgetBytes", budget},
+            {"misses", counts.misses},
+            {"madeAgain", counts.madeAgain},
+            {"waits", counts.waits},
+            {made, counts.bytesMade},
+            {"bytesHeld", counts.bytesHeld},
+            {"mostBytesHeld", counts.mostBytesHeld},
+            {"missesOf", missesOfJson(counts.missesOf)}};
+}
+
 void addError(const std::optional<FrameError>& error, Json& json) {
     const auto put = [&](const char* key, auto figure) {
         json[key] = error ? Json(figure(*error)) : Json(nullptr);

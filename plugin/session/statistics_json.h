@@ -3,8 +3,11 @@
 // What the statistics of renders and of merged parts share.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 
+#include "integrator/caches/bounded_cache.h"
 #include "plugin/session/setting_values.h"
 #include "plugin/values/json.h"
 #include "scheduler/film/frame_error.h"
@@ -12,6 +15,12 @@
 namespace pm::plugin {
 
 Json settingsJson(const SettingValues& values);
+
+// For whom a cache missed, by the names of kCacheUserNames.
+Json missesOfJson(const std::array<std::uint64_t, kCacheUsers>& misses);
+
+// budget: bytes. made: the name of what it made or read, in bytes.
+Json cacheJson(const CacheCounts& counts, std::uint64_t budget, const char* made);
 
 // Adds the estimates of the error; with one pass nothing is known of it.
 void addError(const std::optional<FrameError>& error, Json& json);

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "plugin/textures/picture_file.h"
+#include "plugin/textures/watched_input.h"
 #include "plugin/values/call_error.h"
 
 namespace pm::plugin {
@@ -130,11 +131,13 @@ std::array<std::uint64_t, 2> texelHash(const std::string& fileName, const Cancel
 
 TextureSystem::~TextureSystem() {
     if (m_system != nullptr) OIIO::TextureSystem::destroy(m_system);
+    if (m_cache != nullptr) OIIO::ImageCache::destroy(m_cache);
 }
 
 OIIO::TextureSystem& TextureSystem::system() {
     std::call_once(m_once, [this] {
-        OIIO::TextureSystem* made = OIIO::TextureSystem::create(false);
+        m_cache = OIIO::ImageCache::create(false);
+        OIIO::TextureSystem* made = OIIO::TextureSystem::create(false, m_cache);
         if (made == nullptr) throw CallError(CallStatus::kInternal, "no texture system");
         made->attribute("max_memory_MB", kFirstMegabytes);
         made->attribute("autotile", kTilePixels);
@@ -173,6 +176,7 @@ TexturePicture TextureSystem::open(const TextureDescription& description) {
     checkIsRegularFile(picture.fileName);
     OIIO::TextureSystem& textures = system();
     const OIIO::ustring name(picture.fileName);
+    m_cache->add_file(name, makeWatchedInput);
     picture.handle = textures.get_texture_handle(name);
     std::array<int, 2> size{};
     const bool good =
@@ -181,7 +185,8 @@ TexturePicture TextureSystem::open(const TextureDescription& description) {
                                   &picture.channelCount) &&
         textures.get_texture_info(name, 0, OIIO::ustring("resolution"),
                                   OIIO::TypeDesc(OIIO::TypeDesc::INT, 2), size.data());
-    const std::string reason = textures.geterror();
+    std::string reason = m_cache->geterror();
+    if (const std::string further = textures.geterror(); reason.empty()) reason = further;
     if (!good || picture.channelCount < 1)
         throw CallError(CallStatus::kIo, fmt::format("texture {}: {}", picture.fileName,
                                                      reason.empty() ? "can't be read" : reason));

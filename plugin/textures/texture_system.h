@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <OpenImageIO/imagecache.h>
 #include <OpenImageIO/texture.h>
 
 #include <array>
@@ -109,6 +110,7 @@ class TextureSystem {
                       const Visit& visit) const;
 
     std::once_flag m_once;
+    OIIO::ImageCache* m_cache = nullptr;  // of m_system alone
     OIIO::TextureSystem* m_system = nullptr;
 };
 

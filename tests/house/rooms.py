@@ -40,7 +40,7 @@ MAY_INCLUDE = {
     "plugin/include": "",
     "plugin/values": "integrator/values",
     "plugin/storage": "integrator/caches integrator/photons/trace integrator/transport/plan integrator/values scheduler/film values",
-    "plugin/textures": "integrator/materials integrator/values values",
+    "plugin/textures": "integrator/caches integrator/materials integrator/values values",
     "plugin/parameters": "integrator/materials integrator/scene integrator/values textures values",
     "plugin/session": "integrator/caches integrator/photons/map integrator/photons/trace integrator/scene integrator/tessellation integrator/transport integrator/transport/frame integrator/transport/gather integrator/transport/plan integrator/values parameters scheduler/buckets scheduler/film storage textures values",
     "plugin/api": "include integrator/cameras integrator/geometry integrator/scene integrator/values parameters scheduler/buckets session textures values",

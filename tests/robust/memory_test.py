@@ -109,6 +109,10 @@ class Runs:
         allowed = float(limit) * 1024 * MIB
         allowed += max(allowed / 10, 64 * MIB)
         self.check(most <= allowed, f"{scene}: {most / MIB:.0f} of {allowed / MIB:.0f} MiB resident")
+        for cache in ("textureCache", "geometryCache", "photonPages"):
+            told = stats.get(cache, {"misses": 0, "missesOf": {}})
+            counted = sum(told["missesOf"].values())
+            self.check((counted > 0) == (told["misses"] > 0), f"{cache}: {counted} misses have a user")
         for cache, working_set, budget, again in caches(roomy, stats):
             self.check(working_set >= 8 * budget,
                        f"{cache}: {working_set / MIB:.0f} MiB through {budget / MIB:.1f} MiB")  # fmt: skip

@@ -70,6 +70,8 @@ TEST_F(Pages, GiveThePictureOfMapsInMemory) {
         expectSamePicture(whole, readExr(path("few.exr")));
         EXPECT_EQ(statistics()["counters"], counters);
         pages = statistics()["photonPages"];
+        // Sites are filled before gather rays ask for them.
+        EXPECT_GT(pages["missesOf"]["photon"], 0);
         const auto budget = pages["budgetBytes"].get<std::uint64_t>();
         EXPECT_GE(pages["wholeBytes"].get<std::uint64_t>(), 8 * budget);
         EXPECT_GE(pages["bytesRead"].get<std::uint64_t>(), 8 * budget);

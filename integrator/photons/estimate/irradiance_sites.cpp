@@ -2,9 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/photons/estimate/irradiance_sites.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
 #include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
@@ -21,6 +25,8 @@ constexpr float kSiteCosine = 0.8f;
 constexpr float kSiteFlatness = 0.2f;
 // Cells whose sites are not seen are halved so often at most.
 constexpr int kMostHalvings = 3;
+// Of the map, filled by one thread: some pages.
+constexpr std::uint32_t kPhotonsAtOnce = 1 << 14;
 constexpr std::size_t kFewestSlots = 1 << 16, kMostSlots = 1 << 22, kMostProbes = 16;
 // Slots of a photon in the first pass: of evenly lit rooms a quarter to a third was in use there,
 // and as radii shrink, sites grow in number. Later passes have up to three times as many.
@@ -176,6 +182,29 @@ TwoRadii IrradianceSites::at(const Vec3f& position, const Vec3f& normal) const {
         if (const auto found = ask(m_cells.at(position, normal, halvings), position, normal))
             return *found;
     return estimate(position, normal, patternAt(position));
+}
+
+void IrradianceSites::fill(const CancelCheck& cancel) const {
+    const PhotonMap& map = m_estimate.map();
+    const auto fillSome = [&](const tbb::blocked_range<std::uint32_t>& some) {
+        cancel.throwIfSet("estimating irradiance");
+        const CacheWatch::As as(CacheUser::kPhoton);
+        std::uint64_t last = 0;
+        for (std::uint32_t i = some.begin(); i < some.end(); ++i) {
+            const Photon photon = map.photon(i);
+            const Vec3f normal = photon.normal.unpack();
+            const Cell cell = m_cells.at(photon.position, normal);
+            const std::uint64_t hash = cell.hash();
+            if (std::exchange(last, hash) == hash) continue;
+            Slot* const slot = slotOf(hash);
+            if (!slot) continue;
+            const Place site = placeOf(cell, slot);
+            if (isBeside(site, cell, photon.position, normal)) valueOf(cell, hash, site, slot);
+        }
+    };
+    tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(map.size()),
+                                                        kPhotonsAtOnce),
+                      fillSome);
 }
 
 std::uint64_t IrradianceSites::memoryBytes() const {

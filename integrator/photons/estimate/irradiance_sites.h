@@ -43,6 +43,11 @@ class IrradianceSites {
         __builtin_prefetch(&m_slots[firstSlot(siteOf(position, normal))]);
     }
 
+    // Computes those where photons landed, in the map's order, so that a map in pages is read about
+    // once, page after page; to the same bits as when they are asked for. In parallel in the
+    // calling TBB arena. Throws Error(kCancelled) soon after cancel is set.
+    void fill(const CancelCheck& cancel) const;
+
     // Irradiance, W m^-2, at a point, computed now. pattern turns the rays about the normal.
     TwoRadii estimate(const Vec3f& position, const Vec3f& normal, std::uint32_t pattern) const {
         return estimateOf(m_cells.focus().levelAt(position)).at(position, normal, pattern);

@@ -69,6 +69,7 @@ class SurfaceEstimate {
         : m_scene(scene), m_map(map), m_radius(radius), m_patches(nullptr), m_weights(&weights) {}
 
     const Scene& scene() const { return m_scene; }
+    const PhotonMap& map() const { return m_map; }
     float radius() const { return m_radius; }
     // Which photons count for a point, distance aside.
     PhotonGate gate(const Vec3f& position, const Vec3f& normal) const {

@@ -19,6 +19,7 @@ CacheCounts& operator+=(CacheCounts& sum, const CacheCounts& counts) {
     sum.madeAgain += counts.madeAgain;
     sum.waits += counts.waits;
     sum.bytesMade += counts.bytesMade;
+    for (std::size_t i = 0; i < kCacheUsers; ++i) sum.missesOf[i] += counts.missesOf[i];
     return sum;
 }
 

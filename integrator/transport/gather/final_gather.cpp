@@ -118,6 +118,7 @@ Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray
 
 void endGather(const GatherEnds& ends, Gathered& gathered) {
     if (!gathered.isWaiting) return;
+    const CacheWatch::As as(CacheUser::kGather);
     gathered.isWaiting = false;
     TwoRadii irradiance = ends.sites.at(gathered.position, gathered.normal);
     if (gathered.density > 0.0f)

@@ -61,6 +61,8 @@ class VirtualLamps {
     // which lamps; spread it evenly over places near each other.
     Rgb sampled(const Place& place, std::uint32_t gatherRays, float u) const;
 
+    // As IrradianceSites::fill, of what gathered() and kept() read.
+    void fill(const CancelCheck& cancel) const { m_sites.fill(cancel); }
     // Asks for what gathered() reads to be at hand soon.
     void prefetch(const Vec3f& position, const Vec3f& normal) const {
         m_sites.prefetch(position, normal);

@@ -73,8 +73,8 @@ std::uint64_t PhotonPass::PassMaps::memoryBytes() const {
 void PhotonPass::noteBuilding(const PassMaps& maps, std::size_t photons) {
     const std::lock_guard lock(m_mutex);
     const std::uint64_t building =
-        m_paging ? m_paging->mostBuildBytes()
-                 : photons * (PhotonMap::kBytesPerPhoton - PhotonMap::kHeldBytesPerPhoton);
+        m_paging.pages ? m_paging.pages->mostBuildBytes()
+                       : photons * (PhotonMap::kBytesPerPhoton - PhotonMap::kHeldBytesPerPhoton);
     m_peakMapBytes = std::max(m_peakMapBytes, heldMapBytes() + maps.memoryBytes() + building);
 }
 
@@ -85,7 +85,7 @@ std::uint64_t PhotonPass::heldMapBytes() const {
          {m_causticRadius.get(), m_refocusedRadius.get(), m_receivedRadius.get()})
         if (radius) held += radius->memoryBytes();
     for (const PassMaps& maps : m_held) held += maps.memoryBytes();
-    if (m_paging) held += m_paging->counts().bytesHeld;
+    if (m_paging.pages) held += m_paging.pages->counts().bytesHeld;
     return held;
 }
 
@@ -148,9 +148,9 @@ PhotonTraceResult PhotonPass::trace(PhotonKind kind, std::uint64_t count, std::u
 // In files where maps are in pages.
 PhotonPass::ForMaps PhotonPass::traceForMaps(PhotonKind kind, std::uint64_t count,
                                              std::uint32_t pass, Control& control) {
-    ForMaps traced{TracedPhotons(m_paging), TracedPhotons(m_paging), {}};
+    ForMaps traced{TracedPhotons(m_paging.pages), TracedPhotons(m_paging.pages), {}};
     TraceRounds rounds;
-    if (m_paging) rounds.bytes = m_paging->buildBudget();
+    if (m_paging.pages) rounds.bytes = m_paging.pages->buildBudget();
     rounds.take = [&](PhotonTraceResult part) {
         traced.photons.append(std::move(part.photons));
         traced.descended.append(std::move(part.descended));
@@ -179,7 +179,8 @@ TracedPhotons PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
         const float radius = radiusOfGathered();
         maps.lamps = std::make_unique<VirtualLamps>(
             m_scene, maps.caustic->photons(), radius * factor, patchesOfSites(radius), factor,
-            combineBits(m_settings.seed, maps.pass), check, m_roomForSites);
+            combineBits(m_settings.seed, maps.pass), check, m_paging.roomForSites);
+        if (fillsSites(maps.caustic->photons())) maps.lamps->fill(check);
         maps.refocusedPhotons = std::make_unique<PhotonMap>(
             traced.descended.refocused().intoMap(check, m_scene.coreRadiusIfAny()));
         maps.refocused = std::make_unique<SurfaceEstimate>(m_scene, *maps.refocusedPhotons,
@@ -199,6 +200,19 @@ const SurfacePatches* PhotonPass::patchesOfSites(float radius) const {
     return m_scene.meanTriangleArea() > disc ? m_patches.get() : nullptr;
 }
 
+// Gather rays end in no order, and so ask for pages of a map in none: where many will, its sites
+// are filled before, in the map's order. Filling costs some 3 us a photon, asking some 100 us a ray
+// at the least; see docs/lab/order_caches.md.
+bool PhotonPass::fillsSites(const PhotonMap& map) const {
+    if (!map.isPaged() || m_paging.pages->budget() >= m_paging.pages->wholeBytes()) return false;
+    constexpr double kPhotonsOfRay = 32.0;
+    const auto spacing = static_cast<double>(m_plan.gatherSpacing);
+    const double rays =
+        static_cast<double>(m_settings.window.area()) / (spacing * spacing) * m_raysOfPoint;
+    return rays * static_cast<double>(m_paging.shareOfWindow) * kPhotonsOfRay >=
+           static_cast<double>(map.size());
+}
+
 void PhotonPass::buildIndirect(PassMaps& maps, TracedPhotons descended, Control& control) {
     ForMaps traced = traceForMaps(PhotonKind::kGlobal, m_plan.globalPhotons, maps.pass, control);
     const Stopwatch watch;
@@ -209,7 +223,8 @@ void PhotonPass::buildIndirect(PassMaps& maps, TracedPhotons descended, Control&
     noteBuilding(maps, maps.global->size());
     maps.sites = std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor,
                                                    patchesOfSites(m_globalRadius), factor, m_focus,
-                                                   m_roomForSites);
+                                                   m_paging.roomForSites);
+    if (fillsSites(*maps.global)) maps.sites->fill(CancelCheck(control.cancelled));
     const GatherPoints::Request request{.width = m_settings.width,
                                         .height = m_settings.height,
                                         .spacing = m_plan.gatherSpacing,
@@ -235,7 +250,7 @@ void PhotonPass::buildMaps(std::uint32_t pass, Control& control) {
         m_peakMapBytes = peakMapBytes();
         m_patches->makeRoom();
     }
-    TracedPhotons descended(m_paging);
+    TracedPhotons descended(m_paging.pages);
     if (m_plan.causticMap) descended = buildCaustics(maps, control);
     if (m_plan.globalMap) buildIndirect(maps, std::move(descended), control);
     const std::lock_guard lock(m_mutex);

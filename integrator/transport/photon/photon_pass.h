@@ -22,6 +22,7 @@
 #include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/frame/map_paging.h"
 #include "integrator/transport/frame/render_settings.h"
 #include "integrator/transport/frame/transport_plan.h"
 #include "integrator/transport/photon/photon_integrator.h"
@@ -43,10 +44,7 @@ class PhotonPass {
 
     // As FrameRenderer::readPhotons and tracePass.
     void readFrom(const PhotonSource& source) { m_source = &source; }
-    void pageMaps(PhotonPaging& paging, float roomForSites) {
-        m_paging = &paging;
-        m_roomForSites = roomForSites;
-    }
+    void pageMaps(const MapPaging& paging) { m_paging = paging; }
     void traceInto(PhotonSink& sink, std::uint32_t pass, const std::atomic<bool>& cancelled,
                    const std::function<void(double)>& progress);
 
@@ -114,6 +112,7 @@ class PhotonPass {
     // At which gather rays read caustics.
     float radiusOfGathered() const;
     const SurfacePatches* patchesOfSites(float radius) const;
+    bool fillsSites(const PhotonMap& map) const;
     void buildIndirect(PassMaps& maps, TracedPhotons descended, Control& control);
     void findFocus(const CancelCheck& check);
     void aim(Control& control);
@@ -135,9 +134,8 @@ class PhotonPass {
     const Plan& m_plan;
     const RenderSettings& m_settings;
     const PhotonSource* m_source = nullptr;  // null: photons are traced
-    PhotonPaging* m_paging = nullptr;        // null: maps are in memory
-    float m_roomForSites = 1.0f;             // see IrradianceSites
-    bool m_pilotsAreKept = false;            // by the sink
+    MapPaging m_paging;
+    bool m_pilotsAreKept = false;  // by the sink
     // Of the first pass, scene units.
     bool m_haveRadii = false;
     float m_globalRadius = 0.0f;               // in focus

@@ -147,7 +147,7 @@ void PhotonPass::findRadii(Control& control) {
     // Where a pilot finds next to nothing, estimates reach a hundredth of the scene.
     const auto fallback = static_cast<float>(0.01 * m_scene.coreRadius());
     const CancelCheck check(control.cancelled);
-    TracedPhotons global(m_paging);
+    TracedPhotons global(m_paging.pages);
     if (m_plan.globalMap) {
         if (!m_source) findFocus(check);
         ForMaps pilot =

@@ -6,17 +6,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdio>
 #include <map>
-#include <numeric>
-#include <thread>
 
-#include "plugin/session/bucket_needs.h"
 #include "scheduler/buckets/bucket_order.h"
+#include "tests/bench/order/cache_rendering.h"
 #include "tests/bench/order/cache_replay.h"
 #include "tests/bench/order/cache_scenes.h"
-#include "tests/bench/order/order_run.h"
 #include "tests/bench/plot/log_plot.h"
 #include "tests/bench/plot/ratios.h"
 #include "tests/bench/plot/report.h"
@@ -24,121 +20,13 @@
 namespace pm::bench {
 namespace {
 
-constexpr std::int32_t kBucketPixels = 16;
 constexpr std::array<std::uint64_t, 6> kShares{32, 16, 8, 4, 2, 1};  // of the working set
 constexpr std::uint32_t kStoreMicroseconds = 1000;
 constexpr int kRandomSeeds = 5;
 const std::vector<std::string> kPlayed{"hilbert", "row", "random", "correlated"};
 
-// The paper's network: whoever misses waits.
-class PauseWatch : public CacheWatch {
-  public:
-    explicit PauseWatch(std::uint32_t microseconds) : m_microseconds(microseconds) {}
-    void asked(const CacheAsked& what) override {
-        if (what.missed && m_microseconds > 0)
-            std::this_thread::sleep_for(std::chrono::microseconds(m_microseconds));
-    }
-
-  private:
-    std::uint32_t m_microseconds;
-};
-
-struct CacheRun {
-    double seconds = 0;  // of the buckets
-    std::uint64_t misses = 0;
-    std::vector<std::uint32_t> cells;  // as begun
-};
-
-struct Asked {
-    std::string order = "hilbert";
-    std::uint64_t budget = 0;
-    int threads = 1;
-    std::uint32_t pause = 0;  // microseconds a miss
-};
-
-class CacheBench {
-  public:
-    explicit CacheBench(CacheScene scene)
-        : m_scene(std::move(scene)),
-          m_grid(m_scene.settings.window, kBucketPixels),
-          m_order(m_scene.name, m_scene.scene, m_scene.settings, m_scene.photons.get()) {}
-
-    const CacheScene& scene() const { return m_scene; }
-    const CacheTrace& trace() const { return m_trace; }
-    std::uint64_t workingSet() const { return m_trace.workingSet(); }
-    double secondsOf(std::uint32_t cell) const { return m_seconds[cell]; }
-
-    // Renders with all in memory, and writes down what each bucket asks for.
-    void observe() {
-        const BucketTimes plain = m_order.render(settingOf({.budget = ~std::uint64_t{0} >> 1}));
-        m_seconds.assign(m_grid.cellCount(), 0.0);
-        for (std::size_t i = 0; i < plain.cells.size(); ++i)
-            m_seconds[plain.cells[i]] =
-                std::accumulate(plain.atoms[i].begin(), plain.atoms[i].end(), 0.0);
-        TraceWatch watch(m_grid.cellCount());
-        BucketSetting setting = settingOf({.budget = ~std::uint64_t{0} >> 1});
-        setting.around = [&](std::uint32_t cell, const std::function<void()>& render) {
-            const CacheWatch::Scope scope(&watch);
-            watch.begin(cell);
-            render();
-        };
-        m_order.render(setting);
-        m_trace = watch.take();
-    }
-
-    CacheRun run(const Asked& asked) {
-        BucketSetting setting = settingOf(asked);
-        std::uint64_t before = 0;
-        setting.prepared = [&, inner = setting.prepared] {
-            inner();
-            before = m_scene.misses();
-        };
-        std::unique_ptr<plugin::BucketNeeds> needs;
-        if (asked.order == "correlated" && m_scene.groups) {
-            needs = std::make_unique<plugin::BucketNeeds>(m_grid, *m_scene.groups);
-            setting.missing = [&](std::uint32_t cell) { return needs->missing(cell); };
-        }
-        setting.around = [&](std::uint32_t cell, const std::function<void()>& render) {
-            PauseWatch pause(m_scene.setPause ? 0 : asked.pause);
-            const CacheWatch::Scope scope(&pause);
-            const plugin::BucketNeeds::Noting noting(needs.get(), cell);
-            render();
-        };
-        if (m_scene.setPause) m_scene.setPause(asked.pause);
-        const BucketTimes times = m_order.render(setting);
-        if (m_scene.setPause) m_scene.setPause(0);
-        return {times.seconds, m_scene.misses() - before, times.cells};
-    }
-
-    // seed: of random; correlated: as chosen with an eighth of the working set.
-    std::vector<std::uint32_t> cellsOf(const std::string& order, std::uint64_t seed = 1) {
-        if (order != "correlated")
-            return findBucketOrder(order)->cells(m_grid.columns(), m_grid.rows(), seed);
-        if (m_correlated.empty()) m_correlated = run({.order = order, .budget = budgetOf(8)}).cells;
-        return m_correlated;
-    }
-    std::uint64_t budgetOf(std::uint64_t share) const { return workingSet() / share; }
-
-  private:
-    BucketSetting settingOf(const Asked& asked) {
-        BucketSetting setting{asked.order, kBucketPixels, asked.threads, {}, {}, {}};
-        setting.prepared = [this, budget = asked.budget] {
-            m_scene.empty();
-            m_scene.setBudget(budget);
-        };
-        return setting;
-    }
-
-    CacheScene m_scene;
-    BucketGrid m_grid;
-    OrderScene m_order;
-    CacheTrace m_trace;
-    std::vector<double> m_seconds;  // of each bucket, all in memory
-    std::vector<std::uint32_t> m_correlated;
-};
-
 // Means over seeds where the order has some.
-double missesOf(CacheBench& bench, const std::string& order, const CacheRules& rules) {
+double missesOf(CacheRendering& bench, const std::string& order, const CacheRules& rules) {
     const int seeds = order == "random" ? kRandomSeeds : 1;
     double sum = 0;
     for (int seed = 1; seed <= seeds; ++seed)
@@ -149,7 +37,7 @@ double missesOf(CacheBench& bench, const std::string& order, const CacheRules& r
     return sum / seeds;
 }
 
-void tellMisses(Report& report, CacheBench& bench, const std::string& plotFile) {
+void tellMisses(Report& report, CacheRendering& bench, const std::string& plotFile) {
     std::vector<std::string> header{"order"};
     for (const std::uint64_t share : kShares) header.push_back(fmt::format("1/{}", share));
     for (const int threads : {1, 2}) {
@@ -181,7 +69,7 @@ void tellMisses(Report& report, CacheBench& bench, const std::string& plotFile) 
     }
 }
 
-void tellUsers(Report& report, std::vector<std::unique_ptr<CacheBench>>& benches) {
+void tellUsers(Report& report, std::vector<std::unique_ptr<CacheRendering>>& benches) {
     report.table("Whose misses they are, Hilbert's order, a cache of an eighth of the working set",
                  {"scene", "camera", "lamps", "paths that go on", "gather rays", "photons"});
     for (const auto& bench : benches) {
@@ -195,7 +83,44 @@ void tellUsers(Report& report, std::vector<std::unique_ptr<CacheBench>>& benches
     }
 }
 
-void tellTimes(Report& report, CacheBench& bench, int turns) {
+// What is won back of what rays miss that scatter, or could be.
+void tellRemedies(Report& report, CacheRendering& bench) {
+    constexpr std::array<CacheUser, 1> kGather{CacheUser::kGather};
+    constexpr std::array<CacheUser, 2> kBoth{CacheUser::kGather, CacheUser::kShadow};
+    constexpr std::uint64_t kCoarser = 16;  // triangles: a quarter of the rate
+    report.table(
+        bench.scene().name +
+            ": won back, or could be; Hilbert's order, a cache of an eighth of the working "
+            "set",
+        {"remedy", "", "misses", "misses over none"});
+    const CacheTrace& plain = bench.roomyTrace();
+    const std::uint64_t budget = std::max(plain.workingSet() / 8, bench.scene().leastBudget);
+    double none = 0;
+    const auto tell = [&](const std::string& remedy, const char* how, std::uint64_t misses) {
+        if (none == 0) none = static_cast<double>(misses);
+        report.row({remedy, how, std::to_string(misses),
+                    fmt::format("{:.2f}", static_cast<double>(misses) / none)});
+    };
+    const auto replay = [&](const std::string& remedy, const CacheTrace& changed) {
+        tell(remedy, "replayed",
+             replayCaches(changed, bench.cellsOf("hilbert"), {.budget = budget}).misses);
+    };
+    replay("none", plain);
+    if (bench.scene().photons) replay("sites filled before, in the map's order", bench.trace());
+    replay("a bucket's rays batched: each value once", batched(plain));
+    if (bench.scene().groups) {
+        replay("gather rays see groups of a quarter of the rate",
+               coarsened(plain, kGather, kCoarser));
+        replay("gather and shadow rays do", coarsened(plain, kBoth, kCoarser));
+    }
+    if (!bench.scene().remedied) return;
+    none = 0;
+    tell("none", "rendered", bench.run({.budget = budget}).misses);
+    CacheRendering remedied(bench.scene().remedied());
+    tell(bench.scene().remedy, "rendered", remedied.run({.budget = budget}).misses);
+}
+
+void tellTimes(Report& report, CacheRendering& bench, int turns) {
     std::vector<std::string> header{"cache", "threads", "a miss costs"};
     for (const std::string& order : kPlayed) header.push_back(order);
     header.push_back("misses " + kPlayed[0]);
@@ -242,7 +167,7 @@ void tellTimes(Report& report, CacheBench& bench, int turns) {
 }
 
 // Each machine renders a run of the order and has a cache of its own; nothing else is shared.
-double secondsOfMachines(CacheBench& bench, const std::vector<std::uint32_t>& cells,
+double secondsOfMachines(CacheRendering& bench, const std::vector<std::uint32_t>& cells,
                          std::size_t machines, std::uint64_t budget) {
     double most = 0;
     for (std::size_t machine = 0; machine < machines; ++machine) {
@@ -257,7 +182,7 @@ double secondsOfMachines(CacheBench& bench, const std::vector<std::uint32_t>& ce
     return most;
 }
 
-void tellMachines(Report& report, CacheBench& bench) {
+void tellMachines(Report& report, CacheRendering& bench) {
     report.table(
         fmt::format("{}: machines, each with one run of the order and a cache of its own, 1 ms a "
                     "miss; replayed seconds of the slowest, and what Hilbert's order gains over "
@@ -309,10 +234,10 @@ int runProgram(int argc, char** argv) {
             turns = 2;
             side = 96;
         }
-        std::vector<std::unique_ptr<CacheBench>> benches;
+        std::vector<std::unique_ptr<CacheRendering>> benches;
         const auto add = [&](const char* name, auto make) {
             if (only.empty() || only == name)
-                benches.push_back(std::make_unique<CacheBench>(make()));
+                benches.push_back(std::make_unique<CacheRendering>(make()));
         };
         add("landscape", [&] { return landscape(side); });
         add("room", [&] { return texturedRoom(side, folder); });
@@ -324,6 +249,7 @@ int runProgram(int argc, char** argv) {
         for (const auto& bench : benches) {
             const std::string plot =
                 plots.empty() ? "" : fmt::format("{}/cache_misses_{}.svg", plots, ++number);
+            tellRemedies(report, *bench);
             tellMisses(report, *bench, plot);
             tellMachines(report, *bench);
             if (turns > 0) tellTimes(report, *bench, turns);

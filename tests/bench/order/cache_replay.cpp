@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 #include <numeric>
+#include <utility>
 
 #include "integrator/caches/bounded_cache.h"
 
@@ -69,6 +70,7 @@ void TraceWatch::begin(std::uint32_t cell) {
 }
 
 void TraceWatch::asked(const CacheAsked& what) {
+    if (what.cache == m_untraced) return;
     const std::uint64_t name = std::uint64_t{what.cache} << 48 ^ what.key;
     const auto [found, isNew] =
         m_numbers.try_emplace(name, static_cast<std::uint32_t>(m_trace.bytes.size()));
@@ -78,6 +80,29 @@ void TraceWatch::asked(const CacheAsked& what) {
     m_recent[m_next++ % kRecent] = value;
     m_trace.buckets[m_cell].push_back(
         {value & 0xfffffffu, static_cast<std::uint32_t>(what.user) & 0xfu});
+}
+
+CacheTrace batched(const CacheTrace& trace) {
+    CacheTrace result{trace.bytes, {}};
+    std::vector<std::size_t> lastBucket(trace.bytes.size(), trace.buckets.size());
+    for (std::size_t bucket = 0; bucket < trace.buckets.size(); ++bucket) {
+        std::vector<TracedLook>& looks = result.buckets.emplace_back();
+        for (const TracedLook look : trace.buckets[bucket])
+            if (std::exchange(lastBucket[look.value], bucket) != bucket) looks.push_back(look);
+    }
+    return result;
+}
+
+CacheTrace coarsened(const CacheTrace& trace, std::span<const CacheUser> users,
+                     std::uint64_t divisor) {
+    CacheTrace result = trace;
+    const auto count = static_cast<std::uint32_t>(trace.bytes.size());
+    for (const std::uint64_t bytes : trace.bytes) result.bytes.push_back(bytes / divisor);
+    for (std::vector<TracedLook>& looks : result.buckets)
+        for (TracedLook& look : looks)
+            if (std::ranges::find(users, static_cast<CacheUser>(look.user)) != users.end())
+                look.value = (look.value + count) & 0xfffffffu;
+    return result;
 }
 
 CacheReplay& CacheReplay::operator+=(const CacheReplay& other) {

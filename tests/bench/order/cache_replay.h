@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -31,7 +32,11 @@ struct CacheTrace {
 // Writes one. Threads: one.
 class TraceWatch : public CacheWatch {
   public:
-    explicit TraceWatch(std::size_t cells) { m_trace.buckets.resize(cells); }
+    // untraced: a cache that it does not write down.
+    explicit TraceWatch(std::size_t cells, std::optional<std::uint32_t> untraced = {})
+        : m_untraced(untraced) {
+        m_trace.buckets.resize(cells);
+    }
     // What is asked from here on is this bucket's.
     void begin(std::uint32_t cell);
     void asked(const CacheAsked& what) override;
@@ -40,12 +45,22 @@ class TraceWatch : public CacheWatch {
   private:
     // A cache of so few values is none.
     static constexpr std::size_t kRecent = 16;
+    std::optional<std::uint32_t> m_untraced;
     CacheTrace m_trace;
     std::unordered_map<std::uint64_t, std::uint32_t> m_numbers;
     std::array<std::uint32_t, kRecent> m_recent{};
     std::size_t m_next = 0;
     std::uint32_t m_cell = 0;
 };
+
+// As if each bucket asked for each value once, for all of its rays that need it: the most that
+// sorting or batching its rays can win.
+CacheTrace batched(const CacheTrace& trace);
+
+// As if these users asked for values of their own, `divisor` times smaller, in place of the
+// others': rays that see coarser groups of triangles.
+CacheTrace coarsened(const CacheTrace& trace, std::span<const CacheUser> users,
+                     std::uint64_t divisor);
 
 struct CacheRules {
     std::uint64_t budget = 0;  // bytes, of each machine

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <numeric>
 #include <vector>
 
@@ -83,6 +84,36 @@ TEST(CacheReplay, LooksAreOfTheirUsers) {
     EXPECT_EQ(replay.missesOf[static_cast<std::size_t>(CacheUser::kGather)], 1u);
     EXPECT_EQ(replay.missesOf[static_cast<std::size_t>(CacheUser::kCamera)], 1u);
     EXPECT_EQ(replay.bytes, 40u);
+}
+
+TEST(CacheReplay, OneCacheMayStayUntraced) {
+    TraceWatch watch(1, 1);
+    watch.begin(0);
+    watch.asked({0, 1, 10, true, CacheUser::kGather});
+    watch.asked({1, 1, 30, true, CacheUser::kGather});
+    EXPECT_EQ(watch.take().workingSet(), 10u);
+}
+
+// One value fits; two are asked for by turns.
+TEST(CacheReplay, ABatchedBucketAsksForEachValueOnce) {
+    CacheTrace trace{{10, 10}, {{{0, 0}, {1, 0}, {0, 0}, {1, 0}}, {{1, 0}, {0, 0}}}};
+    const std::vector<std::uint32_t> order{0, 1};
+    EXPECT_EQ(replayCaches(trace, order, {10, 1, 1}).misses, 5u);
+    const CacheTrace once = batched(trace);
+    EXPECT_EQ(once.buckets[0].size(), 2u);
+    EXPECT_EQ(once.buckets[1].size(), 2u);
+    EXPECT_EQ(replayCaches(once, order, {10, 1, 1}).misses, 3u);
+}
+
+TEST(CacheReplay, CoarserValuesAreTheirUsersOwn) {
+    constexpr auto gather = static_cast<std::uint32_t>(CacheUser::kGather) & 0xfu;
+    const CacheTrace trace{{32, 16}, {{{0, 0}, {0, gather}, {1, gather}}}};
+    const std::vector<std::uint32_t> order{0};
+    EXPECT_EQ(replayCaches(trace, order, {1000, 1, 1}).bytes, 48u);
+    const std::array<CacheUser, 1> users{CacheUser::kGather};
+    const CacheReplay coarse = replayCaches(coarsened(trace, users, 4), order, {1000, 1, 1});
+    EXPECT_EQ(coarse.misses, 3u);
+    EXPECT_EQ(coarse.bytes, 32u + 8u + 4u);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "integrator/photons/map/photon_pages.h"
@@ -23,20 +24,22 @@ struct CacheScene {
     std::function<void()> empty;  // the cache
     std::function<void(std::uint64_t bytes)> setBudget;
     std::function<std::uint64_t()> misses;  // so far
-    // Each miss takes so much longer from here on, as if it came from another machine: the thread
-    // that reads sleeps. Empty where a CacheWatch is told of misses: it can sleep.
-    std::function<void(std::uint32_t microseconds)> setPause;
+    // A cache, as CacheWatch numbers it, that tells its misses alone: no trace has them.
+    std::optional<std::uint32_t> untraced;
     std::uint64_t leastBudget = 0;          // bytes, below which setBudget changes nothing
     const GroupCache* groups = nullptr;     // null: not geometry
     std::shared_ptr<PhotonPaging> photons;  // null: photon maps are in memory
+    // The same scene with less to miss, or empty.
+    std::string remedy;
+    std::function<CacheScene()> remedied;
 };
 
 // Hills of some millions of triangles, displaced, cut on demand, from a man's height above ground,
 // under a sun and a sky. side: pixels of the picture.
 CacheScene landscape(std::int32_t side);
 
-// A room of 24 panels, each with a picture of 2048 x 2048 texels of its own, tiled, without levels.
-// folder: for the pictures, 300 MB.
+// A room of 24 panels, each with a picture of 2048 x 2048 texels of its own, tiled. Its remedy:
+// with levels. folder: for the pictures, 700 MB.
 CacheScene texturedRoom(std::int32_t side, const std::filesystem::path& folder);
 
 // A box with a glass and a mirror sphere, and millions of photons in pages. folder: for their

@@ -128,7 +128,7 @@ OrderScene::OrderScene(std::string name, std::shared_ptr<const Scene> scene,
     : m_name(std::move(name)),
       m_settings(settings),
       m_renderer(std::make_unique<FrameRenderer>(std::move(scene), settings)) {
-    if (paging) m_renderer->pageMaps(*paging);
+    if (paging) m_renderer->pageMaps({paging});
 }
 
 void OrderScene::beginPass(int threads) {
@@ -138,6 +138,7 @@ void OrderScene::beginPass(int threads) {
 
 BucketTimes OrderScene::render(const BucketSetting& setting) {
     BucketTimes times;
+    if (setting.begun) setting.begun();
     const double prepareStart = processorSeconds();
     times.prepareSeconds = secondsOf([&] { beginPass(setting.threads); });
     times.prepareProcessorSeconds = processorSeconds() - prepareStart;

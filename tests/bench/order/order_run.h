@@ -19,8 +19,8 @@ struct BucketSetting {
     std::string order = "hilbert";
     std::int32_t size = 32;  // pixels
     int threads = 1;
-    // All of these may be empty. Photons and maps are made, the buckets not begun.
-    std::function<void()> prepared = {};
+    // All of these may be empty. Nothing is made yet; photons and maps are, the buckets not begun.
+    std::function<void()> begun = {}, prepared = {};
     // Renders an atom of a bucket, on the thread that does.
     std::function<void(std::uint32_t cell, const std::function<void()>& render)> around = {};
     CorrelatedChoice::Missing missing = {};

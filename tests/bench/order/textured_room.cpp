@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
+#include <OpenImageIO/imagebufalgo.h>
 #include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <array>
-#include <atomic>
-#include <chrono>
 #include <cmath>
 #include <stdexcept>
-#include <thread>
 #include <vector>
 
 #include "integrator/caches/cache_watch.h"
 #include "plugin/textures/scene_textures.h"
+#include "plugin/textures/watched_input.h"
 #include "tests/bench/order/cache_scenes.h"
 #include "tests/support/scene_maker.h"
 
@@ -21,37 +20,6 @@ namespace pm::bench {
 namespace {
 
 constexpr std::uint32_t kTexels = 2048, kTile = 64, kPanels = 24;
-constexpr const char* kSlowEnding = "pmslow";
-
-std::atomic<std::uint32_t> pauseMicroseconds{0};
-
-// A TIFF file read through a network: each tile takes a pause longer.
-class SlowInput final : public OIIO::ImageInput {
-  public:
-    const char* format_name() const override { return kSlowEnding; }
-    bool open(const std::string& name, OIIO::ImageSpec& spec) override {
-        m_file = OIIO::ImageInput::create("tiff");
-        if (!m_file || !m_file->open(name, spec)) return false;
-        m_spec = spec;
-        return true;
-    }
-    bool close() override { return !m_file || m_file->close(); }
-    bool seek_subimage(int subimage, int level) override {
-        return m_file && m_file->seek_subimage(subimage, level);
-    }
-    bool read_native_scanline(int subimage, int level, int y, int z, void* data) override {
-        return m_file->read_native_scanline(subimage, level, y, z, data);
-    }
-    bool read_native_tile(int subimage, int level, int x, int y, int z, void* data) override {
-        if (const std::uint32_t pause = pauseMicroseconds.load())
-            std::this_thread::sleep_for(std::chrono::microseconds(pause));
-        return m_file->read_native_tile(subimage, level, x, y, z, data);
-    }
-
-  private:
-    std::unique_ptr<OIIO::ImageInput> m_file;
-};
-
 // Tells the thread's watch which tiles a look-up reads.
 class ToldTextures final : public TextureSource {
   public:
@@ -129,6 +97,14 @@ void writePicture(const std::filesystem::path& file, std::uint32_t number) {
         throw std::runtime_error(fmt::format("{}: {}", file.string(), OIIO::geterror()));
 }
 
+void addLevels(const std::string& from, const std::string& to) {
+    OIIO::ImageSpec config;
+    config.tile_width = config.tile_height = kTile;
+    config.attribute("compression", "none");
+    if (!OIIO::ImageBufAlgo::make_texture(OIIO::ImageBufAlgo::MakeTxTexture, from, to, config))
+        throw std::runtime_error(fmt::format("{}: {}", to, OIIO::geterror()));
+}
+
 // Two by two panels on each side of a cube around the origin, each of a material of its own.
 void addPanels(test::SceneMaker& maker) {
     constexpr std::array<std::array<Vec3d, 3>, 6> kSides{{
@@ -149,6 +125,7 @@ void addPanels(test::SceneMaker& maker) {
                 mesh.positions.emplace_back(position);
             mesh.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
             mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+            mesh.texcoordIndices = mesh.triangles;
             mesh.materials = {0, 0};
             mesh.faces = {0, 0};
             MaterialDescription panel;
@@ -161,17 +138,9 @@ void addPanels(test::SceneMaker& maker) {
 
 }  // namespace
 
-CacheScene texturedRoom(std::int32_t side, const std::filesystem::path& folder) {
-    static const char* endings[] = {kSlowEnding, nullptr};
-    OIIO::declare_imageio_format(
-        kSlowEnding, [] { return static_cast<OIIO::ImageInput*>(new SlowInput); }, endings, nullptr,
-        nullptr, nullptr);
-    std::vector<std::string> files;
-    for (std::uint32_t i = 0; i < kPanels; ++i) {
-        const auto file = folder / fmt::format("panel{}.{}", i, kSlowEnding);
-        if (!exists(file)) writePicture(file, i);
-        files.push_back(file.string());
-    }
+namespace {
+
+CacheScene roomOf(std::int32_t side, std::vector<std::string> files) {
     const auto told = std::make_shared<ToldTextures>(std::move(files));
     test::SceneMaker maker;
     maker.description.textures = told;
@@ -188,8 +157,28 @@ CacheScene texturedRoom(std::int32_t side, const std::filesystem::path& folder) 
     made.empty = [told] { told->reopen(); };
     made.setBudget = [told](std::uint64_t bytes) { told->holdAtMost(bytes); };
     made.misses = [told] { return told->misses(); };
-    made.setPause = [](std::uint32_t microseconds) { pauseMicroseconds = microseconds; };
+    made.untraced = plugin::texelCache();
     made.leastBudget = plugin::TextureSystem::kLeastBytes;
+    return made;
+}
+
+}  // namespace
+
+CacheScene texturedRoom(std::int32_t side, const std::filesystem::path& folder) {
+    std::vector<std::string> files, withLevels;
+    for (std::uint32_t i = 0; i < kPanels; ++i) {
+        const auto file = folder / fmt::format("panel{}.tif", i);
+        if (!exists(file)) writePicture(file, i);
+        files.push_back(file.string());
+        withLevels.push_back((folder / fmt::format("panel{}.tx", i)).string());
+    }
+    CacheScene made = roomOf(side, files);
+    made.remedy = "pictures with levels, for wide rays";
+    made.remedied = [side, files, withLevels] {
+        for (std::uint32_t i = 0; i < kPanels; ++i)
+            if (!std::filesystem::exists(withLevels[i])) addLevels(files[i], withLevels[i]);
+        return roomOf(side, withLevels);
+    };
     return made;
 }
 

@@ -177,8 +177,6 @@ TEST(LimitGroups, AreOfNeighbours) {
     EXPECT_LT(area, 3.0 * 64 * 64);
 }
 
-// Every shape of OpenSubdiv's, under each rule: all that lies in boxes, and closed where its cage
-// is.
 // Boxes are as wide as the displacement may be; once made, a group is asked for by those rays alone
 // that meet its own box, though it is no longer held.
 TEST(LimitGroups, AreNotMadeAgainForRaysThatPassBy) {
@@ -193,13 +191,16 @@ TEST(LimitGroups, AreNotMadeAgainForRaysThatPassBy) {
     const Vec3d middle = 0.5 * (box.lo + box.hi);
     const ShearedRay down(Vec3f(Vec3d{middle.x, middle.y, box.hi.z}), {0, 0, -1});
     const ShearedRay by(Vec3f(Vec3d{box.lo.x - 1.0, middle.y, top + 0.5}), {1, 0, 0});
-    EXPECT_TRUE(groups.mayMeet(0, down, 0.0, 100.0));
-    EXPECT_FALSE(groups.mayMeet(0, down, 0.0, 0.5)) << "ends before";
-    EXPECT_FALSE(groups.mayMeet(0, by, 0.0, 100.0));
+    EXPECT_TRUE(static_cast<bool>(groups.pinFor(0, down, 0.0, 100.0)));
+    EXPECT_FALSE(static_cast<bool>(groups.pinFor(0, down, 0.0, 0.5))) << "ends before";
+    EXPECT_FALSE(static_cast<bool>(groups.pinFor(0, by, 0.0, 100.0)));
     LimitGroups other = groupsOf(cage, {}, {&waves});
-    EXPECT_TRUE(other.mayMeet(0, by, 0.0, 100.0)) << "nothing is known yet";
+    other.keepIn(cache, 0);
+    EXPECT_TRUE(static_cast<bool>(other.pinFor(0, by, 0.0, 100.0))) << "nothing is known yet";
 }
 
+// Every shape of OpenSubdiv's, under each rule: all that lies in boxes, and closed where its cage
+// is.
 TEST(LimitGroups, OfEveryRegressionShape) {
     const auto files = objFiles(PM_SHARED_DATA "/subdiv");
     if (files.empty()) GTEST_SKIP() << "no ../shared/data/subdiv";

@@ -4,14 +4,17 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "integrator/photons/estimate/irradiance_sites.h"
 #include "integrator/photons/estimate/surface_patches.h"
+#include "integrator/photons/map/photon_pages.h"
 #include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/sampling/warps.h"
+#include "tests/support/memory_scratch.h"
 #include "tests/support/scene_maker.h"
 #include "tests/support/statistics.h"
 
@@ -69,6 +72,45 @@ TEST(Sites, FollowASlope) {
     EXPECT_NEAR(narrow / n, 0, 0.003);
     // No site is farther away than a cell's diagonal, 0.042; the rest is noise.
     EXPECT_LT(worst, 0.15);
+}
+
+// Of a map in pages of which an eighth is held: filled in the map's order, pages are read a few
+// times; asked for in no order, again and again.
+TEST(Sites, FilledOnesAreThoseAskedFor) {
+    SceneMaker maker;
+    maker.quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, maker.diffuse(Rgb(0.5f)));
+    const auto scene = maker.build();
+    std::vector<Photon> photons;
+    light(photons, 0, 2, 1);
+    MemoryScratch folder;
+    PhotonPaging paging(folder, photons.size() * 28 / 8);
+    auto spool = std::make_unique<PhotonSpool>(paging.makeFile());
+    spool->append(photons);
+    spool->finish();
+    const PhotonMap map(std::move(spool), paging);
+    const IrradianceSites asked(*scene, map, 0.05f), filled(*scene, map, 0.05f);
+    const std::uint64_t pages = photons.size() / 1024 + 1;
+    const auto missesOf = [&](auto act) {
+        const std::uint64_t before = paging.counts().misses;
+        act();
+        return paging.counts().misses - before;
+    };
+    tbb::task_arena(1).execute([&] { EXPECT_LT(missesOf([&] { filled.fill({}); }), 4 * pages); });
+    EXPECT_GT(paging.counts().missesOf[static_cast<std::size_t>(CacheUser::kPhoton)], pages / 2);
+    std::vector<TwoRadii> found, wanted;
+    const auto points = pointsOnPlane(2000, 0);
+    EXPECT_LT(missesOf([&] {
+                  for (const Vec3f& p : points) found.push_back(filled.at(p, kUp));
+              }),
+              pages / 4);
+    EXPECT_GT(missesOf([&] {
+                  for (const Vec3f& p : points) wanted.push_back(asked.at(p, kUp));
+              }),
+              8 * pages);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+        EXPECT_EQ(found[i].wide, wanted[i].wide) << i;
+        EXPECT_EQ(found[i].narrow, wanted[i].narrow) << i;
+    }
 }
 
 // Two plates a fifth of a cell apart, each with its light: no site speaks for the other plate.
