@@ -7,9 +7,11 @@
 
 #include <algorithm>
 #include <mutex>
+#include <span>
 #include <utility>
 
 #include "integrator/photons/trace/photon_walk.h"
+#include "integrator/photons/trace/trace_order.h"
 #include "integrator/values/cancel_check.h"
 
 namespace pm {
@@ -19,6 +21,7 @@ namespace {
 // Small enough for a pass's photons to be shared evenly among many threads: eight batches of 4096
 // left two of these at 1.83 times the speed of one.
 constexpr std::uint64_t kBatchSize = 512;
+static_assert(TraceOrder::kWindow % kBatchSize == 0);
 using Batch = PhotonWalk::Batch;
 
 // Those of all batches, in order; empties them.
@@ -40,9 +43,9 @@ constexpr std::size_t kFirstRound = 16;
 // Of what a round gave there are its batches, which have grown, and what is joined of them.
 constexpr std::uint64_t kCopies = 3;
 
-// Those of the request from batch `first` on, in parallel.
-void traceBatches(const PhotonWalk& walk, const PhotonTraceRequest& request, std::size_t first,
-                  std::vector<Batch>& batches, const std::atomic<bool>& cancelled,
+// Those of the request from batch `first` on, in parallel, in their order.
+void traceBatches(const PhotonWalk& walk, TraceOrder& order, const PhotonTraceRequest& request,
+                  std::size_t first, std::span<Batch> batches, const std::atomic<bool>& cancelled,
                   const std::function<void(double)>& progress) {
     const auto all = static_cast<double>((request.count + kBatchSize - 1) / kBatchSize);
     std::mutex progressMutex;
@@ -53,7 +56,7 @@ void traceBatches(const PhotonWalk& walk, const PhotonTraceRequest& request, std
         // Where next to nothing is absorbed a single photon takes its time.
         for (std::uint64_t i = (first + b) * kBatchSize;
              i < end && !cancelled.load(std::memory_order_relaxed); ++i)
-            walk.trace(i, batches[b]);
+            walk.trace(order.index(i), batches[b]);
         if (!progress) return;
         const std::lock_guard lock(progressMutex);
         progress(static_cast<double>(++done) / all);
@@ -98,12 +101,20 @@ PhotonTraceResult traceInRounds(const Scene& scene, const LightSampler& lights,
     if (request.aim) sums.focus = request.aim->focus();
     if (request.count == 0 || lights.empty()) return sums;
     const PhotonWalk walk(scene, lights, request);
+    TraceOrder order(scene, walk, request.count);
     const CancelCheck check(cancelled);
     const std::size_t batchCount = (request.count + kBatchSize - 1) / kBatchSize;
     std::size_t size = rounds.bytes == TraceRounds::kAll ? batchCount : kFirstRound;
     for (std::size_t first = 0; first < batchCount;) {
         std::vector<Batch> batches(std::min(size, batchCount - first));
-        traceBatches(walk, request, first, batches, cancelled, progress);
+        for (std::size_t done = 0; done < batches.size();) {
+            const std::uint64_t end = order.enter((first + done) * kBatchSize, check);
+            const std::size_t count = std::min<std::size_t>(
+                (end + kBatchSize - 1) / kBatchSize - first - done, batches.size() - done);
+            traceBatches(walk, order, request, first + done,
+                         std::span(batches).subspan(done, count), cancelled, progress);
+            done += count;
+        }
         check.throwIfSet("tracing photons");
         PhotonTraceResult part = joined(batches, check);
         for (const Batch& batch : batches) {

@@ -15,10 +15,21 @@ constexpr float kLeastShare = 0.2f;
 
 }  // namespace
 
-void PhotonWalk::trace(std::uint64_t index, Batch& batch) const {
+Sampler PhotonWalk::samplerOf(std::uint64_t index) const {
     // Even streams are cameras'; see FrameRenderer.
-    Sampler sampler(m_request.seed, 2 * std::uint64_t{m_request.pass} + 1,
-                    static_cast<std::uint64_t>(m_request.kind), static_cast<std::uint32_t>(index));
+    return {m_request.seed, 2 * std::uint64_t{m_request.pass} + 1,
+            static_cast<std::uint64_t>(m_request.kind), static_cast<std::uint32_t>(index)};
+}
+
+std::optional<Ray> PhotonWalk::firstRay(std::uint64_t index) const {
+    Sampler sampler = samplerOf(index);
+    AimedPhoton photon;
+    if (!emit(sampler, photon)) return std::nullopt;
+    return photon.ray;
+}
+
+void PhotonWalk::trace(std::uint64_t index, Batch& batch) const {
+    Sampler sampler = samplerOf(index);
     AimedPhoton photon;
     ++batch.balance.emitted;
     if (!emit(sampler, photon)) return;

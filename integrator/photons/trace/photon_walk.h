@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "integrator/materials/bsdf.h"
@@ -42,11 +43,14 @@ class PhotonWalk {
 
     // Photon `index` of the request, added to the batch.
     void trace(std::uint64_t index, Batch& batch) const;
+    // The ray on which it leaves its light; nothing where none does.
+    std::optional<Ray> firstRay(std::uint64_t index) const;
 
   private:
     // A caustic photon divides at the first of its events.
     static constexpr int kDividedEvents = 2;
 
+    Sampler samplerOf(std::uint64_t index) const;
     bool emit(Sampler& sampler, AimedPhoton& photon) const;
 
     // How far a photon has come.

@@ -201,11 +201,12 @@ const SurfacePatches* PhotonPass::patchesOfSites(float radius) const {
 }
 
 // Gather rays end in no order, and so ask for pages of a map in none: where many will, its sites
-// are filled before, in the map's order. Filling costs some 3 us a photon, asking some 100 us a ray
-// at the least; see docs/lab/order_caches.md.
+// are filled before, in the map's order. That takes some 3 us a photon; a ray else reads three or
+// four pages, of some 100 us each where the disk's own cache is short, too. See
+// docs/lab/order_caches.md.
 bool PhotonPass::fillsSites(const PhotonMap& map) const {
     if (!map.isPaged() || m_paging.pages->budget() >= m_paging.pages->wholeBytes()) return false;
-    constexpr double kPhotonsOfRay = 32.0;
+    constexpr double kPhotonsOfRay = 128.0;
     const auto spacing = static_cast<double>(m_plan.gatherSpacing);
     const double rays =
         static_cast<double>(m_settings.window.area()) / (spacing * spacing) * m_raysOfPoint;

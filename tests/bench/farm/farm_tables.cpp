@@ -71,6 +71,19 @@ std::string wayName(const MeasuredFrame& frame, bool once) {
     return frame.name + (once ? ", traced once" : ", traced by each run");
 }
 
+// Calls tell(frame, once, costs, row) for each way of each frame of both lengths, and reports the
+// row, which begins with their names.
+template <typename Tell>
+void forEachWay(const MeasuredFarm& farm, Report& report, const Tell& tell) {
+    for (const double length : kLengths)
+        for (const MeasuredFrame& frame : farm.frames)
+            for (const bool once : waysOf(frame)) {
+                std::vector<std::string> row{wayName(frame, once), lengthName(length)};
+                tell(frame, once, frame.lastingFor(length), row);
+                report.row(row);
+            }
+}
+
 // From how long a frame on so many workers has such an efficiency; as text.
 std::string longEnough(const MeasuredFarm& farm, const MeasuredFrame& frame, bool once, int workers,
                        double wanted) {
@@ -146,19 +159,16 @@ void tellScale(const MeasuredFarm& farm, Report& report) {
                     "{} ms; in brackets the runs that pm_host farm cuts",
                     kUsual.name, kLatencySeconds * 1e3),
         header);
-    for (const double length : kLengths)
-        for (const MeasuredFrame& frame : farm.frames)
-            for (const bool once : waysOf(frame)) {
-                const FarmCosts costs = frame.lastingFor(length);
-                std::vector<std::string> row{wayName(frame, once), lengthName(length)};
-                for (const int workers : kWorkers) {
-                    const FarmRules rules = rulesOf(farm, workers, kUsual, once);
-                    const FarmReplay replay = replayFarm(costs, rules);
-                    row.push_back(fmt::format(
-                        "{:.1f} % ({})", 100 * efficiencyOf(costs, replay, workers), replay.runs));
-                }
-                report.row(row);
+    forEachWay(
+        farm, report,
+        [&](const MeasuredFrame&, bool once, const FarmCosts& costs,
+            std::vector<std::string>& row) {
+            for (const int workers : kWorkers) {
+                const FarmReplay replay = replayFarm(costs, rulesOf(farm, workers, kUsual, once));
+                row.push_back(fmt::format("{:.1f} % ({})",
+                                          100 * efficiencyOf(costs, replay, workers), replay.runs));
             }
+        });
 }
 
 void tellNetworks(const MeasuredFarm& farm, Report& report) {
@@ -173,25 +183,23 @@ void tellNetworks(const MeasuredFarm& farm, Report& report) {
                              "runs, and with slow workers; and how long a frame has to be",
                              kMany, kUsual.name),
                  header);
-    for (const double length : kLengths)
-        for (const MeasuredFrame& frame : farm.frames)
-            for (const bool once : waysOf(frame)) {
-                const FarmCosts costs = frame.lastingFor(length);
-                std::vector<std::string> row{wayName(frame, once), lengthName(length)};
-                for (const Network& network : kNetworks)
-                    row.push_back(percent(efficiency(costs, rulesOf(farm, kMany, network, once))));
-                FarmRules rules = rulesOf(farm, kMany, kUsual, once);
-                for (const int each : {1, 2, 6}) {
-                    rules.runs = each * kMany;
-                    row.push_back(percent(efficiency(costs, rules)));
-                }
-                rules.runs = 0;
-                rules.slowShare = 0.1;
-                rules.slowSpeed = 0.5;
+    forEachWay(
+        farm, report,
+        [&](const MeasuredFrame& frame, bool once, const FarmCosts& costs,
+            std::vector<std::string>& row) {
+            for (const Network& network : kNetworks)
+                row.push_back(percent(efficiency(costs, rulesOf(farm, kMany, network, once))));
+            FarmRules rules = rulesOf(farm, kMany, kUsual, once);
+            for (const int each : {1, 2, 6}) {
+                rules.runs = each * kMany;
                 row.push_back(percent(efficiency(costs, rules)));
-                row.push_back(longEnough(farm, frame, once, kMany, 0.95));
-                report.row(row);
             }
+            rules.runs = 0;
+            rules.slowShare = 0.1;
+            rules.slowSpeed = 0.5;
+            row.push_back(percent(efficiency(costs, rules)));
+            row.push_back(longEnough(farm, frame, once, kMany, 0.95));
+        });
 }
 
 void tellPaper(const MeasuredFarm& farm, Report& report) {

@@ -23,7 +23,6 @@ namespace {
 constexpr std::array<std::uint64_t, 6> kShares{32, 16, 8, 4, 2, 1};  // of the working set
 constexpr std::uint32_t kStoreMicroseconds = 1000;
 constexpr int kRandomSeeds = 5;
-const std::vector<std::string> kPlayed{"hilbert", "row", "random", "correlated"};
 
 // Means over seeds where the order has some.
 double missesOf(CacheRendering& bench, const std::string& order, const CacheRules& rules) {
@@ -71,14 +70,19 @@ void tellMisses(Report& report, CacheRendering& bench, const std::string& plotFi
 
 void tellUsers(Report& report, std::vector<std::unique_ptr<CacheRendering>>& benches) {
     report.table("Whose misses they are, Hilbert's order, a cache of an eighth of the working set",
-                 {"scene", "camera", "lamps", "paths that go on", "gather rays", "photons"});
+                 {"scene", "camera", "lamps", "paths that go on", "gather rays",
+                  "before the buckets, by photons"});
     for (const auto& bench : benches) {
         const CacheReplay all =
             replayCaches(bench->trace(), bench->cellsOf("hilbert"), {.budget = bench->budgetOf(8)});
         std::vector<std::string> row{bench->scene().name};
-        for (const std::uint64_t misses : all.missesOf)
-            row.push_back(fmt::format(
-                "{:.1f} %", 100.0 * static_cast<double>(misses) / static_cast<double>(all.misses)));
+        const double misses = static_cast<double>(all.misses);
+        for (std::size_t user = 0; user < static_cast<std::size_t>(CacheUser::kPhoton); ++user)
+            row.push_back(
+                fmt::format("{:.1f} %", 100.0 * static_cast<double>(all.missesOf[user]) / misses));
+        const std::uint64_t byPhotons = bench->missesOfPhotons(bench->budgetOf(8));
+        row.push_back(fmt::format("{}, {:.2f} times as many", byPhotons,
+                                  static_cast<double>(byPhotons) / misses));
         report.row(row);
     }
 }
@@ -120,50 +124,67 @@ void tellRemedies(Report& report, CacheRendering& bench) {
     tell(bench.scene().remedy, "rendered", remedied.run({.budget = budget}).misses);
 }
 
+struct TimedRow {
+    std::uint64_t share;
+    int threads;
+    std::uint32_t pause;
+};
+// What a miss costs here at three sizes of the cache, and what it would through a network at one.
+std::vector<TimedRow> timedRows() {
+    std::vector<TimedRow> rows{{32, 1, 0}};
+    for (const std::uint64_t share : {8u, 1u})
+        for (const int threads : {1, 2}) rows.push_back({share, threads, 0});
+    for (const int threads : {1, 2}) rows.push_back({8, threads, kStoreMicroseconds});
+    return rows;
+}
+
+// Of the first order of `played`, its times, misses and the replay's; then the others' times over
+// its own.
+std::vector<std::string> timed(CacheRendering& bench, const std::vector<std::string>& played,
+                               const TimedRow& row, int turns) {
+    const std::uint64_t budget = std::max(bench.budgetOf(row.share), bench.scene().leastBudget);
+    std::vector<std::vector<double>> seconds(played.size()), misses(played.size());
+    for (int turn = 0; turn < turns; ++turn) {
+        for (std::size_t i = 0; i < played.size(); ++i) {
+            const std::size_t at = (static_cast<std::size_t>(turn) + i) % played.size();
+            const CacheRun run = bench.run({played[at], budget, row.threads, row.pause});
+            seconds[at].push_back(run.seconds);
+            misses[at].push_back(static_cast<double>(run.misses));
+        }
+    }
+    std::vector<std::string> cells{
+        fmt::format("1/{} ({:.0f} MiB)", row.share, static_cast<double>(budget) / 0x1p20),
+        std::to_string(row.threads), row.pause > 0 ? "1 ms more" : "as here"};
+    for (const auto& times : seconds) cells.push_back(show(spreadOf(times).median));
+    for (const auto& counts : misses)
+        cells.push_back(fmt::format("{:.0f}", spreadOf(counts).median));
+    cells.push_back(fmt::format(
+        "{:.2f}", missesOf(bench, played[0], {.budget = budget, .threads = row.threads}) /
+                      std::max(1.0, spreadOf(misses[0]).median)));
+    for (std::size_t i = 1; i < played.size(); ++i) {
+        std::vector<double> ratios;
+        for (std::size_t turn = 0; turn < seconds[i].size(); ++turn)
+            ratios.push_back(seconds[i][turn] / seconds[0][turn]);
+        cells.push_back(showRatios(ratios));
+    }
+    return cells;
+}
+
 void tellTimes(Report& report, CacheRendering& bench, int turns) {
+    std::vector<std::string> played{"hilbert", "row", "random"};
+    // Elsewhere it does not choose by the cache.
+    if (bench.scene().groups) played.push_back("correlated");
     std::vector<std::string> header{"cache", "threads", "a miss costs"};
-    for (const std::string& order : kPlayed) header.push_back(order);
-    header.push_back("misses " + kPlayed[0]);
-    header.push_back("replayed over counted, " + kPlayed[0]);
-    for (std::size_t i = 1; i < kPlayed.size(); ++i)
-        header.push_back(fmt::format("time {} / hilbert", kPlayed[i]));
+    for (const std::string& order : played) header.push_back("s " + order);
+    for (const std::string& order : played) header.push_back("misses " + order);
+    header.push_back("replayed over counted");
+    for (std::size_t i = 1; i < played.size(); ++i)
+        header.push_back(fmt::format("time {} / hilbert", played[i]));
     report.table(fmt::format("{}: rendered, seconds of the buckets by the clock, median of {} "
                              "interleaved turns; ratios with their 95 % interval",
                              bench.scene().name, turns),
                  header);
-    for (const std::uint64_t share : {32u, 8u, 2u, 1u}) {
-        const std::uint64_t budget = std::max(bench.budgetOf(share), bench.scene().leastBudget);
-        for (const int threads : {1, 2}) {
-            for (const std::uint32_t pause : {0u, kStoreMicroseconds}) {
-                std::vector<std::vector<double>> seconds(kPlayed.size());
-                std::uint64_t misses = 0;
-                for (int turn = 0; turn < turns; ++turn) {
-                    for (std::size_t i = 0; i < kPlayed.size(); ++i) {
-                        const std::size_t at =
-                            (static_cast<std::size_t>(turn) + i) % kPlayed.size();
-                        const CacheRun run = bench.run({kPlayed[at], budget, threads, pause});
-                        seconds[at].push_back(run.seconds);
-                        if (at == 0) misses = run.misses;
-                    }
-                }
-                std::vector<std::string> row{
-                    fmt::format("1/{} ({:.0f} MiB)", share, static_cast<double>(budget) / 0x1p20),
-                    std::to_string(threads), pause > 0 ? "1 ms more" : "as here"};
-                for (const auto& times : seconds) row.push_back(show(spreadOf(times).median));
-                const double replayed =
-                    missesOf(bench, "hilbert", {.budget = budget, .threads = threads});
-                row.push_back(std::to_string(misses));
-                row.push_back(fmt::format("{:.2f}", replayed / static_cast<double>(misses)));
-                for (std::size_t i = 1; i < kPlayed.size(); ++i) {
-                    std::vector<double> ratios;
-                    for (std::size_t turn = 0; turn < seconds[i].size(); ++turn)
-                        ratios.push_back(seconds[i][turn] / seconds[0][turn]);
-                    row.push_back(showRatios(ratios));
-                }
-                report.row(row);
-            }
-        }
-    }
+    for (const TimedRow& row : timedRows()) report.row(timed(bench, played, row, turns));
 }
 
 // Each machine renders a run of the order and has a cache of its own; nothing else is shared.

@@ -16,6 +16,8 @@ namespace {
 
 constexpr std::int32_t kBucketPixels = 16;
 constexpr std::uint64_t kAll = std::uint64_t{1} << 40;
+// Less than maps take.
+constexpr std::uint64_t kShortOfMaps = std::uint64_t{32} << 20;
 
 // The paper's network: whoever misses waits.
 class PauseWatch : public CacheWatch {
@@ -38,12 +40,12 @@ CacheRendering::CacheRendering(CacheScene scene)
       m_order(m_scene.name, m_scene.scene, m_scene.settings, m_scene.photons.get()) {}
 
 void CacheRendering::observe() {
-    const BucketTimes plain = m_order.render(settingOf({.budget = kAll}, 0));
+    const BucketTimes plain = m_order.render(settingOf({.budget = kAll}, kShortOfMaps));
     m_seconds.assign(m_grid.cellCount(), 0.0);
     for (std::size_t i = 0; i < plain.cells.size(); ++i)
         m_seconds[plain.cells[i]] =
             std::accumulate(plain.atoms[i].begin(), plain.atoms[i].end(), 0.0);
-    m_trace = traceOf(0);
+    m_trace = traceOf(kShortOfMaps);
     if (m_scene.photons) m_roomyTrace = traceOf(kAll);
 }
 
@@ -57,6 +59,22 @@ CacheTrace CacheRendering::traceOf(std::uint64_t budgetOfMaps) {
     };
     m_order.render(setting);
     return watch.take();
+}
+
+std::uint64_t CacheRendering::missesOfPhotons(std::uint64_t budget) {
+    BucketSetting setting{"hilbert", kBucketPixels, 1, {}, {}, {}, {}};
+    std::uint64_t before = 0, misses = 0;
+    setting.begun = [&] {
+        m_scene.empty();
+        m_scene.setBudget(budget);
+        before = m_scene.misses();
+    };
+    setting.prepared = [&] {
+        misses = m_scene.misses() - before;
+        m_scene.setBudget(kAll);
+    };
+    m_order.render(setting);
+    return misses;
 }
 
 CacheRun CacheRendering::run(const CacheRequest& request) {
@@ -88,10 +106,10 @@ std::vector<std::uint32_t> CacheRendering::cellsOf(const std::string& order, std
     return m_correlated;
 }
 
-// budgetOfMaps: while photons and maps are made.
+// budgetOfMaps: of pages while maps are made.
 BucketSetting CacheRendering::settingOf(const CacheRequest& request, std::uint64_t budgetOfMaps) {
     BucketSetting setting{request.order, kBucketPixels, request.threads, {}, {}, {}, {}};
-    setting.begun = [this, budgetOfMaps] { m_scene.setBudget(budgetOfMaps); };
+    if (m_scene.photons) setting.begun = [this, budgetOfMaps] { m_scene.setBudget(budgetOfMaps); };
     setting.prepared = [this, budget = request.budget] {
         m_scene.empty();
         m_scene.setBudget(budget);

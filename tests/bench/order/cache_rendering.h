@@ -46,6 +46,8 @@ class CacheRendering {
     double secondsOf(std::uint32_t cell) const { return m_seconds[cell]; }
 
     CacheRun run(const CacheRequest& request);
+    // While photons are traced and maps are made, by one thread.
+    std::uint64_t missesOfPhotons(std::uint64_t budget);
 
     // seed: of random; correlated: as chosen with an eighth of the working set.
     std::vector<std::uint32_t> cellsOf(const std::string& order, std::uint64_t seed = 1);

@@ -26,7 +26,7 @@ CacheScene pagedCaustic(std::int32_t side, const std::filesystem::path& folder) 
     made.unit = "pages of photons";
     made.scene = boxWithSpheres().build();
     made.settings = test::smallFrame(side, side, IntegratorKind::kPhoton, 1, 2);
-    made.settings.photons = 3'000'000;
+    made.settings.photons = 2'000'000;
     made.photons = std::shared_ptr<PhotonPaging>(pages, &pages->paging);
     made.empty = [pages] { pages->paging.setBudget(0); };
     made.setBudget = [pages](std::uint64_t bytes) { pages->paging.setBudget(bytes); };
