@@ -109,7 +109,9 @@ std::vector<std::uint32_t> CacheRendering::cellsOf(const std::string& order, std
 // budgetOfMaps: of pages while maps are made.
 BucketSetting CacheRendering::settingOf(const CacheRequest& request, std::uint64_t budgetOfMaps) {
     BucketSetting setting{request.order, kBucketPixels, request.threads, {}, {}, {}, {}};
-    if (m_scene.photons) setting.begun = [this, budgetOfMaps] { m_scene.setBudget(budgetOfMaps); };
+    setting.begun = [this, budget = m_scene.photons ? budgetOfMaps : kAll] {
+        m_scene.setBudget(budget);
+    };
     setting.prepared = [this, budget = request.budget] {
         m_scene.empty();
         m_scene.setBudget(budget);

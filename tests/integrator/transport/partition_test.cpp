@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <string>
 #include <vector>
 
@@ -19,14 +20,17 @@ namespace {
 // indirect light. No bias is allowed for but what the renderer's own estimate leaves. Among
 // thousands of regions' numbers a few are beyond 4 standard errors by chance, the more as path
 // tracing may miss a region's rare light and with it its spread: those are looked at again.
+// PM_TEST_LONG=1: frames of 48 pixels and not of 32.
 TEST(Partition, AgreesWithPath) {
+    LookSize size;
+    if (std::getenv("PM_TEST_LONG") == nullptr) size.frame = 32;
     Look frames;
     for (const Room& room : roomsOfEveryLobe()) {
         const auto scene = room.maker.build();
-        const Look first = look(scene, {});
+        const Look first = look(scene, size);
         const Look frame = first.ofWholeFrame();
         expectFrameAgrees(frame, room.name + ", frame");
-        lookAgain(scene, {}, first, room.name);
+        lookAgain(scene, size, first, room.name);
         addFrame(frames, frame);
     }
     expectFrameAgrees(frames, "all frames");
