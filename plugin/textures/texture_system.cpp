@@ -131,7 +131,9 @@ std::array<std::uint64_t, 2> texelHash(const std::string& fileName, const Cancel
 
 TextureSystem::~TextureSystem() {
     if (m_system != nullptr) OIIO::TextureSystem::destroy(m_system);
-    if (m_cache != nullptr) OIIO::ImageCache::destroy(m_cache);
+    // Its texels are given back, but it stays: other threads keep what they last used of it by its
+    // address (2.4.7), and a later cache at the same one would be taken for it.
+    if (m_cache != nullptr) m_cache->invalidate_all(true);
 }
 
 OIIO::TextureSystem& TextureSystem::system() {
