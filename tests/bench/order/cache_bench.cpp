@@ -266,10 +266,10 @@ int runProgram(int argc, char** argv) {
         Report report("pm_bench_order_caches");
         for (const auto& bench : benches) bench->observe();
         tellUsers(report, benches);
-        std::size_t number = 0;
         for (const auto& bench : benches) {
             const std::string plot =
-                plots.empty() ? "" : fmt::format("{}/cache_misses_{}.svg", plots, ++number);
+                plots.empty() ? ""
+                              : fmt::format("{}/cache_misses_{}.svg", plots, bench->scene().name);
             tellRemedies(report, *bench);
             tellMisses(report, *bench, plot);
             tellMachines(report, *bench);

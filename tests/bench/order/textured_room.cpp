@@ -149,7 +149,7 @@ CacheScene roomOf(std::int32_t side, std::vector<std::string> files) {
     maker.sphere({-0.4, -0.65, -0.35}, 0.35, maker.diffuse(Rgb(0.6f)));
     maker.camera({0.0, 0.0, 0.95}, {0.0, -0.1, -1.0}, {0, 1, 0}, 80);
     CacheScene made;
-    made.name = "room of textures";
+    made.name = "room";
     made.unit = "tiles";
     made.scene = maker.build();
     made.settings = test::smallFrame(side, side, IntegratorKind::kPhoton, 1, 2);
