@@ -44,9 +44,9 @@ constexpr std::size_t kFirstRound = 16;
 constexpr std::uint64_t kCopies = 3;
 
 // Those of the request from batch `first` on, in parallel, in their order.
-void traceBatches(const PhotonWalk& walk, TraceOrder& order, const PhotonTraceRequest& request,
-                  std::size_t first, std::span<Batch> batches, const std::atomic<bool>& cancelled,
-                  const std::function<void(double)>& progress) {
+void traceBatches(const PhotonWalk& walk, const TraceOrder& order,
+                  const PhotonTraceRequest& request, std::size_t first, std::span<Batch> batches,
+                  const std::atomic<bool>& cancelled, const std::function<void(double)>& progress) {
     const auto all = static_cast<double>((request.count + kBatchSize - 1) / kBatchSize);
     std::mutex progressMutex;
     std::size_t done = first;

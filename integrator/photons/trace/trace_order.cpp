@@ -6,7 +6,6 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>

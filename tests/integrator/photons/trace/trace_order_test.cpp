@@ -56,41 +56,43 @@ double meanStep(const PhotonWalk& walk, std::uint64_t count,
     return sum / static_cast<double>(count - 1);
 }
 
+struct Traced {
+    Traced(bool isCut, std::uint64_t count)
+        : scene(floorUnderASun(isCut)), lights(*scene), request(globalPhotons(count)) {}
+
+    std::shared_ptr<const Scene> scene;
+    LightSampler lights;
+    PhotonTraceRequest request;
+    PhotonWalk walk{*scene, lights, request};
+    TraceOrder order{*scene, walk, request.count};
+};
+
 TEST(TraceOrder, IsByNumberWhereNothingIsCut) {
-    const auto scene = floorUnderASun(false);
-    const LightSampler lights(*scene);
-    const PhotonTraceRequest request = globalPhotons(5000);
-    const PhotonWalk walk(*scene, lights, request);
-    TraceOrder order(*scene, walk, request.count);
-    EXPECT_EQ(order.enter(0, CancelCheck(kGoesOn)), request.count);
-    for (const std::uint64_t i : {0u, 77u, 4999u}) EXPECT_EQ(order.index(i), i);
+    Traced t(false, 5000);
+    const std::uint64_t count = t.request.count;
+    EXPECT_EQ(t.order.enter(0, CancelCheck(kGoesOn)), count);
+    for (const std::uint64_t i : {0u, 77u, 4999u}) EXPECT_EQ(t.order.index(i), i);
 }
 
 TEST(TraceOrder, PhotonsAfterEachOtherGoNearEachOther) {
-    const auto scene = floorUnderASun(true);
-    const LightSampler lights(*scene);
-    const PhotonTraceRequest request = globalPhotons(5000);
-    const PhotonWalk walk(*scene, lights, request);
-    TraceOrder order(*scene, walk, request.count);
-    EXPECT_EQ(order.enter(0, CancelCheck(kGoesOn)), request.count);
-    const double byNumber = meanStep(walk, request.count, [](std::uint64_t i) { return i; });
+    Traced t(true, 5000);
+    const std::uint64_t count = t.request.count;
+    EXPECT_EQ(t.order.enter(0, CancelCheck(kGoesOn)), count);
+    const double byNumber = meanStep(t.walk, count, [](std::uint64_t i) { return i; });
     const double sorted =
-        meanStep(walk, request.count, [&](std::uint64_t i) { return order.index(i); });
+        meanStep(t.walk, count, [&](std::uint64_t i) { return t.order.index(i); });
     EXPECT_LT(sorted, 0.15 * byNumber);
 }
 
 TEST(TraceOrder, HasEachPhotonOnceInWindows) {
-    const auto scene = floorUnderASun(true);
-    const LightSampler lights(*scene);
-    const PhotonTraceRequest request = globalPhotons(TraceOrder::kWindow + 1000);
-    const PhotonWalk walk(*scene, lights, request);
-    TraceOrder order(*scene, walk, request.count);
-    std::vector<bool> seen(request.count);
-    for (std::uint64_t begin = 0; begin < request.count;) {
-        const std::uint64_t end = order.enter(begin, CancelCheck(kGoesOn));
-        EXPECT_EQ(end, begin == 0 ? TraceOrder::kWindow : request.count);
+    Traced t(true, TraceOrder::kWindow + 1000);
+    const std::uint64_t count = t.request.count;
+    std::vector<bool> seen(count);
+    for (std::uint64_t begin = 0; begin < count;) {
+        const std::uint64_t end = t.order.enter(begin, CancelCheck(kGoesOn));
+        EXPECT_EQ(end, begin == 0 ? TraceOrder::kWindow : count);
         for (std::uint64_t i = begin; i < end; ++i) {
-            const std::uint64_t index = order.index(i);
+            const std::uint64_t index = t.order.index(i);
             ASSERT_TRUE(index >= begin && index < end && !seen[index]) << i;
             seen[index] = true;
         }
