@@ -14,6 +14,7 @@
 
 #include "integrator/tessellation/patch_bounds.h"
 #include "integrator/values/error.h"
+#include "integrator/values/morton.h"
 
 namespace pm {
 
@@ -21,14 +22,6 @@ namespace {
 
 // Fewer cost more boxes, more cost more that rays don't need.
 constexpr std::uint32_t kTrianglesOfGroup = 1024;
-
-// Bits of three numbers below 2^16, one after another.
-std::uint64_t mortonKey(const std::array<std::uint32_t, 3>& cell) {
-    std::uint64_t key = 0;
-    for (int bit = 15; bit >= 0; --bit)
-        for (const std::uint32_t number : cell) key = key << 1 | (number >> bit & 1);
-    return key;
-}
 
 }  // namespace
 

@@ -6,22 +6,18 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
+#include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
+
+#include "integrator/values/morton.h"
 
 namespace pm {
 
 namespace {
 
-constexpr int kKeyBits = 10;  // of each axis
-
-// Bit i at 3 i.
-std::uint32_t spread(std::uint32_t v) {
-    std::uint32_t bits = 0;
-    for (int i = 0; i < kKeyBits; ++i) bits |= (v >> i & 1u) << (3 * i);
-    return bits;
-}
+constexpr double kCells = 1024.0;  // along each axis
 
 }  // namespace
 
@@ -37,15 +33,15 @@ std::uint32_t TraceOrder::keyOf(std::uint64_t index) const {
             way = std::min(
                 way, (std::copysign(half[axis], direction[axis]) - origin[axis]) / direction[axis]);
     if (!std::isfinite(way)) return 0;
-    constexpr double kCells = 1 << kKeyBits;
-    std::uint32_t key = 0;
+    std::array<std::uint32_t, 3> cells;
     for (int axis = 0; axis < 3; ++axis) {
         const double place = (origin[axis] + way * direction[axis]) / half[axis];
         // A flat scene has no extent along one axis.
         const double cell = std::isfinite(place) ? kCells * 0.5 * (place + 1.0) : 0.0;
-        key |= spread(static_cast<std::uint32_t>(std::clamp(cell, 0.0, kCells - 1.0))) << axis;
+        cells[static_cast<std::size_t>(2 - axis)] =
+            static_cast<std::uint32_t>(std::clamp(cell, 0.0, kCells - 1.0));
     }
-    return key;
+    return static_cast<std::uint32_t>(mortonKey(cells));
 }
 
 std::uint64_t TraceOrder::enter(std::uint64_t position, const CancelCheck& cancel) {
