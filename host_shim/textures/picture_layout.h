@@ -8,15 +8,9 @@
 #include <string>
 #include <vector>
 
-namespace pm::host {
+#include "host_shim/textures/texture_facts.h"
 
-// What a texture is used for.
-enum class TextureKind {
-    kColour,  // converted to the rendering space: Kd, Ks, Ke, Tf, environment
-    kData,    // a number, never converted: Ns, Pr, Pm, Ps, bump, disp
-    kMask,    // the same of d: the alpha of a picture that has one
-    kVector,  // three numbers, never converted: normal maps
-};
+namespace pm::host {
 
 // Which of a picture's channels are taken, and how.
 struct PictureLayout {

@@ -13,14 +13,9 @@
 
 #include "host_shim/colour/picture_statement.h"
 #include "host_shim/textures/picture_layout.h"
+#include "host_shim/textures/texture_facts.h"
 
 namespace pm::host {
-
-// Texels that were replaced by 0.
-struct BadTexelCount {
-    std::int64_t negative{};   // a colour channel below 0
-    std::int64_t notFinite{};  // infinite or NaN
-};
 
 // A picture file read from the top row to the bottom row, a few rows at a time, as a texture means
 // it: its display window (black where an EXR has no data), the channels of `layout()`, integers as

@@ -11,17 +11,9 @@
 #include "host_shim/colour/space_conversion.h"
 #include "host_shim/pictures/checked_file.h"
 #include "host_shim/textures/picture_rows.h"
+#include "host_shim/textures/texture_facts.h"
 
 namespace pm::host {
-
-// A prepared texture: what is known of it without opening it.
-struct TextureFacts {
-    std::int32_t width{}, height{};
-    std::int32_t channels{};                   // 1 or 3
-    std::array<std::uint64_t, 2> texelHash{};  // as the library makes it of the file, never 0, 0
-    BadTexelCount bad;                         // texels that were replaced by 0
-    std::string note;                          // what was chosen of the picture; may be empty
-};
 
 // How a picture becomes a texture, known from its header and the conversion.
 class TextureBake {

@@ -15,6 +15,7 @@
 #include "host_shim/pictures/host_error.h"
 #include "host_shim/textures/memory_budget.h"
 #include "host_shim/textures/picture_kind.h"
+#include "host_shim/textures/texture_bake.h"
 
 namespace pm::host {
 namespace {

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "host_shim/colour/colour_pipeline.h"
-#include "host_shim/textures/texture_bake.h"
 #include "host_shim/textures/texture_cache.h"
+#include "host_shim/textures/texture_facts.h"
 
 namespace pm::host {
 

@@ -73,7 +73,7 @@ Texture toTiles(const Context& context, const PmrTextureDesc& desc,
             throw argumentError(fmt::format(
                 "PmrTextureDesc: tileNumbers[{}] is {}; it must be 1001 to 9999", i, number));
         TexturePicture picture = tile->picture;
-        picture.wrapS = picture.wrapT = OIIO::TextureOpt::WrapClamp;
+        picture.wrapS = picture.wrapT = Wrap::kClamp;
         picture.uvScale = whole.uvScale;
         picture.uvOffset = {whole.uvOffset.x - static_cast<float>((number - 1001) % 10),
                             whole.uvOffset.y - static_cast<float>((number - 1001) / 10)};

@@ -2,7 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "plugin/textures/texture_system.h"
 
+#include <OpenImageIO/imagecache.h>
 #include <OpenImageIO/imageio.h>
+#include <OpenImageIO/texture.h>
 #include <fmt/format.h>
 #include <xxhash.h>
 
@@ -41,6 +43,10 @@ OIIO::TextureOpt::Wrap toOpenImageIo(Wrap wrap) {
             return OIIO::TextureOpt::WrapBlack;
     }
     return OIIO::TextureOpt::WrapPeriodic;
+}
+
+OIIO::TextureSystem::TextureHandle* handleOf(const TexturePicture& picture) {
+    return static_cast<OIIO::TextureSystem::TextureHandle*>(picture.handle);
 }
 
 [[noreturn]] void throwUnreadable(const std::string& fileName, const std::string& why) {
@@ -167,8 +173,8 @@ void TextureSystem::holdAtMost(std::uint64_t bytes) {
 TexturePicture TextureSystem::open(const TextureDescription& description) {
     TexturePicture picture;
     picture.fileName = description.fileName;
-    picture.wrapS = toOpenImageIo(description.wrapS);
-    picture.wrapT = toOpenImageIo(description.wrapT);
+    picture.wrapS = description.wrapS;
+    picture.wrapT = description.wrapT;
     picture.uvScale = description.uvScale;
     picture.uvOffset = description.uvOffset;
     picture.gain = description.gain;
@@ -179,10 +185,11 @@ TexturePicture TextureSystem::open(const TextureDescription& description) {
     OIIO::TextureSystem& textures = system();
     const OIIO::ustring name(picture.fileName);
     m_cache->add_file(name, makeWatchedInput);
-    picture.handle = textures.get_texture_handle(name);
+    OIIO::TextureSystem::TextureHandle* const handle = textures.get_texture_handle(name);
+    picture.handle = handle;
     std::array<int, 2> size{};
     const bool good =
-        picture.handle != nullptr && textures.good(picture.handle) &&
+        handle != nullptr && textures.good(handle) &&
         textures.get_texture_info(name, 0, OIIO::ustring("channels"), OIIO::TypeInt,
                                   &picture.channelCount) &&
         textures.get_texture_info(name, 0, OIIO::ustring("resolution"),
@@ -203,8 +210,8 @@ bool TextureSystem::lookUp(const TexturePicture& picture, Vec2f uv, const UvFoot
     const auto [s, t] = placeIn(picture, uv);
     if (!std::isfinite(s) || !std::isfinite(t)) return false;
     OIIO::TextureOpt options;
-    options.swrap = picture.wrapS;
-    options.twrap = picture.wrapT;
+    options.swrap = toOpenImageIo(picture.wrapS);
+    options.twrap = toOpenImageIo(picture.wrapT);
     options.interpmode = OIIO::TextureOpt::InterpBilinear;
     options.anisotropic = kMostProbes;
     Vec2f dx = sideIn(picture, footprint.x), dy = sideIn(picture, footprint.y);
@@ -215,7 +222,7 @@ bool TextureSystem::lookUp(const TexturePicture& picture, Vec2f uv, const UvFoot
     }
     const int channelCount = std::min(picture.channelCount, 4);
     std::array<float, 4> values{};
-    const bool good = m_system->texture(picture.handle, m_system->get_perthread_info(), options, s,
+    const bool good = m_system->texture(handleOf(picture), m_system->get_perthread_info(), options, s,
                                         t, dx.x, dx.y, dy.x, dy.y, channelCount, values.data());
     if (!good) {
         m_system->geterror();  // or the texts pile up
@@ -232,8 +239,8 @@ bool TextureSystem::lookUpOfLight(const TexturePicture& picture, Vec2f uv, Texel
     const auto [s, t] = placeIn(picture, uv);
     if (!std::isfinite(s) || !std::isfinite(t)) return false;
     OIIO::TextureOpt options;
-    options.swrap = picture.wrapS;
-    options.twrap = picture.wrapT;
+    options.swrap = toOpenImageIo(picture.wrapS);
+    options.twrap = toOpenImageIo(picture.wrapT);
     options.mipmode = OIIO::TextureOpt::MipModeNoMIP;
     options.interpmode = OIIO::TextureOpt::InterpClosest;
     const auto width = static_cast<float>(picture.width),
@@ -244,7 +251,7 @@ bool TextureSystem::lookUpOfLight(const TexturePicture& picture, Vec2f uv, Texel
     for (const float j : {0.0f, 1.0f})
         for (const float i : {0.0f, 1.0f}) {
             std::array<float, 4> values{};
-            if (!m_system->texture(picture.handle, m_system->get_perthread_info(), options,
+            if (!m_system->texture(handleOf(picture), m_system->get_perthread_info(), options,
                                    (x0 + i + 0.5f) / width, (y0 + j + 0.5f) / height, 0.0f, 0.0f,
                                    0.0f, 0.0f, channelCount, values.data())) {
                 m_system->geterror();  // or the texts pile up
@@ -302,7 +309,7 @@ void TextureSystem::forEachTexel(const TexturePicture& picture, const char* what
     for (std::uint32_t row = 0; row < picture.height; row += kRows) {
         cancel.throwIfSet(what);
         const std::uint32_t rows = std::min(kRows, picture.height - row);
-        if (!m_system->get_texels(picture.handle, m_system->get_perthread_info(), options, 0, 0,
+        if (!m_system->get_texels(handleOf(picture), m_system->get_perthread_info(), options, 0, 0,
                                   static_cast<int>(picture.width), static_cast<int>(row),
                                   static_cast<int>(row + rows), 0, 1, 0, channelCount,
                                   OIIO::TypeDesc::FLOAT, texels.data()))
@@ -337,8 +344,8 @@ std::array<float, 2> TextureSystem::extremes(const TexturePicture& picture,
     };
     forEachTexel(picture, "looking at a texture's heights", cancel,
                  [&](const Texel& texel) { add(texel.r); });
-    const bool hasOutside = picture.wrapS == OIIO::TextureOpt::WrapBlack ||
-                            picture.wrapT == OIIO::TextureOpt::WrapBlack;
+    const bool hasOutside = picture.wrapS == Wrap::kBlack ||
+                            picture.wrapT == Wrap::kBlack;
     if (hasOutside) add(withGain(picture, {}).r);
     return found;
 }

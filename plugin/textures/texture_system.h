@@ -2,8 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include <OpenImageIO/imagecache.h>
-#include <OpenImageIO/texture.h>
+#include <OpenImageIO/oiioversion.h>
 
 #include <array>
 #include <cstdint>
@@ -15,6 +14,11 @@
 #include "integrator/values/cancel_check.h"
 #include "integrator/values/uv_footprint.h"
 #include "integrator/values/vec.h"
+
+OIIO_NAMESPACE_BEGIN
+class ImageCache;
+class TextureSystem;
+OIIO_NAMESPACE_END
 
 namespace pm::plugin {
 
@@ -35,11 +39,10 @@ struct TextureDescription {
 // A picture and how it is looked up; a plain value that many scenes may share.
 struct TexturePicture {
     std::string fileName;
-    OIIO::TextureSystem::TextureHandle* handle = nullptr;
+    void* handle = nullptr;  // OIIO::TextureSystem::TextureHandle, whose header is dear to compile
     std::uint32_t width = 1, height = 1;  // texels of the finest level
     int channelCount = 1;                 // as the file has, at most 4 are used
-    OIIO::TextureOpt::Wrap wrapS = OIIO::TextureOpt::WrapPeriodic;
-    OIIO::TextureOpt::Wrap wrapT = OIIO::TextureOpt::WrapPeriodic;
+    Wrap wrapS = Wrap::kRepeat, wrapT = Wrap::kRepeat;
     Vec2f uvScale{1.0f, 1.0f};
     Vec2f uvOffset{};
     float gain = 1.0f;

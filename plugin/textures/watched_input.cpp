@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "plugin/textures/watched_input.h"
 
+#include <OpenImageIO/imageio.h>
+
 #include <memory>
 #include <string>
 

@@ -2,9 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include <OpenImageIO/imageio.h>
+#include <OpenImageIO/oiioversion.h>
 
 #include <cstdint>
+
+OIIO_NAMESPACE_BEGIN
+class ImageInput;
+OIIO_NAMESPACE_END
 
 namespace pm::plugin {
 

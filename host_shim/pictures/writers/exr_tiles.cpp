@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/pictures/writers/exr_tiles.h"
 
+#include <OpenImageIO/imageio.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,6 +10,7 @@
 #include <string>
 #include <utility>
 
+#include "host_shim/pictures/checked_file.h"
 #include "host_shim/pictures/host_error.h"
 #include "host_shim/pictures/writers/exr_fill.h"
 #include "host_shim/pictures/writers/exr_spec.h"
@@ -35,6 +37,18 @@ OIIO::ImageSpec tiledSpec(const Picture& head, std::int32_t tilePixels, bool hal
 
 }  // namespace
 
+struct TiledExr::Output {
+    Output(const OIIO::ImageSpec& ofTiles, const FinishedFile& finished,
+           const std::filesystem::path& shownPath)
+        : spec(ofTiles),
+          file(finished, shownPath),
+          image(OIIO::ImageOutput::create(finished.temporaryPath().string())) {}
+
+    OIIO::ImageSpec spec;
+    CheckedFile file;
+    std::unique_ptr<OIIO::ImageOutput> image;
+};
+
 TiledExr::TiledExr(const std::filesystem::path& path, const Picture& head, std::int32_t tilePixels,
                    const ExrOptions& options)
     : m_path(path),
@@ -42,22 +56,21 @@ TiledExr::TiledExr(const std::filesystem::path& path, const Picture& head, std::
       m_tilePixels(tilePixels),
       m_columns(tilesAcross(m_window.width(), tilePixels)),
       m_rows(tilesAcross(m_window.height(), tilePixels)),
-      m_spec(tiledSpec(head, tilePixels, options.halfColour)),
       m_finished(path),
-      m_file(m_finished, path),
-      m_output(OIIO::ImageOutput::create(m_finished.temporaryPath().string())),
+      m_output(std::make_unique<Output>(tiledSpec(head, tilePixels, options.halfColour), m_finished,
+                                        path)),
       m_written(static_cast<std::size_t>(m_columns) * static_cast<std::size_t>(m_rows)) {
-    if (!m_output) throw HostError(ExitCode::kFile, m_path.string() + ": " + OIIO::geterror());
-    m_output->set_ioproxy(&m_file);
-    if (!m_output->open(m_finished.temporaryPath().string(), m_spec)) fail();
+    if (!m_output->image) throw HostError(ExitCode::kFile, m_path.string() + ": " + OIIO::geterror());
+    m_output->image->set_ioproxy(&m_output->file);
+    if (!m_output->image->open(m_finished.temporaryPath().string(), m_output->spec)) fail();
 }
 
 TiledExr::~TiledExr() {
-    if (m_output) m_output->close();
+    if (m_output->image) m_output->image->close();
 }
 
 void TiledExr::fail() const {
-    failWriting(m_path, m_file.firstError(), m_output->geterror());
+    failWriting(m_path, m_output->file.firstError(), m_output->image->geterror());
 }
 
 std::size_t TiledExr::tileIndex(const PixelRect& tile) const {
@@ -75,28 +88,28 @@ std::size_t TiledExr::tileIndex(const PixelRect& tile) const {
 
 void TiledExr::write(const PixelRect& tile, std::span<const float> values) {
     const std::size_t index = tileIndex(tile);
-    const auto channels = static_cast<std::size_t>(m_spec.nchannels);
+    const auto channels = static_cast<std::size_t>(m_output->spec.nchannels);
     if (m_written[index] || values.size() != static_cast<std::size_t>(tile.area()) * channels)
         throw HostError(ExitCode::kInternal, fmt::format("{}: a tile came twice or with {} values",
                                                          m_path.string(), values.size()));
     m_values.assign(values.begin(), values.end());
     for (std::size_t c = 0; c < channels; ++c) {
-        if (m_spec.channelformats[c] != OIIO::TypeDesc::HALF) continue;
+        if (m_output->spec.channelformats[c] != OIIO::TypeDesc::HALF) continue;
         for (std::size_t i = c; i < m_values.size(); i += channels)
             m_values[i] = clampedToHalf(m_values[i], m_report.clampedToHalf);
     }
-    if (!m_output->write_tiles(tile.x0, tile.x1, tile.y0, tile.y1, 0, 1, OIIO::TypeDesc::FLOAT,
-                               m_values.data()))
+    if (!m_output->image->write_tiles(tile.x0, tile.x1, tile.y0, tile.y1, 0, 1,
+                                      OIIO::TypeDesc::FLOAT, m_values.data()))
         fail();
     m_written[index] = true;
 }
 
 void TiledExr::close() {
-    const bool good = m_output->close();
-    const std::string text = m_output->geterror();
-    if (m_file.finish() != 0 || !good || !text.empty())
-        failWriting(m_path, m_file.firstError(), text);
-    m_output.reset();
+    const bool good = m_output->image->close();
+    const std::string text = m_output->image->geterror();
+    if (m_output->file.finish() != 0 || !good || !text.empty())
+        failWriting(m_path, m_output->file.firstError(), text);
+    m_output->image.reset();
 }
 
 ExrReport TiledExr::commit() {
@@ -116,7 +129,7 @@ PixelRect TiledExr::tileRect(std::size_t index) const {
 }
 
 ExrReport TiledExr::commitPartial() {
-    const auto channels = static_cast<std::size_t>(m_spec.nchannels);
+    const auto channels = static_cast<std::size_t>(m_output->spec.nchannels);
     // Of each size one is written, the others are copies of it: a million tiles in a second.
     std::map<std::pair<std::int32_t, std::int32_t>, std::size_t> empty;
     std::vector<std::pair<std::size_t, std::size_t>> copies;

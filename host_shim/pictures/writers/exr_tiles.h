@@ -2,15 +2,12 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include <OpenImageIO/imageio.h>
-
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <span>
 #include <vector>
 
-#include "host_shim/pictures/checked_file.h"
 #include "host_shim/pictures/finished_file.h"
 #include "host_shim/pictures/picture.h"
 #include "host_shim/pictures/picture_io.h"
@@ -50,10 +47,9 @@ class TiledExr {
     const PixelRect m_window;
     const std::int32_t m_tilePixels;
     std::int32_t m_columns, m_rows;
-    OIIO::ImageSpec m_spec;
     FinishedFile m_finished;
-    CheckedFile m_file;
-    std::unique_ptr<OIIO::ImageOutput> m_output;
+    struct Output;  // OpenImageIO's
+    std::unique_ptr<Output> m_output;
     std::vector<bool> m_written;  // of each tile
     std::vector<float> m_values;  // of the tile that is written
     ExrReport m_report;

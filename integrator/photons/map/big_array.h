@@ -6,13 +6,9 @@
 #include <sys/mman.h>
 #endif
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <cstddef>
 #include <cstdlib>
-#include <cstring>
 #include <memory>
 #include <new>
 #include <type_traits>
@@ -34,8 +30,6 @@ using BigArray = std::unique_ptr<T[], FreeMemory>;
 namespace big_array {
 
 inline constexpr std::size_t kLine = 64, kLargePage = std::size_t{1} << 21;
-// Bytes that are zeroed at a time.
-inline constexpr std::size_t kZeroed = std::size_t{1} << 18;
 
 // Not 0 bytes: that may be answered by a null pointer.
 template <typename T>
@@ -53,6 +47,9 @@ inline void wishForLargePages([[maybe_unused]] void* memory, [[maybe_unused]] st
     if (bytes >= kLargePage) ::madvise(memory, bytes, MADV_HUGEPAGE);
 #endif
 }
+
+// Writes zeros, in parallel in the calling TBB arena.
+void zero(void* memory, std::size_t bytes);
 
 }  // namespace big_array
 
@@ -105,9 +102,7 @@ template <typename T>
 BigArray<T> makeBigZeroedArray(std::size_t count) {
     static_assert(std::is_standard_layout_v<T> && std::is_trivially_destructible_v<T>);
     BigArray<T> array = makeBigArray<T>(count);
-    auto* const bytes = reinterpret_cast<unsigned char*>(array.get());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count * sizeof(T), big_array::kZeroed),
-                      [&](const auto& r) { std::memset(bytes + r.begin(), 0, r.size()); });
+    big_array::zero(array.get(), count * sizeof(T));
     return array;
 }
 
