@@ -20,10 +20,10 @@
 #include "host_shim/copies/pack_run.h"
 #include "host_shim/farm/farm_run.h"
 #include "host_shim/log/guarded.h"
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/process/interrupt.h"
 #include "host_shim/process/plain_text.h"
 #include "host_shim/render/plugin.h"
+#include "host_shim/values/host_error.h"
 #include "host_shim/watch/watch_run.h"
 
 namespace pm::host {

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "host_shim/formats/text_lines.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {
