@@ -9,8 +9,8 @@
 #include <ctime>
 #include <string>
 
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/render/texture_setup.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -8,9 +8,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <utility>
 
 #include "host_shim/app/cache_command.h"
 #include "host_shim/app/check_command.h"
@@ -20,10 +22,10 @@
 #include "host_shim/copies/pack_run.h"
 #include "host_shim/farm/farm_run.h"
 #include "host_shim/log/guarded.h"
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/process/interrupt.h"
 #include "host_shim/process/plain_text.h"
 #include "host_shim/render/plugin.h"
+#include "host_shim/values/host_error.h"
 #include "host_shim/watch/watch_run.h"
 
 namespace pm::host {
@@ -48,28 +50,16 @@ Log::Settings logSettings(const Options& options) {
 
 // The help of settings comes from the plugin; without one the rest is still of use.
 int printHelp(const Options& options) {
-    if (options.helpOfMerge) {
-        print(mergeHelpText());
-        return 0;
-    }
-    if (options.helpOfCache) {
-        print(cacheHelpText());
-        return 0;
-    }
-    if (options.helpOfFarm) {
-        print(farmHelpText());
-        return 0;
-    }
-    if (options.helpOfWatch) {
-        print(watchHelpText());
-        return 0;
-    }
-    if (options.helpOfPack) {
-        print(packHelpText());
-        return 0;
-    }
-    if (options.helpOfCheck) {
-        print(checkHelpText());
+    constexpr std::array<std::pair<bool Options::*, std::string (*)()>, 6> kOfCommands{
+        {{&Options::helpOfMerge, mergeHelpText},
+         {&Options::helpOfCache, cacheHelpText},
+         {&Options::helpOfFarm, farmHelpText},
+         {&Options::helpOfWatch, watchHelpText},
+         {&Options::helpOfPack, packHelpText},
+         {&Options::helpOfCheck, checkHelpText}}};
+    for (const auto& [isAsked, text] : kOfCommands) {
+        if (!(options.*isAsked)) continue;
+        print(text());
         return 0;
     }
     try {

@@ -10,7 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
+#include "host_shim/values/letter_case.h"
 
 namespace pm::host {
 namespace {
@@ -23,12 +24,6 @@ constexpr std::string_view kOwnOptions[] = {"-o",     "--output", "--reference",
                                             "--seed", "--report", "--log",       "--progress"};
 
 constexpr std::size_t kMostNameLength = 100;
-
-std::string lowerCase(std::string text) {
-    for (char& c : text)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
-}
 
 class SuiteReader {
   public:

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "host_shim/cli/option_values.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 

@@ -11,7 +11,7 @@
 
 #include "host_shim/cli/option_values.h"
 #include "host_shim/pictures/frame_numbers.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -7,7 +7,7 @@
 #include <map>
 
 #include "host_shim/cli/command_line.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -8,7 +8,7 @@
 #include <array>
 #include <string_view>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

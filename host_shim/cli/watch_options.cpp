@@ -6,8 +6,8 @@
 
 #include "host_shim/cli/option_values.h"
 #include "host_shim/cli/piece_options.h"
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/pictures/picture_io.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 

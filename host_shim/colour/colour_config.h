@@ -39,8 +39,6 @@ std::string spaceNames(const ColourConfig& config,
                        const std::function<bool(const OCIO::ConstColorSpaceRcPtr&)>& keep);
 // "'a', 'b'"; "none" when empty.
 std::string quotedList(const std::vector<std::string>& names);
-// As OpenColorIO compares names.
-bool sameName(const std::string& a, const std::string& b);
 
 // Runs use and turns OpenColorIO's exceptions into HostError kBadInput: "what: text of the
 // library".

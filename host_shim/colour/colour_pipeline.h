@@ -13,7 +13,7 @@
 #include "host_shim/colour/display_transform.h"
 #include "host_shim/colour/picture_statement.h"
 #include "host_shim/colour/space_conversion.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "host_shim/colour/pipeline_state.h"
+#include "host_shim/values/letter_case.h"
 
 namespace pm::host {
 namespace {
@@ -27,8 +28,8 @@ std::vector<std::string> activeViews(const OCIO::ConstConfigRcPtr& config,
 // The canonical spelling of name among the allowed. Errors: kBadInput.
 std::string checkedName(const std::string& option, const std::string& kind, const std::string& name,
                         const std::vector<std::string>& allowed) {
-    for (const std::string& candidate : allowed) {
-        if (sameName(candidate, name)) return candidate;
+    for (const std::string& candidate : allowed) {  // OpenColorIO goes by no case either
+        if (equalInAnyCase(candidate, name)) return candidate;
     }
     const std::string names =
         allowed.empty() ? "there are none" : "allowed are " + quotedList(allowed);

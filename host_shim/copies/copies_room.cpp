@@ -20,8 +20,8 @@
 #include "host_shim/copies/sha256.h"
 #include "host_shim/formats/source_file.h"
 #include "host_shim/pictures/finished_file.h"
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/process/interrupt.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -11,8 +11,8 @@
 #include <exception>
 #include <thread>
 
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/process/interrupt.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

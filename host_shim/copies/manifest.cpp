@@ -9,7 +9,7 @@
 #include <stdexcept>
 
 #include "host_shim/copies/sha256.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

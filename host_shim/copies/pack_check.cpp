@@ -9,8 +9,8 @@
 
 #include "host_shim/copies/copied_options.h"
 #include "host_shim/formats/scene_reader.h"
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/session/read_rules.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -13,7 +13,7 @@
 #include <cstring>
 #include <vector>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -15,7 +15,7 @@
 #include "host_shim/farm/job/run_cut.h"
 #include "host_shim/farm/pilot_costs.h"
 #include "host_shim/formats/text_lines.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

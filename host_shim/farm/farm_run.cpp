@@ -20,10 +20,10 @@
 #include "host_shim/farm/task_board.h"
 #include "host_shim/log/progress.h"
 #include "host_shim/pictures/finished_file.h"
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/process/interrupt.h"
 #include "host_shim/process/outputs.h"
 #include "host_shim/session/session.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -5,10 +5,10 @@
 #include <fmt/format.h>
 
 #include "host_shim/formats/warnings.h"
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/process/interrupt.h"
 #include "host_shim/render/plugin.h"
 #include "host_shim/render/render_run.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -13,10 +13,10 @@
 
 #include "host_shim/farm/job/task_events.h"
 #include "host_shim/formats/text_lines.h"
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/pictures/picture_io.h"
 #include "host_shim/process/child_process.h"
 #include "host_shim/process/temporary_folder.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

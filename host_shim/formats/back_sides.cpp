@@ -7,30 +7,13 @@
 #include <optional>
 #include <utility>
 
+#include "host_shim/formats/face_normal.h"
 #include "host_shim/formats/lamps.h"
 
 namespace pm::host {
 namespace {
 
 using Point = std::array<double, 3>;
-
-Point pointOf(const std::vector<float>& positions, std::size_t index) {
-    return {positions[3 * index], positions[3 * index + 1], positions[3 * index + 2]};
-}
-
-// Twice the area, along the normal (Newell).
-Point areaNormal(const MeshData& mesh, std::size_t first, std::size_t size) {
-    Point normal{};
-    for (std::size_t i = 0; i < size; ++i) {
-        const Point a = pointOf(mesh.positions, mesh.indices[first + i]);
-        const Point b = pointOf(mesh.positions, mesh.indices[first + (i + 1) % size]);
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const std::size_t y = (axis + 1) % 3, z = (axis + 2) % 3;
-            normal[axis] += (a[y] - b[y]) * (a[z] + b[z]);
-        }
-    }
-    return normal;
-}
 
 // Whether every edge has two faces.
 bool isClosed(const MeshData& mesh) {
@@ -73,10 +56,10 @@ class BackSide {
         for (const auto& [vertex, local] : m_local) {
             const Point& normal = m_normals[local];
             const double length = std::hypot(normal[0], normal[1], normal[2]);
+            const Point position = m_mesh.position(vertex);
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 const double by = length > 0 ? distance * normal[axis] / length : 0;
-                m_back.positions[3 * local + axis] =
-                    static_cast<float>(pointOf(m_mesh.positions, vertex)[axis] - by);
+                m_back.positions[3 * local + axis] = static_cast<float>(position[axis] - by);
             }
         }
         dropUnusedSlots();

@@ -6,18 +6,12 @@
 
 #include "host_shim/formats/text_encoding.h"
 #include "host_shim/formats/text_lines.h"
+#include "host_shim/values/letter_case.h"
 
 namespace pm::host {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string lowerCase(std::string text) {
-    std::ranges::transform(text, text.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    });
-    return text;
-}
 
 std::string_view withoutQuotes(std::string_view text) {
     const bool isQuoted = text.size() > 2 && (text.front() == '"' || text.front() == '\'') &&

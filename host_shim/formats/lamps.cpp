@@ -18,12 +18,8 @@ namespace {
 using Point = std::array<double, 3>;
 
 Point difference(const MeshData& mesh, std::uint32_t to, std::uint32_t from) {
-    Point result{};
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        result[axis] = static_cast<double>(mesh.positions[3 * std::size_t{to} + axis]) -
-                       static_cast<double>(mesh.positions[3 * std::size_t{from} + axis]);
-    }
-    return result;
+    const Point a = mesh.position(to), b = mesh.position(from);
+    return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
 
 double lengthSquared(const Point& p) {

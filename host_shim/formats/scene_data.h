@@ -107,6 +107,11 @@ struct MeshData {
     std::vector<std::uint32_t> faceSlots;      // a slot for each face
     std::vector<std::uint32_t> slotMaterials;  // slot -> index into SceneData::materials
     std::optional<CageTags> tags;
+
+    // Of a vertex as indices name it; object space.
+    std::array<double, 3> position(std::size_t vertex) const {
+        return {positions[3 * vertex], positions[3 * vertex + 1], positions[3 * vertex + 2]};
+    }
 };
 
 // An axis-aligned box in world space, scene units.

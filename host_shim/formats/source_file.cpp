@@ -10,7 +10,7 @@
 #include <sstream>
 #include <utility>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -6,8 +6,8 @@
 #include <new>
 #include <system_error>
 
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/process/interrupt.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 

@@ -11,8 +11,8 @@
 #include <cstring>
 #include <fstream>
 
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/process/plain_text.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -8,7 +8,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/formats/face_normal.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {
@@ -60,25 +61,6 @@ Point defaultEye(const Bounds& bounds, double fov, double aspect, bool fromNegat
             fromNegativeZ ? bounds.low[2] - distance : bounds.high[2] + distance};
 }
 
-// Twice the area times the normal of a face, by Newell's sums.
-// turn: of an instance that has a transform.
-Point newellVector(const MeshData& mesh, const std::optional<Transform>& turn, std::size_t first,
-                   std::size_t size) {
-    Point sum{};
-    const auto corner = [&](std::size_t i) {
-        const std::size_t at = 3 * std::size_t{mesh.indices[first + i % size]};
-        const Point local{static_cast<double>(mesh.positions[at]),
-                          static_cast<double>(mesh.positions[at + 1]),
-                          static_cast<double>(mesh.positions[at + 2])};
-        return turn ? transformed(*turn, local) : local;
-    };
-    for (std::size_t i = 0; i < size; ++i) {
-        const Point c = cross(corner(i), corner(i + 1));
-        for (std::size_t axis = 0; axis < 3; ++axis) sum[axis] += c[axis];
-    }
-    return sum;
-}
-
 }  // namespace
 
 LightData cameraLight(const CameraPose& camera, const Bounds& bounds) {
@@ -106,7 +88,7 @@ bool opensTowardsNegativeZ(const SceneData& scene) {
         const bool isMirrored = instance.transform && determinant(*instance.transform) < 0;
         std::size_t first = 0;
         for (const std::uint32_t size : mesh.faceSizes) {
-            const Point n = newellVector(mesh, instance.transform, first, size);
+            const Point n = areaNormal(mesh, first, size, instance.transform);
             towardsZ += isMirrored ? -n[2] : n[2];
             area += std::sqrt(dot(n, n));
             first += size;

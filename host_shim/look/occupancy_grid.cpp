@@ -135,10 +135,8 @@ void OccupancyGrid::add(const InstanceData& instance, const SceneData& scene,
     const Point& origin = isMesh ? scene.centre : scene.spheres[instance.index].centre;
     const std::vector<std::uint32_t>& materials = scene.materialsOf(instance);
     const auto place = [&](std::size_t corner) {
-        const std::size_t at = 3 * std::size_t{mesh.indices[corner]};
-        Point world{origin[0] + static_cast<double>(mesh.positions[at]),
-                    origin[1] + static_cast<double>(mesh.positions[at + 1]),
-                    origin[2] + static_cast<double>(mesh.positions[at + 2])};
+        Point world = mesh.position(mesh.indices[corner]);
+        for (std::size_t axis = 0; axis < 3; ++axis) world[axis] += origin[axis];
         if (instance.transform) world = transformed(*instance.transform, world);
         return m_upIsZ ? asIfYWereUp(world) : world;
     };

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <optional>
 
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/pictures/picture.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 

@@ -6,7 +6,7 @@
 #include <string>
 #include <string_view>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 

@@ -10,8 +10,8 @@
 
 #include "host_shim/pictures/file_ending.h"
 #include "host_shim/pictures/finished_file.h"
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/pictures/picture.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 

@@ -14,8 +14,8 @@
 #include <map>
 #include <thread>
 
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/process/interrupt.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -8,8 +8,8 @@
 #include <string_view>
 #include <vector>
 
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/pictures/picture_io.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -18,7 +18,7 @@
 #include <cstring>
 #include <thread>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

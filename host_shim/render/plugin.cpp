@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <vector>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -5,10 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "host_shim/formats/text_lines.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {
@@ -19,17 +18,6 @@ constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
 constexpr double kBytesOfTriangle = 150;
 // Of a byte of text: itself, cleaned, parsed, and the arrays; at most, of faces of bare numbers.
 constexpr double kBytesOfText = 8;
-
-// Nothing where it is not given: the library then goes by the machine.
-std::optional<double> limitGib(const Options& options) {
-    std::optional<double> limit;
-    for (const GivenSetting& setting : options.settings) {
-        double value = 0;
-        if (setting.name == "memoryLimitGib" && parseNumber(setting.value, value) && value > 0)
-            limit = value;
-    }
-    return limit;
-}
 
 // Catmull-Clark patches are quads: of other faces each corner has one, of half the rate.
 std::uint64_t trianglesOf(const MeshData& mesh) {
@@ -49,15 +37,25 @@ bool isCutWhole(const MeshData& mesh, const SceneData& data) {
 }
 
 void check(const Options& options, double gib, const std::string& what) {
-    const std::optional<double> limit = limitGib(options);
-    if (!limit || gib <= *limit) return;
+    const double limit = memoryLimitGib(options);
+    if (limit <= 0 || gib <= limit) return;
     throw HostError(static_cast<ExitCode>(kOutOfMemory),
                     fmt::format("{}: {} about {:.2f} GiB; the memory limit is {:g} GiB "
                                 "(--memory-limit)",
-                                options.scene.string(), what, gib, *limit));
+                                options.scene.string(), what, gib, limit));
 }
 
 }  // namespace
+
+double memoryLimitGib(const Options& options) {
+    double limit = 0;
+    for (const GivenSetting& setting : options.settings) {
+        double value = 0;
+        if (setting.name == "memoryLimitGib" && parseNumber(setting.value, value) && value > 0)
+            limit = value;
+    }
+    return limit;
+}
 
 void checkFileFits(const Options& options) {
     std::error_code unknown;

@@ -5,11 +5,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <thread>
 
 #include "host_shim/formats/warnings.h"
-#include "host_shim/render/memory_left.h"
+#include "host_shim/render/scene_memory.h"
 
 namespace pm::host {
 namespace {
@@ -17,17 +16,6 @@ namespace {
 // 20 GiB: some 150 colour textures of 4096 x 4096.
 constexpr double kUsualCacheGib = 20.0;
 constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
-
-double memoryLimitGib(const Options& options) {
-    for (const GivenSetting& setting : options.settings) {
-        if (setting.name != "memoryLimitGib") continue;
-        double value = 0;
-        const char* end = setting.value.data() + setting.value.size();
-        if (std::from_chars(setting.value.data(), end, value).ec == std::errc() && value > 0)
-            return value;
-    }
-    return 0;
-}
 
 }  // namespace
 
@@ -56,9 +44,9 @@ std::shared_ptr<TextureCache> openTextureCache(const Options& options, Temporary
     return std::make_shared<TextureCache>(temporary.path(), textureCacheBytes(options));
 }
 
-TextureSettings textureSettings(const Options& options) {
+TextureSettings textureSettings(const Options& options, const PmrApi& api) {
     const unsigned all = std::max(1u, std::thread::hardware_concurrency());
-    return {options.threads == 0 ? all : options.threads, memoryLeftBytes(memoryLimitGib(options))};
+    return {options.threads == 0 ? all : options.threads, api.memoryLeft(memoryLimitGib(options))};
 }
 
 }  // namespace pm::host

@@ -8,6 +8,7 @@
 #include "host_shim/log/log.h"
 #include "host_shim/process/temporary_folder.h"
 #include "host_shim/textures/texture_preparation.h"
+#include "plugin/include/pm_plugin.h"
 
 namespace pm::host {
 
@@ -22,6 +23,6 @@ std::shared_ptr<TextureCache> openTextureCache(const Options& options, Temporary
                                                Log& log);
 
 // Threads and memory for preparing textures.
-TextureSettings textureSettings(const Options& options);
+TextureSettings textureSettings(const Options& options, const PmrApi& api);
 
 }  // namespace pm::host

@@ -248,7 +248,7 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
         context, colour,
         [&] {
             return TexturePreparer(colour, openTextureCache(m_options, folder, m_log),
-                                   textureSettings(m_options), throwIfInterrupted);
+                                   textureSettings(m_options, context.api()), throwIfInterrupted);
         },
         sink);
     std::optional<PluginScene> scene;

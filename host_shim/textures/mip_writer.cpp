@@ -8,8 +8,8 @@
 #include <cstring>
 #include <new>
 
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/pictures/image_output.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -13,7 +13,8 @@
 #include <cstring>
 #include <string_view>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/pictures/file_ending.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {
@@ -103,10 +104,7 @@ bool isTarga(const std::filesystem::path& name, const OpenFile& file, off_t size
             .substr(8)
             .starts_with(kTargaFooter))
         return true;
-    std::string extension = name.extension().string();
-    std::ranges::transform(extension, extension.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    });
+    const std::string extension = lowerCaseExtension(name);
     return (extension == ".tga" || extension == ".tpic") && isTargaHeader(head);
 }
 

@@ -7,18 +7,13 @@
 #include <algorithm>
 #include <map>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
+#include "host_shim/values/letter_case.h"
 
 namespace pm::host {
 namespace {
 
 using Values = PictureLayout::Values;
-
-std::string lowerCase(std::string text) {
-    for (char& c : text)
-        if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-    return text;
-}
 
 std::string afterLastDot(const std::string& text) {
     const auto dot = text.rfind('.');

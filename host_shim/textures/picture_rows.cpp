@@ -8,8 +8,8 @@
 #include <cmath>
 #include <cstring>
 
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/textures/picture_kind.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -18,7 +18,7 @@
 #include <tuple>
 #include <unordered_set>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -17,7 +17,7 @@
 #include <memory>
 #include <new>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -12,10 +12,10 @@
 #include <thread>
 
 #include "host_shim/colour/asked_work.h"
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/textures/memory_budget.h"
 #include "host_shim/textures/picture_kind.h"
 #include "host_shim/textures/texture_bake.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

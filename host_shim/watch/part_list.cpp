@@ -8,7 +8,7 @@
 
 #include "host_shim/farm/job/job_folder.h"
 #include "host_shim/farm/job/task_events.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

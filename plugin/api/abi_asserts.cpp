@@ -218,7 +218,7 @@ static_assert(offsetof(PmrRenderDesc, bucketStarted) == 40);
 static_assert(offsetof(PmrRenderDesc, bucketFinished) == 48);
 static_assert(offsetof(PmrRenderDesc, finished) == 56);
 
-static_assert(sizeof(PmrApi) == 512);
+static_assert(sizeof(PmrApi) == 520);
 static_assert(offsetof(PmrApi, versionText) == 16);
 static_assert(offsetof(PmrApi, statusText) == 24);
 static_assert(offsetof(PmrApi, settingCount) == 32);
@@ -281,3 +281,4 @@ static_assert(offsetof(PmrApi, parameterInfo) == 480);
 static_assert(offsetof(PmrApi, setParameter) == 488);
 static_assert(offsetof(PmrApi, createShape) == 496);
 static_assert(offsetof(PmrApi, objectName) == 504);
+static_assert(offsetof(PmrApi, memoryLeft) == 512);

@@ -75,6 +75,7 @@ constexpr PmrApi kApi = {
     .setParameter = api::setParameter,
     .createShape = api::createShape,
     .objectName = api::objectName,
+    .memoryLeft = api::memoryLeft,
 };
 
 }  // namespace

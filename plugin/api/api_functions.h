@@ -89,5 +89,6 @@ PmrStatus PMR_CALL createShape(PmrContext context, int32_t object,
                                const PmrParameterDesc* const* parameters, uint32_t count,
                                PmrMesh* mesh) noexcept;
 const char* PMR_CALL objectName(int32_t object) noexcept;
+uint64_t PMR_CALL memoryLeft(double limitGib) noexcept;
 
 }  // namespace pm::plugin::api

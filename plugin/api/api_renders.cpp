@@ -10,7 +10,9 @@
 #include "plugin/api/scene_object.h"
 #include "plugin/api/struct_reader.h"
 #include "plugin/api/table_infos.h"
+#include "plugin/session/memory_limit.h"
 #include "plugin/session/render.h"
+#include "plugin/session/setting_table.h"
 #include "plugin/values/version.h"
 
 namespace pm::plugin::api {
@@ -82,6 +84,16 @@ PmrStatus PMR_CALL settingInfo(uint32_t index, PmrSettingInfo* info) noexcept {
         checkIndex(index, kSettingCount);
         writeStruct(info, toInfo(settingSpecs()[index]), "PmrSettingInfo");
     });
+}
+
+uint64_t PMR_CALL memoryLeft(double limitGib) noexcept {
+    try {
+        const SettingSpec& spec = settingSpecs()[static_cast<std::size_t>(Setting::kMemoryLimit)];
+        const bool isLimit = limitGib >= 0.0 && limitGib <= static_cast<double>(spec.maximum);
+        return memoryLeftBytes(isLimit ? limitGib : 0.0);
+    } catch (...) {
+        return 0;
+    }
 }
 
 uint32_t PMR_CALL layerCount() noexcept {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -11,6 +12,7 @@
 #include "integrator/geometry/subdivision.h"
 #include "integrator/geometry/triangulate.h"
 #include "integrator/values/error.h"
+#include "plugin/api/choice_reader.h"
 #include "plugin/api/objects.h"
 #include "plugin/api/struct_reader.h"
 #include "plugin/session/leave_behind.h"
@@ -178,62 +180,25 @@ std::uint32_t checkedRate(std::uint32_t rate) {
     return rate == 0 ? kDefaultTessellationRate : rate;
 }
 
-SubdivisionScheme toScheme(std::int32_t scheme) {
-    switch (scheme) {
-        case PMR_SCHEME_CATMULL_CLARK:
-            return SubdivisionScheme::kCatmullClark;
-        case PMR_SCHEME_LOOP:
-            return SubdivisionScheme::kLoop;
-        case PMR_SCHEME_BILINEAR:
-            return SubdivisionScheme::kBilinear;
-        default:
-            throw argumentError(
-                fmt::format("scheme is {}; it must be 0 to 2 (PMR_SCHEME_*)", scheme));
-    }
-}
-
-BoundaryInterpolation toBoundary(std::int32_t boundary) {
-    switch (boundary) {
-        case PMR_BOUNDARY_EDGE_AND_CORNER:
-            return BoundaryInterpolation::kEdgeAndCorner;
-        case PMR_BOUNDARY_EDGE_ONLY:
-            return BoundaryInterpolation::kEdgeOnly;
-        case PMR_BOUNDARY_NONE:
-            return BoundaryInterpolation::kNone;
-        default:
-            throw argumentError(
-                fmt::format("boundary is {}; it must be 0 to 2 (PMR_BOUNDARY_*)", boundary));
-    }
-}
-
-FaceVaryingInterpolation toFaceVarying(std::int32_t faceVarying) {
-    switch (faceVarying) {
-        case PMR_FACE_VARYING_BOUNDARIES:
-            return FaceVaryingInterpolation::kBoundaries;
-        case PMR_FACE_VARYING_SMOOTH:
-            return FaceVaryingInterpolation::kSmooth;
-        case PMR_FACE_VARYING_CORNERS_ONLY:
-            return FaceVaryingInterpolation::kCornersOnly;
-        case PMR_FACE_VARYING_CORNERS_PLUS1:
-            return FaceVaryingInterpolation::kCornersPlus1;
-        case PMR_FACE_VARYING_CORNERS_PLUS2:
-            return FaceVaryingInterpolation::kCornersPlus2;
-        case PMR_FACE_VARYING_ALL:
-            return FaceVaryingInterpolation::kAllLinear;
-        default:
-            throw argumentError(fmt::format(
-                "faceVarying is {}; it must be 0 to 5 (PMR_FACE_VARYING_*)", faceVarying));
-    }
-}
+// By PMR_SCHEME_*, PMR_BOUNDARY_* and PMR_FACE_VARYING_*.
+constexpr std::array kSchemes{SubdivisionScheme::kCatmullClark, SubdivisionScheme::kLoop,
+                              SubdivisionScheme::kBilinear};
+constexpr std::array kBoundaries{BoundaryInterpolation::kEdgeAndCorner,
+                                 BoundaryInterpolation::kEdgeOnly, BoundaryInterpolation::kNone};
+constexpr std::array kFaceVaryings{
+    FaceVaryingInterpolation::kBoundaries,   FaceVaryingInterpolation::kSmooth,
+    FaceVaryingInterpolation::kCornersOnly,  FaceVaryingInterpolation::kCornersPlus1,
+    FaceVaryingInterpolation::kCornersPlus2, FaceVaryingInterpolation::kAllLinear};
 
 SubdivisionCage toCage(const PmrCageDesc& desc, const PmrMeshDesc& meshDesc,
                        const CancelCheck& cancel) {
     const MeshReader reader(cancel);
     SubdivisionCage cage;
     cage.mesh = reader.read(meshDesc);
-    cage.scheme = toScheme(desc.scheme);
-    cage.boundary = toBoundary(desc.boundary);
-    cage.faceVarying = toFaceVarying(desc.faceVarying);
+    cage.scheme = readChoice(desc.scheme, kSchemes, "scheme", "PMR_SCHEME_*");
+    cage.boundary = readChoice(desc.boundary, kBoundaries, "boundary", "PMR_BOUNDARY_*");
+    cage.faceVarying =
+        readChoice(desc.faceVarying, kFaceVaryings, "faceVarying", "PMR_FACE_VARYING_*");
     checkArray(desc.creases, desc.creaseCount, "creases");
     checkArray(desc.creaseSharpness, desc.creaseCount, "creaseSharpness");
     for (std::uint64_t i = 0; i < desc.creaseCount; ++i)

@@ -2,9 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
 #include <string>
 
+#include "plugin/api/choice_reader.h"
 #include "plugin/api/objects.h"
 #include "plugin/api/parameter_tables.h"
 #include "plugin/session/leave_behind.h"
@@ -14,21 +16,8 @@ namespace pm::plugin {
 
 namespace {
 
-Wrap toWrap(std::int32_t wrap, const char* name) {
-    switch (wrap) {
-        case PMR_WRAP_REPEAT:
-            return Wrap::kRepeat;
-        case PMR_WRAP_CLAMP:
-            return Wrap::kClamp;
-        case PMR_WRAP_MIRROR:
-            return Wrap::kMirror;
-        case PMR_WRAP_BLACK:
-            return Wrap::kBlack;
-        default:
-            throw argumentError(fmt::format(
-                "PmrTextureDesc: {} is {}; it must be 0 to 3 (PMR_WRAP_*)", name, wrap));
-    }
-}
+// By PMR_WRAP_*.
+constexpr std::array kWraps{Wrap::kRepeat, Wrap::kClamp, Wrap::kMirror, Wrap::kBlack};
 
 float checkedFinite(float value, const char* name) {
     if (!std::isfinite(value))
@@ -46,8 +35,8 @@ TextureDescription toTexture(const PmrTextureDesc& desc) {
         throw argumentError("PmrTextureDesc: fileName is null or empty");
     TextureDescription texture;
     texture.fileName = desc.fileName;
-    texture.wrapS = toWrap(desc.wrapS, "wrapS");
-    texture.wrapT = toWrap(desc.wrapT, "wrapT");
+    texture.wrapS = readChoice(desc.wrapS, kWraps, "PmrTextureDesc: wrapS", "PMR_WRAP_*");
+    texture.wrapT = readChoice(desc.wrapT, kWraps, "PmrTextureDesc: wrapT", "PMR_WRAP_*");
     texture.uvScale = {orOne(checkedFinite(desc.uvScale[0], "uvScale[0]")),
                        orOne(checkedFinite(desc.uvScale[1], "uvScale[1]"))};
     texture.uvOffset = {checkedFinite(desc.uvOffset[0], "uvOffset[0]"),

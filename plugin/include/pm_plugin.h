@@ -662,6 +662,12 @@ typedef struct PmrApi {
                                      PmrMesh* mesh);
     /* What it is called: "material", "sphere". Needs no context; null for one that is not there. */
     const char*(PMR_CALL* objectName)(int32_t object);
+
+    /* Bytes that this process may still take beside what it holds, for what a host does on its own:
+     * of limitGib as the setting memoryLimitGib has it, 0 and all that it refuses standing for what
+     * cgroups and the machine allow; and of its address space. Needs no context; reads small files.
+     * 0 where memory ran out. Any thread. Came after objectName. */
+    uint64_t(PMR_CALL* memoryLeft)(double limitGib);
 } PmrApi;
 
 /* The one symbol. Returns PMR_ERROR_ABI when that version is not offered. Any thread. */

@@ -11,6 +11,10 @@ namespace pm::plugin {
 // Threads: any; reads small files.
 std::uint64_t memoryLimitBytes(double limitGib);
 
+// Of that, what the process does not hold yet; and no more than is left of its address space
+// (ulimit -v). Threads: any; reads small files.
+std::uint64_t memoryLeftBytes(double limitGib);
+
 // Most memory that the whole process (the host's share included) has held at once, in bytes.
 std::uint64_t peakResidentBytes();
 

@@ -13,7 +13,11 @@ import math
 import pathlib
 import sys
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+import open_box
+
 SIDE = 80  # quads along an edge of the water's surface
+DECIMALS = 5  # at most
 HALF_LAMP = 0.02  # half the side of the square lamp, scene units
 LEVEL = 0.8  # of the water
 LOW, HIGH = (-1.02, -0.02, -1.02), (1.02, LEVEL, 0.98)  # the block of water; its front is to be seen
@@ -25,23 +29,7 @@ RINGS = [  # x and z of the middle, radians a unit, greatest slope, phase
     (2.7, 1.2, 31.0, 0.1, 5.6),
 ]
 
-MTL = """\
-# SPDX-License-Identifier: Apache-2.0
-# SPDX-FileCopyrightText: The pm authors
-# Linear Rec.709; Ke in W m^-2 sr^-1 per channel.
-newmtl white
-illum 1
-Kd 0.7 0.7 0.7
-newmtl red
-illum 1
-Kd 0.63 0.065 0.05
-newmtl green
-illum 1
-Kd 0.14 0.45 0.091
-newmtl lamp
-illum 1
-Kd 0 0 0
-Ke 3000 3000 3000
+MTL = open_box.materials(lamp=3000) + """\
 newmtl water
 illum 7
 Kd 0 0 0
@@ -49,22 +37,6 @@ Ks 1 1 1
 Tf 1 1 1
 Ni 1.33
 """
-
-
-def box_groups():
-    """Group, material and quads of the box and its lamp; normals point into the box."""
-    top = [(-1, 2, 1), (-1, 2, -1), (1, 2, -1), (1, 2, 1)]
-    h = HALF_LAMP
-    lamp = [(-h, 2, h), (-h, 2, -h), (h, 2, -h), (h, 2, h)]
-    frame = [(top[i], top[(i + 1) % 4], lamp[(i + 1) % 4], lamp[i]) for i in range(4)]
-    return [
-        ("lamp", "lamp", [lamp]),
-        ("ceiling", "white", frame),
-        ("floor", "white", [[(-1, 0, 1), (1, 0, 1), (1, 0, -1), (-1, 0, -1)]]),
-        ("back_wall", "white", [[(-1, 0, -1), (1, 0, -1), (1, 2, -1), (-1, 2, -1)]]),
-        ("red_wall", "red", [[(-1, 0, 1), (-1, 0, -1), (-1, 2, -1), (-1, 2, 1)]]),
-        ("green_wall", "green", [[(1, 0, -1), (1, 0, 1), (1, 2, 1), (1, 2, -1)]]),
-    ]
 
 
 def ripple(x, z):
@@ -83,16 +55,6 @@ def ripple(x, z):
 def grid_place(i, j):
     step = [(high - low) / SIDE for low, high in zip(LOW, HIGH)]
     return LOW[0] + step[0] * i, LOW[2] + step[2] * j
-
-
-def number(x):
-    """Five decimals at most, without trailing zeros and without a negative zero."""
-    text = f"{x:.5f}".rstrip("0").rstrip(".")
-    return "0" if text == "-0" else text
-
-
-def numbers(xs):
-    return " ".join(number(x) for x in xs)
 
 
 def water_sides(first):
@@ -125,25 +87,17 @@ def obj_lines():
     yield "# SPDX-FileCopyrightText: The pm authors"
     yield "# Rippled water in a box, made by make_water_basin.py."
     yield "mtllib water_basin.mtl"
-    index = {}
-    for group, material, faces in box_groups():
-        for p in dict.fromkeys(p for face in faces for p in face if p not in index):
-            index[p] = len(index) + 1
-            yield f"v {numbers(p)}"
-        yield f"g {group}"
-        yield f"usemtl {material}"
-        for face in faces:
-            yield "f " + " ".join(str(index[p]) for p in face)
+    yield from open_box.obj_lines(HALF_LAMP, DECIMALS)
     places = [grid_place(i, j) for j in range(SIDE + 1) for i in range(SIDE + 1)]
     for x, z in places:
         y, normal = ripple(x, z)
-        yield f"v {numbers((x, y, z))}"
-        yield f"vn {numbers(normal)}"
+        yield f"v {open_box.numbers((x, y, z), DECIMALS)}"
+        yield f"vn {open_box.numbers(normal, DECIMALS)}"
     for corner in bottom_corners():
-        yield f"v {numbers(corner)}"
+        yield f"v {open_box.numbers(corner, DECIMALS)}"
     yield "g water"
     yield "usemtl water"
-    first = len(index) + 1
+    first = open_box.vertex_count(HALF_LAMP) + 1
     for j in range(SIDE):
         for i in range(SIDE):
             n = [j * (SIDE + 1) + i, (j + 1) * (SIDE + 1) + i]

@@ -96,6 +96,18 @@ TEST(Settings, NumbersAndIntegers) {
     EXPECT_EQ(PMR_OK, api().destroyRender(render));
 }
 
+TEST(Settings, MemoryLeftIsTheLimitLessWhatIsHeld) {
+    constexpr std::uint64_t kGib = std::uint64_t{1} << 30;
+    EXPECT_GT(api().memoryLeft(0.0), 0u);
+    EXPECT_EQ(api().memoryLeft(1e-6), 0u);
+    const std::uint64_t left = api().memoryLeft(1.0), more = api().memoryLeft(2.0);
+    EXPECT_LT(left, kGib);
+    EXPECT_GT(more, kGib / 2);
+    // What is no limit stands for none.
+    for (const double bad : {-1.0, std::numeric_limits<double>::quiet_NaN(), HUGE_VAL})
+        EXPECT_GT(api().memoryLeft(bad), 0u);
+}
+
 TEST(Settings, ExplainBeforeStart) {
     const BoxHost host;
     const PmrRender render = host.makeRender({});

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <string>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host::test {
 

@@ -12,7 +12,7 @@
 
 #include "host_shim/copies/pack_places.h"
 #include "host_shim/copies/sha256.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host::test {
 namespace {

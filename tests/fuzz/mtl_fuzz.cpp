@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // The input is the MTL file of a triangle.
 #include "host_shim/formats/obj/obj_reader.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 #include "tests/fuzz/fuzz_support.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -2,7 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 // The input are the arguments of a command line, one a line.
 #include "host_shim/cli/command_line.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 #include "tests/fuzz/fuzz_support.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -3,7 +3,7 @@
 // The input is the sidecar of a small scene.
 #include "host_shim/formats/obj/obj_reader.h"
 #include "host_shim/formats/sidecar/sidecar.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 #include "tests/fuzz/fuzz_support.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

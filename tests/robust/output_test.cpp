@@ -4,9 +4,9 @@
 // any locale.
 #include <nlohmann/json.hpp>
 
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/pictures/image_output.h"
 #include "host_shim/pictures/picture_io.h"
+#include "host_shim/values/host_error.h"
 #include "tests/robust/host_process.h"
 
 namespace pm::host::test {

@@ -6,8 +6,8 @@
 
 #include "host_shim/farm/engines/machine_question.h"
 #include "host_shim/formats/warnings.h"
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/report/report_command.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 

@@ -18,10 +18,10 @@
 #include "host_shim/formats/text_lines.h"
 #include "host_shim/formats/warnings.h"
 #include "host_shim/pictures/finished_file.h"
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/process/interrupt.h"
 #include "host_shim/process/program.h"
 #include "host_shim/report/report_command.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -6,7 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

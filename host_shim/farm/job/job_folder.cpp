@@ -14,7 +14,7 @@
 
 #include "host_shim/farm/job/run_script.h"
 #include "host_shim/pictures/finished_file.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "host_shim/formats/obj/obj_reader.h"
 #include "host_shim/pictures/file_ending.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 

@@ -7,6 +7,7 @@
 
 #include "host_shim/formats/mtl/mtl_keys.h"
 #include "host_shim/formats/text_lines.h"
+#include "host_shim/values/letter_case.h"
 
 namespace pm::host {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "host_shim/formats/mtl/mtl_keys.h"
 #include "host_shim/formats/text_lines.h"
+#include "host_shim/values/letter_case.h"
 
 namespace pm::host {
 namespace {
@@ -50,14 +51,6 @@ constexpr std::array<Sign, 13> kSigns{{
     {"morgan mcguire", false, kMcGuire},
     {"graphics.cs.williams.edu", false, kMcGuire},
 }};
-
-std::string lowerCase(std::string_view text) {
-    std::string lower(text);
-    std::ranges::transform(lower, lower.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    });
-    return lower;
-}
 
 // "v2.73 (sub 0)" and "3.4.1 MTL File" begin with a version: in hundreds, 273 and 304.
 std::optional<int> versionAtBegin(std::string_view text) {

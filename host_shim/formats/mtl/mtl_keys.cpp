@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "host_shim/values/letter_case.h"
+
 namespace pm::host {
 namespace {
 
@@ -82,15 +84,7 @@ constexpr std::array<MapOption, 14> kOptions{{
     {"-texres", MapOptionKind::kWord, 0, 0, false},
 }};
 
-char lowerCase(char c) {
-    return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-}
-
 }  // namespace
-
-bool equalInAnyCase(std::string_view a, std::string_view b) {
-    return std::ranges::equal(a, b, {}, lowerCase, lowerCase);
-}
 
 std::span<const MtlKey> mtlKeys() {
     return kKeys;

@@ -45,7 +45,4 @@ struct MapOption {
 std::span<const MapOption> mapOptions();
 const MapOption* findMapOption(std::string_view word);
 
-// Whether two words differ at most by the case of letters a to z.
-bool equalInAnyCase(std::string_view a, std::string_view b);
-
 }  // namespace pm::host

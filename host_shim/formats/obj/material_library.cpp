@@ -14,7 +14,8 @@
 #include "host_shim/formats/mtl/materials.h"
 #include "host_shim/formats/source_file.h"
 #include "host_shim/formats/text_lines.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
+#include "host_shim/values/letter_case.h"
 
 namespace pm::host {
 namespace {
@@ -80,14 +81,6 @@ void warnOfMissing(const ObjText& text, const std::vector<std::size_t>& missing,
     warn(Warning::kMaterialName,
          fmt::format("{}:{}: in no library, so a grey of 0.8 is taken: material {}", fileName,
                      firstLine, list));
-}
-
-std::string lowerCase(std::string_view text) {
-    std::string lower(text);
-    std::ranges::transform(lower, lower.begin(), [](char c) {
-        return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
-    });
-    return lower;
 }
 
 // The names of usemtl lines, in any case of letters. A comment may follow there or in the library,

@@ -22,7 +22,7 @@
 #include "host_shim/formats/obj/obj_text.h"
 #include "host_shim/formats/scene_centre.h"
 #include "host_shim/formats/source_file.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

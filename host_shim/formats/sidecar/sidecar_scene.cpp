@@ -8,7 +8,7 @@
 #include <set>
 
 #include "host_shim/formats/sidecar/sidecar.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -11,7 +11,7 @@
 #include <map>
 #include <string>
 
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

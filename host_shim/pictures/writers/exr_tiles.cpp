@@ -11,9 +11,9 @@
 #include <utility>
 
 #include "host_shim/pictures/checked_file.h"
-#include "host_shim/pictures/host_error.h"
 #include "host_shim/pictures/writers/exr_fill.h"
 #include "host_shim/pictures/writers/exr_spec.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {

@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "integrator/transport/frame/gather_count.h"
 #include "integrator/transport/frame/pass_radius.h"
 #include "integrator/transport/frame/render_counters.h"
 #include "integrator/transport/photon/photon_lists.h"
@@ -207,9 +208,8 @@ const SurfacePatches* PhotonPass::patchesOfSites(float radius) const {
 bool PhotonPass::fillsSites(const PhotonMap& map) const {
     if (!map.isPaged() || m_paging.pages->budget() >= m_paging.pages->wholeBytes()) return false;
     constexpr double kPhotonsOfRay = 128.0;
-    const auto spacing = static_cast<double>(m_plan.gatherSpacing);
-    const double rays =
-        static_cast<double>(m_settings.window.area()) / (spacing * spacing) * m_raysOfPoint;
+    const auto pixels = static_cast<double>(m_settings.window.area());
+    const double rays = gatherPointsOf(pixels, m_plan.gatherSpacing) * m_raysOfPoint;
     return rays * static_cast<double>(m_paging.shareOfWindow) * kPhotonsOfRay >=
            static_cast<double>(map.size());
 }

@@ -12,6 +12,7 @@
 #include "integrator/photons/estimate/received_map.h"
 #include "integrator/photons/estimate/surface_patches.h"
 #include "integrator/photons/map/photon_map.h"
+#include "integrator/transport/frame/gather_count.h"
 #include "integrator/transport/frame/pass_radius.h"
 #include "integrator/transport/frame/transport_plan.h"
 #include "integrator/transport/gather/gather_points.h"
@@ -33,9 +34,8 @@ std::uint64_t patchBytes(const RenderSettings& settings, const Plan& plan) {
     const double steps = 1 + std::floor(-std::log2(static_cast<double>(radiusFactor(last))));
     const double places = kPatchesOfDisc * landings / settings.estimatePhotons * steps;
     const auto pixels = static_cast<double>(settings.window.area());
-    const auto spacing = static_cast<double>(plan.gatherSpacing);
     double questions = 0;
-    if (plan.globalMap) questions += pixels / (spacing * spacing) * plan.gatherRays;
+    if (plan.globalMap) questions += gatherPointsOf(pixels, plan.gatherSpacing) * plan.gatherRays;
     if (plan.causticMap)
         questions += pixels * std::pow(4.0, static_cast<double>(settings.aaLevel) - 2.0);
     const double bytes = kBytesOfPatch * std::min(places, questions * settings.passes);

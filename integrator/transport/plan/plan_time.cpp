@@ -7,6 +7,7 @@
 
 #include "integrator/materials/material_description.h"
 #include "integrator/scene/scene.h"
+#include "integrator/transport/frame/gather_count.h"
 
 namespace pm {
 
@@ -47,9 +48,9 @@ Traits findTraits(const Scene& scene) {
 // Of the gather points of a frame's pixels and the sites that they read.
 double secondsOfGathering(const Scene& scene, const RenderSettings& settings, const Plan& plan,
                           const Traits& traits, double ray) {
-    const double spacing = static_cast<double>(plan.gatherSpacing);
-    const double rays = static_cast<double>(settings.window.area()) / (spacing * spacing) *
-                        plan.gatherRays * (traits.broad ? kMoreRaysByBroad : 1);
+    const auto pixels = static_cast<double>(settings.window.area());
+    const double rays = gatherPointsOf(pixels, plan.gatherSpacing) * plan.gatherRays *
+                        (traits.broad ? kMoreRaysByBroad : 1);
     const double discs = static_cast<double>(plan.globalLandings() + plan.descendedLandings()) /
                          settings.estimatePhotons;
     // Many rays meet the same sites.

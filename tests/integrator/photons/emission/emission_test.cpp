@@ -15,6 +15,7 @@
 #include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/sampling/sampler.h"
 #include "tests/support/aimed.h"
+#include "tests/support/hit_share.h"
 #include "tests/support/scene_maker.h"
 
 namespace pm::test {
@@ -215,25 +216,6 @@ TEST(AimedEmission, EnergyIsConserved) {
     }
 }
 
-// Share of the photons aimed at something that meet what casts before anything else.
-double hitShare(const SceneMaker& maker) {
-    const Aimed aimed(maker.build(), false);
-    int aimedAt = 0, hit = 0;
-    for (std::uint32_t i = 0; i < 50'000; ++i) {
-        Sampler sampler(1, 1, 0, i);
-        const Vec2f choice = sampler.next2D(), point = sampler.next2D();
-        AimedPhoton photon;
-        const bool emitted = aimed.aim.emit(choice, point, sampler.next2D(), photon);
-        if (emitted && photon.caster == kNoCaster) continue;
-        ++aimedAt;  // what carries nothing counts as missed
-        Surface surface;
-        hit += emitted && aimed.scene->intersect(photon.ray, surface) &&
-               aimed.scene->material(surface.material).kind != MaterialKind::kSurface;
-    }
-    EXPECT_GT(aimedAt, 45'000);
-    return static_cast<double>(hit) / aimedAt;
-}
-
 // A glass that fills 1/1000 of the solid angle that a light shines into (of an area light by the
 // cosine) is hit by at least half of the photons aimed at it.
 TEST(AimedEmission, SmallGlassIsHit) {
@@ -261,7 +243,7 @@ TEST(AimedEmission, SmallGlassIsHit) {
                     maker.box(way * d - Vec3d(h), way * d + Vec3d(h), addGlass(maker), false);
                 else
                     maker.sphere(way * d, radius, addGlass(maker));
-                const double share = hitShare(maker);
+                const double share = hitShare(maker, 50'000);
                 EXPECT_GE(share, asBox ? 0.5 : 0.9)
                     << static_cast<int>(kind) << " " << way.x << " " << asBox;
             }

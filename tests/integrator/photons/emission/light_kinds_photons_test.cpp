@@ -16,6 +16,7 @@
 #include "integrator/photons/trace/photon_tracer.h"
 #include "integrator/sampling/sampler.h"
 #include "tests/support/aimed.h"
+#include "tests/support/hit_share.h"
 #include "tests/support/rooms.h"
 #include "tests/support/scene_maker.h"
 #include "tests/support/sky_picture.h"
@@ -269,25 +270,6 @@ TEST(LightKindPhotons, LandAsIrradiance) {
     }
 }
 
-// Share of the photons aimed at something that meet what casts before anything else.
-double hitShare(const SceneMaker& maker) {
-    const Aimed aimed(maker.build(), false);
-    int aimedAt = 0, hit = 0;
-    for (std::uint32_t i = 0; i < 20'000; ++i) {
-        Sampler sampler(1, 1, 0, i);
-        const Vec2f choice = sampler.next2D(), point = sampler.next2D();
-        AimedPhoton photon;
-        const bool good = aimed.aim.emit(choice, point, sampler.next2D(), photon);
-        if (good && photon.caster == kNoCaster) continue;
-        ++aimedAt;  // what carries nothing counts as missed
-        Surface surface;
-        hit += good && aimed.scene->intersect(photon.ray, surface) &&
-               aimed.scene->material(surface.material).kind != MaterialKind::kSurface;
-    }
-    EXPECT_GT(aimedAt, 18'000);
-    return static_cast<double>(hit) / aimedAt;
-}
-
 // A glass that fills 1/1000 of a spot's solid angle, or of what light from afar sees of the scene,
 // is hit by at least half of the photons aimed at it.
 TEST(LightKindPhotons, SmallGlassIsHit) {
@@ -324,7 +306,7 @@ TEST(LightKindPhotons, SmallGlassIsHit) {
                     maker.box(at - Vec3d(h), at + Vec3d(h), material, false);
                 else
                     maker.sphere(at, radius, material);
-                EXPECT_GE(hitShare(maker), asBox ? 0.5 : 0.9)
+                EXPECT_GE(hitShare(maker, 20'000), asBox ? 0.5 : 0.9)
                     << name << " " << asBox << " " << at.x;
             }
 }

@@ -7,7 +7,7 @@
 #include <sstream>
 
 #include "host_shim/formats/source_file.h"
-#include "host_shim/pictures/host_error.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 

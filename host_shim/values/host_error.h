@@ -15,8 +15,8 @@ enum class ExitCode : int {
     kFile = 4,      // a file can't be read or written
 };
 
-// The one exception of the host's colour and picture parts. The text is one line that says what was
-// given, what is allowed and where; it does not begin with the program's name.
+// The one exception of the host. The text is one line that says what was given, what is allowed and
+// where; it does not begin with the program's name.
 class HostError : public std::runtime_error {
   public:
     HostError(ExitCode code, const std::string& text) : std::runtime_error(text), m_code(code) {}
