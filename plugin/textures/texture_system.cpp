@@ -222,8 +222,8 @@ bool TextureSystem::lookUp(const TexturePicture& picture, Vec2f uv, const UvFoot
     }
     const int channelCount = std::min(picture.channelCount, 4);
     std::array<float, 4> values{};
-    const bool good = m_system->texture(handleOf(picture), m_system->get_perthread_info(), options, s,
-                                        t, dx.x, dx.y, dy.x, dy.y, channelCount, values.data());
+    const bool good = m_system->texture(handleOf(picture), m_system->get_perthread_info(), options,
+                                        s, t, dx.x, dx.y, dy.x, dy.y, channelCount, values.data());
     if (!good) {
         m_system->geterror();  // or the texts pile up
         return false;
@@ -344,8 +344,7 @@ std::array<float, 2> TextureSystem::extremes(const TexturePicture& picture,
     };
     forEachTexel(picture, "looking at a texture's heights", cancel,
                  [&](const Texel& texel) { add(texel.r); });
-    const bool hasOutside = picture.wrapS == Wrap::kBlack ||
-                            picture.wrapT == Wrap::kBlack;
+    const bool hasOutside = picture.wrapS == Wrap::kBlack || picture.wrapT == Wrap::kBlack;
     if (hasOutside) add(withGain(picture, {}).r);
     return found;
 }

@@ -1,18 +1,18 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: The pm authors
-"""Which of a target's files can't be compiled together with its others in one go.
+"""Which of a target's files are compiled together in one go.
 
 usage: same_names.py FILE...
 
-In an unnamed namespace files are free to call things alike. Prints the fewest files it finds that
-have to be compiled alone, separated by semicolons. Reads clang-format's layout, not C++: an
+In an unnamed namespace files are free to call things alike. Prints each file's group, a number, separated
+by semicolons: no two files of a group have a name in common. Reads clang-format's layout, not C++: an
 overload of a function counts as the same name where it has as many parameters, or in tests always.
 """
-import collections
 import re
 import sys
 
+MOST_FILES = 12  # of a group: more take longer at a time, and more memory
 NAMESPACE = re.compile(r"^namespace \{\n(.*?)^\}  // namespace$", re.M | re.S)
 TYPE = re.compile(r"^(?:struct|class|enum class|enum|using) (?:alignas\([^)]*\) )?(\w+)", re.M)
 CONSTANT = re.compile(r"^(?:static |inline )?const(?:expr)? [^;]*;", re.M)
@@ -40,23 +40,20 @@ def main():
             texts[file] = source.read()
     # Helpers of tests have parameters that may be left out.
     by_count = not any(re.search(r"^TEST", text, re.M) for text in texts.values())
-    files_by_name = collections.defaultdict(set)
-    for file, text in texts.items():
-        for name in names(text, by_count):
-            files_by_name[name].add(file)
-    alone = []
-    while True:
-        clashes = collections.Counter()
-        for files in files_by_name.values():
-            if len(files) > 1:
-                clashes.update(sorted(files))
-        if not clashes:
-            break
-        worst = max(sorted(clashes), key=clashes.get)
-        alone.append(worst)
-        for files in files_by_name.values():
-            files.discard(worst)
-    print(";".join(alone), end="")
+    by_file = {file: names(text, by_count) for file, text in texts.items()}
+    groups = []  # the files and the names of each
+    number = {}
+    for file in sys.argv[1:]:
+        for i, (files, taken) in enumerate(groups):
+            if len(files) < MOST_FILES and not taken & by_file[file]:
+                break
+        else:
+            i = len(groups)
+            groups.append(([], set()))
+        groups[i][0].append(file)
+        groups[i][1].update(by_file[file])
+        number[file] = i
+    print(";".join(str(number[file]) for file in sys.argv[1:]), end="")
 
 
 if __name__ == "__main__":

@@ -189,5 +189,36 @@ class DevScript(unittest.TestCase):
         self.assertTrue(self.calls[-2].endswith("-R x"))
 
 
+    def named(self, *arguments):
+        """ninja's and ctest's calls for tests of these names."""
+        (self.root / "tests/run").mkdir(parents=True, exist_ok=True)
+        shutil.copy(DEV.parent / "tests/run/named_tests.py", self.root / "tests/run")
+        (self.root / "build/release/tests").mkdir(exist_ok=True)
+        (self.root / "build/release/tests/programs.txt").write_text("house.docs_test;pm_host pm_plugin;;\n")
+        done = self.dev("test", *arguments)
+        return done, [c for c in self.calls if c.startswith(("ninja", "ctest"))]
+
+    def test_named_tests_alone_are_built_and_run(self):
+        done, (ninja, ctest) = self.named("docs_test", "-V")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertTrue(ninja.endswith(" pm_host pm_plugin"), ninja)
+        self.assertTrue(ctest.endswith(r" -R ^house\.docs_test$ -V"), ctest)
+
+    def test_a_name_of_no_test_builds_nothing(self):
+        done, calls = self.named("dosc_test")
+        self.assertEqual((done.returncode, calls), (1, []))
+        self.assertIn("no test is called 'dosc_test'", done.stderr)
+
+    def test_fast_tests_alone(self):
+        _, (ninja, ctest) = self.named("--fast")
+        self.assertTrue(ninja.endswith(" pm_fast_tests"), ninja)
+        self.assertIn(" -L ^fast$", ctest)
+
+    def test_all_tests_without_a_name(self):
+        _, (ninja, ctest) = self.named()
+        self.assertTrue(ninja.endswith(" pm_tests"), ninja)
+        self.assertNotIn(" -R ", ctest)
+
+
 if __name__ == "__main__":
     unittest.main()

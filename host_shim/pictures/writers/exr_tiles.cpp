@@ -60,7 +60,8 @@ TiledExr::TiledExr(const std::filesystem::path& path, const Picture& head, std::
       m_output(std::make_unique<Output>(tiledSpec(head, tilePixels, options.halfColour), m_finished,
                                         path)),
       m_written(static_cast<std::size_t>(m_columns) * static_cast<std::size_t>(m_rows)) {
-    if (!m_output->image) throw HostError(ExitCode::kFile, m_path.string() + ": " + OIIO::geterror());
+    if (!m_output->image)
+        throw HostError(ExitCode::kFile, m_path.string() + ": " + OIIO::geterror());
     m_output->image->set_ioproxy(&m_output->file);
     if (!m_output->image->open(m_finished.temporaryPath().string(), m_output->spec)) fail();
 }
