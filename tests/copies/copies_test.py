@@ -182,7 +182,7 @@ class Renders(Copies):
         for scene, run in ((self.scene, 1), (server.url(), 2)):
             self.render(scene, *options, "--buckets", f"{run}/2", name=f"p{run}.pmpart")
         self.host("merge", "p1.pmpart", "p2.pmpart", "-o", "merged.exr")
-        self.assertEqual((self.folder / "merged.exr").read_bytes(), local)
+        self.assertTrue((self.folder / "merged.exr").read_bytes() == local)
 
     def test_file_address_and_default_name(self):
         self.pack()
@@ -375,7 +375,7 @@ class Sharing(Copies):
         self.hide_project()
         for command in (line for line in printed.splitlines() if not line.startswith("#")):
             subprocess.run(command, shell=True, check=True, env=self.variables, cwd=self.folder, capture_output=True)
-        self.assertEqual((self.folder / "farm.exr").read_bytes(), local)
+        self.assertTrue((self.folder / "farm.exr").read_bytes() == local)
         self.assertEqual(len(server.objects()), 4)
 
     def test_room_is_made_by_what_is_not_used(self):
