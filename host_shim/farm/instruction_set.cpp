@@ -23,8 +23,8 @@ const std::array<InstructionSet, 5>& allSets() {
         {"sse2", {"sse2"}},
         {"sse4.2", {"ssse3", "sse4_1", "sse4_2", "popcnt"}},
         {"avx", {"avx"}},
-        // Not abm, which Embree asks for, too: all that have bmi1 have it, and under some hypervisors the
-        // system doesn't list it.
+        // Not abm, which Embree asks for, too: all that have bmi1 have it, and under some
+        // hypervisors the system doesn't list it.
         {"avx2", {"avx2", "f16c", "rdrand", "fma", "bmi1", "bmi2"}},
         {"avx512", {"avx512f", "avx512dq", "avx512cd", "avx512bw", "avx512vl"}},
     }};

@@ -4,11 +4,13 @@
 
 #include <fmt/format.h>
 #include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/task_arena.h>
 
 #include <algorithm>
 
 #include "integrator/values/error.h"
 #include "scheduler/buckets/available_threads.h"
+#include "scheduler/buckets/fp_environment.h"
 
 namespace pm {
 namespace {
@@ -35,13 +37,28 @@ int fillableSlots(int threads) {
 
 }  // namespace
 
+struct WorkerArena::Tbb {
+    explicit Tbb(int slots) : arena(slots, /*reserved_for_masters=*/1) {}
+    oneapi::tbb::task_arena arena;
+};
+
 WorkerArena::WorkerArena(int threads)
-    : m_threads(checkedThreads(threads)),
-      m_arena(fillableSlots(m_threads), /*reserved_for_masters=*/1) {
+    : m_threads(checkedThreads(threads)), m_tbb(std::make_unique<Tbb>(fillableSlots(m_threads))) {
     // An arena keeps the floating-point modes of the thread that initialises it and hands them to
     // its workers: make sure that they are ours and not the host's.
     const FpEnvironment guard;
-    m_arena.initialize();
+    m_tbb->arena.initialize();
+}
+
+WorkerArena::~WorkerArena() = default;
+
+void WorkerArena::run(void* task, void (*call)(void*)) {
+    // For the task contexts that TBB makes on the way in.
+    const FpEnvironment callerGuard;
+    m_tbb->arena.execute([&] {
+        const FpEnvironment workerGuard;
+        call(task);
+    });
 }
 
 }  // namespace pm

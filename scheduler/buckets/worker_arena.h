@@ -2,9 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include <oneapi/tbb/task_arena.h>
-
-#include "scheduler/buckets/fp_environment.h"
+#include <memory>
+#include <optional>
+#include <type_traits>
+#include <utility>
 
 namespace pm {
 
@@ -19,6 +20,7 @@ class WorkerArena {
     // threads: 0 = availableThreads(), else 1 to 4096.
     // Errors: kInvalidArgument outside of that.
     explicit WorkerArena(int threads);
+    ~WorkerArena();
     WorkerArena(const WorkerArena&) = delete;
     WorkerArena& operator=(const WorkerArena&) = delete;
 
@@ -31,17 +33,24 @@ class WorkerArena {
     // through. Threads: any; several at once share the arena's threads.
     template <typename F>
     auto execute(F&& f) {
-        // For the task contexts that TBB makes on the way in.
-        const FpEnvironment callerGuard;
-        return m_arena.execute([&f] {
-            const FpEnvironment workerGuard;
-            return f();
-        });
+        using Result = std::invoke_result_t<F&>;
+        if constexpr (std::is_void_v<Result>) {
+            run(&f, [](void* task) { (*static_cast<std::remove_reference_t<F>*>(task))(); });
+        } else {
+            std::optional<Result> result;
+            auto task = [&] { result.emplace(f()); };
+            run(&task, [](void* its) { (*static_cast<decltype(task)*>(its))(); });
+            return std::move(*result);
+        }
     }
 
   private:
+    // Calls call(task) in the arena.
+    void run(void* task, void (*call)(void*));
+
     int m_threads;
-    oneapi::tbb::task_arena m_arena;
+    struct Tbb;  // TBB's headers bring all of the processor's intrinsics
+    std::unique_ptr<Tbb> m_tbb;
 };
 
 }  // namespace pm
