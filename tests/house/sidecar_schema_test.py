@@ -4,17 +4,19 @@
 """docs/sidecar.schema.json lets pass what pm_host reads and writes, and refuses what it refuses; and the
 example of docs/sidecar.md renders.
 
-usage: sidecar_schema_test.py PM_HOST
+usage: sidecar_schema_test.py PM_HOST_FORKS PLUGIN
 """
 import copy
 import json
 import pathlib
 import re
-import subprocess
 import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "run"))
+from forks import Forks  # noqa: E402
+
 SKIPPED = 77
 NUMBERS = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0]
 
@@ -97,16 +99,12 @@ def changed(sidecar, way, key, value):
     return sidecar
 
 
-def run(host, folder, *arguments):
-    return subprocess.run([host, "lawn.obj", *arguments], capture_output=True, text=True, cwd=folder)
-
-
 def written(host, folder, validator):
     """What --write-sidecar writes is a sidecar too."""
     (folder / "lawn.pm.json").unlink()
-    done = run(host, folder, "--write-sidecar", "--explain")
-    if done.returncode != 0:
-        return [f"--write-sidecar: {done.stderr}"]
+    code, said = host.said(folder, ["lawn.obj", "--write-sidecar", "--explain"])
+    if code != 0:
+        return [f"--write-sidecar: {said}"]
     text = json.loads((folder / "lawn.pm.json").read_text(encoding="utf-8"))
     return [f"what is written: {e.message}" for e in validator.iter_errors(text)]
 
@@ -117,7 +115,7 @@ def main():
     except ImportError:
         print("skipped: Python's jsonschema is not installed (python3-jsonschema)")
         return SKIPPED
-    host = sys.argv[1]
+    host = Forks(sys.argv[1], sys.argv[2])
     schema = json.loads((ROOT / "docs" / "sidecar.schema.json").read_text(encoding="utf-8"))
     jsonschema.Draft7Validator.check_schema(schema)
     validator = jsonschema.Draft7Validator(schema)
@@ -129,19 +127,20 @@ def main():
         for kind, ending in (("obj", ".obj"), ("mtl", ".mtl"), ("json", ".pm.json")):
             (folder / f"lawn{ending}").write_text(files[kind], encoding="utf-8")
         for more in ([], ["--camera", "above"]):
-            done = run(host, folder, "--size", "32x24", "--photons", "1000", "-o", "x.png", *more)
-            if done.returncode != 0 or "warning" in done.stderr:
-                found.append(f"the example of docs/sidecar.md: {done.stderr}")
+            code, said = host.said(folder, ["lawn.obj", "--size", "32x24", "--photons", "1000", "-o", "x.png", *more])
+            if code != 0 or "warning" in said:
+                found.append(f"the example of docs/sidecar.md: {said}")
         for way, key, value, isGood in [([], ["schema"], "pm-sidecar/1", True), *CHANGES]:
             case = changed(example, way, key, value)
             what = f"{[*way, *key]} = {json.dumps(value)}"
             if validator.is_valid(case) != isGood:
                 found.append(f"the schema {'refuses' if isGood else 'lets pass'} {what}")
             (folder / "lawn.pm.json").write_text(json.dumps(case), encoding="utf-8")
-            done = run(host, folder, "--explain")
-            if done.returncode != (0 if isGood else 3):
-                found.append(f"pm_host ends with {done.returncode} of {what}: {done.stderr}")
+            code, said = host.said(folder, ["lawn.obj", "--explain"])
+            if code != (0 if isGood else 3):
+                found.append(f"pm_host ends with {code} of {what}: {said}")
         found += written(host, folder, validator)
+    host.close()
     for line in found:
         print(line)
     print(f"sidecars: {len(CHANGES) + 1} cases, {len(found)} faults")

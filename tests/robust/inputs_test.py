@@ -15,32 +15,15 @@ import importlib
 import json
 import pathlib
 import queue
-import subprocess
 import sys
 import tempfile
 
 HERE = pathlib.Path(__file__).resolve().parent
 PAGE = HERE.parents[1] / "docs" / "lab" / "inputs.md"
-sys.path.insert(0, str(HERE))
+sys.path[:0] = [str(HERE), str(HERE.parent / "run")]
+from forks import Forks  # noqa: E402
+
 PARALLEL = 2
-
-
-class Forks:
-    """One process that runs pm_host in children of its own."""
-
-    def __init__(self, program, plugin):
-        self.process = subprocess.Popen([program, plugin], stdin=subprocess.PIPE,
-                                        stdout=subprocess.PIPE, text=True)  # fmt: skip
-
-    def run(self, folder, arguments, seconds):
-        task = {"folder": str(folder), "arguments": arguments, "seconds": seconds}
-        self.process.stdin.write(json.dumps(task) + "\n")
-        self.process.stdin.flush()
-        return json.loads(self.process.stdout.readline())
-
-    def close(self):
-        self.process.stdin.close()
-        self.process.wait()
 
 
 def values_fault(expected, printed):

@@ -212,7 +212,7 @@ TEST(LimitScene, RendersManyTrianglesInLittleMemory) {
     EXPECT_GT(scene->groupBytes(), isMany ? 2'000'000'000u : 20'000'000u);
     scene->setGroupBudget(scene->groupBytes() / 16);
     RenderSettings settings = smallFrame(1024, 1024, IntegratorKind::kPath, 1, 2);
-    if (!isMany) settings = smallFrame(64, 64, IntegratorKind::kPath, 1, 2);
+    if (!isMany) settings = smallFrame(32, 32, IntegratorKind::kPath, 1, 2);
     // Hills under an even sky: some of it is hidden.
     const MeasuredLayers measured = measure(scene, settings);
     EXPECT_GT(measured.beauty.mean[1], 0.2);
