@@ -73,7 +73,7 @@ class DevScript(unittest.TestCase):
     def test_alone_lists_the_verbs(self):
         done = self.dev()
         self.assertEqual(done.returncode, 0)
-        for verb in ("setup", "build", "render", "test", "bench", "format", "lint", "install"):
+        for verb in ("setup", "build", "render", "test", "mutations", "bench", "format", "lint", "install"):
             self.assertRegex(done.stdout, rf"(?m)^  {verb}\b")
         self.assertEqual(self.dev("rendr").returncode, 2)
 
