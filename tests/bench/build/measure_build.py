@@ -98,7 +98,7 @@ def main():
     folder = options.work or pathlib.Path(tempfile.mkdtemp(prefix="pm-build-"))
     sources = [checkout(state, folder / f"source{i}") for i, state in enumerate(options.states)]
     rows = []
-    for together in (False, True):
+    for together in (True, False):
         taken = [[], []]
         for turn in range(options.turns):
             for i in (0, 1) if turn % 2 == 0 else (1, 0):
