@@ -3,17 +3,21 @@
 # SPDX-FileCopyrightText: The pm authors
 """What it takes to compile two states of pm, side by side.
 
-usage: measure_build.py OLD NEW [--work DIR] [--turns N] [--jobs N] [--docs FILE] [--no-edits]
+usage: measure_build.py OLD NEW [--work DIR] [--turns N] [--jobs N] [--docs FILE] [--no-edits] [--sample N]
 
 OLD and NEW are revisions, or folders with a checkout. Both are built in turns without ccache: library and
 pm_host from nothing, plainly and together (PM_TOGETHER), and processor time of the whole build is told, the
 median of the turns. Then, in the plain build, one line of one file is edited and it is timed until a test that
-needs it runs: a lobe, a reader, a test (--no-edits: not).
+needs it runs: a lobe, a reader, a test (--no-edits: not). --sample N: of the files that both have, one in N
+alone, plainly, each compiled by both at once after the other: minutes in place of an hour, and what else the
+machine does meanwhile is no matter.
 """
 import argparse
+import json
 import os
 import pathlib
 import resource
+import shlex
 import statistics
 import subprocess
 import sys
@@ -81,6 +85,34 @@ def after_an_edit(source, build, what, jobs):
         os.utime(path, ns=(times.st_atime_ns, times.st_mtime_ns))
 
 
+def compilers_of(source, build):
+    """The call for each of the product's files, by its name from the root; nothing is written."""
+    configure(source, build, together=False, tests=False)
+    # A state without precompiled headers has no such targets.
+    subprocess.run(["ninja", "-C", str(build), "pm_headers", "pm_cold_headers"], capture_output=True, check=False)
+    calls = {}
+    for entry in json.loads((build / "compile_commands.json").read_text()):
+        file, call = pathlib.Path(entry["file"]), shlex.split(entry["command"])
+        if file.is_relative_to(source) and not file.is_relative_to(build):
+            call[call.index("-o") + 1] = os.devnull
+            calls[str(file.relative_to(source))] = call
+    return calls
+
+
+def sampled(sources, builds, one_in):
+    """A row of the table: processor seconds of one file in so many."""
+    calls = [compilers_of(source, build) for source, build in zip(sources, builds)]
+    files = sorted(set(calls[0]) & set(calls[1]))[one_in // 2 :: one_in]
+    seconds = [0.0, 0.0]
+    for k, file in enumerate(files):
+        for i in (0, 1) if k % 2 == 0 else (1, 0):
+            before = processor_seconds()
+            run(*calls[i][file], cwd=builds[i])
+            seconds[i] += processor_seconds() - before
+        print(f"measure_build: {file}: {seconds[1] / seconds[0]:.2f} so far", file=sys.stderr)
+    return f"{len(files)} files, one in {one_in}, plainly, processor seconds", [seconds[0]], [seconds[1]]
+
+
 def spread(values):
     middle = statistics.median(values)
     return f"{middle:.0f}" if len(values) == 1 else f"{middle:.0f} ({min(values):.0f} to {max(values):.0f})"
@@ -94,11 +126,14 @@ def main():
     parser.add_argument("--jobs", type=int, default=len(os.sched_getaffinity(0)))
     parser.add_argument("--docs", type=pathlib.Path)
     parser.add_argument("--no-edits", action="store_true")
+    parser.add_argument("--sample", type=int)
     options = parser.parse_args()
     folder = options.work or pathlib.Path(tempfile.mkdtemp(prefix="pm-build-"))
     sources = [checkout(state, folder / f"source{i}") for i, state in enumerate(options.states)]
     rows = []
-    for together in (True, False):
+    if options.sample:
+        rows.append(sampled(sources, [folder / "build0", folder / "build1"], options.sample))
+    for together in () if options.sample else (True, False):
         taken = [[], []]
         for turn in range(options.turns):
             for i in (0, 1) if turn % 2 == 0 else (1, 0):
@@ -109,7 +144,7 @@ def main():
         for k, unit in ((0, "processor seconds"), (1, f"seconds, {options.jobs} at once")):
             old, new = ([t[k] for t in side] for side in taken)
             rows.append((f"library and pm_host, {'together' if together else 'plainly'}, {unit}", old, new))
-    if not options.no_edits:
+    if not options.no_edits and not options.sample:
         for i in (0, 1):
             configure(sources[i], folder / f"build{i}", together=False, tests=True)
         for what in EDITS:
