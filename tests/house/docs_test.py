@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: The pm authors
 """The documents hold: links lead somewhere, the C example compiles, options exist in pm_host, tests
-exist that docs/testing.md names, tables are even, docs/parameters.md is what pm_host lists.
+exist that docs/testing.md and docs/lab/mutations.md name, tables are even, docs/parameters.md is what pm_host lists.
 
 usage: docs_test.py C_COMPILER PM_HOST
 """
@@ -47,7 +47,7 @@ def unknown_options(host):
         if document.name == "CHANGELOG.md":
             continue
         for line in document.read_text(encoding="utf-8").splitlines():
-            others = r"cmake|ctest|gtest|dev (?:bench|format|fuzz|install|lint|test)|pm_bench|find_package|_test\.py|munge[d.]|sinfo|slurm-option="
+            others = r"cmake|ctest|gtest|dev (?:bench|format|fuzz|install|lint|mutations|test)|pm_bench|find_package|_test\.py|munge[d.]|sinfo|slurm-option="
             is_ours = not re.search(others, line)
             for option in re.findall(r"(?<![\w-])--[a-z][a-z-]+", line) if is_ours else ():
                 if option != "--prefix" and not re.search(rf"{option}\b", known):
@@ -70,10 +70,10 @@ def unknown_tests():
     for source in ROOT.glob("tests/**/*.cpp"):
         text = source.read_text(encoding="utf-8")
         named |= set(map(".".join, re.findall(r"\bTEST(?:_[PF])?\(\s*(\w+),\s*(\w+)", text)))
-    text = (ROOT / "docs" / "testing.md").read_text(encoding="utf-8")
-    for test in re.findall(r"`([A-Z]\w+\.[A-Z]\w+)`", text):
-        if test not in named:
-            yield f"docs/testing.md: there is no test {test}"
+    for page in ("docs/testing.md", "docs/lab/mutations.md"):
+        for test in re.findall(r"`([A-Z]\w+\.[A-Z]\w+)`", (ROOT / page).read_text(encoding="utf-8")):
+            if test not in named:
+                yield f"{page}: there is no test {test}"
 
 
 def stale_parameters(host):

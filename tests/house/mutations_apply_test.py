@@ -3,6 +3,7 @@
 # SPDX-FileCopyrightText: The pm authors
 """The mutations of tests/mutations fit the sources of today: patches apply, tests that they name exist.
 Whether these fail is told by ./dev mutations."""
+import os
 import pathlib
 import re
 import sys
@@ -88,12 +89,18 @@ class Runner(unittest.TestCase):
         (folder / "integrator").mkdir()
         source = folder / "integrator/a.cpp"
         source.write_text("int a;\nint b;\n")
+        time = source.stat().st_mtime_ns
+        (folder / "old.o").write_text("")
+        os.utime(folder / "old.o", (1, 1))
         (read,) = mutations.all_mutations(folder)
         checkout = mutations.Checkout(folder, folder, 1)
         with self.assertRaises(KeyboardInterrupt), checkout.broken(read):
             self.assertEqual(source.read_text(), "int a;\n")
+            (folder / "new.o").write_text("")
             raise KeyboardInterrupt
         self.assertEqual(source.read_text(), "int a;\nint b;\n")
+        self.assertEqual(source.stat().st_mtime_ns, time)
+        self.assertEqual([path.name for path in folder.glob("*.o")], ["old.o"])
         source.write_text("int b;\n")
         with self.assertRaises(mutations.Fault), checkout.broken(read):
             pass

@@ -143,6 +143,8 @@ class Checkout:
     def build(self, targets):
         """False: does not compile."""
         done = run(["ninja", "-j", self.jobs, *targets], self.build_folder)
+        if "interrupted by user" in done.stdout:
+            raise KeyboardInterrupt
         if done.returncode:
             errors = [line for line in done.stdout.splitlines() if "error" in line or "FAILED" in line]
             say("\n".join(errors[:8] or done.stdout.splitlines()[-8:]))
@@ -173,16 +175,29 @@ class Checkout:
 
     @contextlib.contextmanager
     def broken(self, mutation):
-        """The sources broken, and as before afterwards; what was built of them is then older than they are."""
-        before = {path: path.read_bytes() for path in (self.source / name for name in mutation.files)}
+        """The sources broken. Afterwards they are as before, times too, and objects made meanwhile are gone, so that
+        nothing else is built anew."""
+        paths = [self.source / name for name in mutation.files]
+        before = [(path, path.read_bytes(), path.stat()) for path in paths]
+        begin = self.now()
         try:
             if fault := apply(mutation.patch, self.source):
                 raise Fault(f"{mutation.name}: {fault}")
             yield
         finally:
             with undisturbed():
-                for path, content in before.items():
+                for ending in ("o", "gch"):
+                    for made in self.build_folder.rglob(f"*.{ending}"):
+                        if made.stat().st_mtime_ns >= begin:
+                            made.unlink()
+                for path, content, status in before:
                     path.write_bytes(content)
+                    os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
+
+    def now(self):
+        """By the clock of the file system."""
+        with tempfile.NamedTemporaryFile(dir=self.build_folder) as file:
+            return os.stat(file.name).st_mtime_ns
 
 
 @contextlib.contextmanager
