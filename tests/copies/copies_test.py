@@ -3,7 +3,7 @@
 # SPDX-FileCopyrightText: The pm authors
 """pm_host pack, and renders of a scene that is fetched from a static server.
 
-usage: copies_test.py PM_HOST [TEST...]
+usage: copies_test.py PM_HOST PM_HOST_FORKS PLUGIN [TEST...]
 """
 import hashlib
 import json
@@ -22,7 +22,11 @@ import unittest
 from server import Server
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "tests" / "run"))
+from forks import Forks  # noqa: E402
+
 SCENES = ROOT / "scenes" / "regression"
+CLEARED = ("OCIO", "http_proxy", "https_proxy", "all_proxy", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY")
 OPTIONS = ("--size", "24x16", "--passes", "1", "--photons", "2000")
 
 
@@ -40,14 +44,20 @@ class Copies(unittest.TestCase):
         self.pack_folder = self.folder / "pack"
         self.copies = self.folder / "copies"
         self.variables = {**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")}
-        for name in ("OCIO", "http_proxy", "https_proxy", "all_proxy", "HTTP_PROXY", "HTTPS_PROXY", "ALL_PROXY"):
-            self.variables.pop(name, None)
 
-    def host(self, *words, code=0, cwd=None, **variables):
-        done = subprocess.run([HOST, *map(str, words)], cwd=cwd or self.folder, capture_output=True, text=True,
-                              env={**self.variables, **variables}, timeout=120)
-        self.assertEqual(done.returncode, code, done.stderr)
-        return done
+    def host(self, *words, code=0, cwd=None):
+        """What pm_host printed, as out and err; a farm's commands are of the program itself."""
+        cwd = cwd or self.folder
+        if words[0] == "farm":
+            done = subprocess.run([HOST, *map(str, words)], cwd=cwd, capture_output=True, text=True, env=self.variables,
+                                  timeout=120)
+            self.assertEqual(done.returncode, code, done.stderr)
+            return done.stdout, done.stderr
+        ended = FORKS.run(cwd, words, 60, output=str(self.folder),
+                          variables={"XDG_CACHE_HOME": self.variables["XDG_CACHE_HOME"]})
+        out, err = ((self.folder / name).read_text(errors="replace") for name in (".out", ".err"))
+        self.assertEqual(ended["code"], code, err)
+        return out, err
 
     def pack(self, *more, **how):
         return self.host("pack", self.scene, "-o", self.pack_folder, *more, **how)
@@ -69,7 +79,7 @@ class Copies(unittest.TestCase):
         done = self.host(scene, *options, "-o", self.folder / name, "--copies", self.copies, *more,
                          cwd=how.pop("cwd", self.folder / "away"), **how)
         file = self.folder / name
-        return (file.read_bytes() if file.exists() else None), done.stderr
+        return (file.read_bytes() if file.exists() else None), done[1]
 
     def hide_project(self):
         self.project.rename(self.folder / "hidden project")
@@ -202,7 +212,7 @@ class Renders(Copies):
     def test_packing_again_writes_only_the_manifest(self):
         self.pack()
         before = {file: file.stat().st_mtime_ns for file in self.pack_folder.rglob("objects/*/*")}
-        self.assertIn("0.0 MiB are new", self.pack().stderr)
+        self.assertIn("0.0 MiB are new", self.pack()[1])
         self.assertEqual({file: file.stat().st_mtime_ns for file in self.pack_folder.rglob("objects/*/*")}, before)
         for file in before:
             self.assertEqual(hashlib.sha256(file.read_bytes()).hexdigest(), file.name)
@@ -371,7 +381,7 @@ class Sharing(Copies):
         farm = ("--bucket-size", "8", "--copies", self.copies)
         local, _ = self.render(self.scene, *farm[:2], name="local.exr")
         printed = self.host("farm", server.url(), *OPTIONS, *farm, "--engine", "commands", "--job", "job", "--runs", "2",
-                            "-o", "farm.exr").stdout
+                            "-o", "farm.exr")[0]
         self.hide_project()
         for command in (line for line in printed.splitlines() if not line.startswith("#")):
             subprocess.run(command, shell=True, check=True, env=self.variables, cwd=self.folder, capture_output=True)
@@ -433,7 +443,7 @@ class Sharing(Copies):
 class Packing(Copies):
     def test_scene_that_is_not_there(self):
         self.scene = self.project / "none.obj"
-        self.assertIn("none.obj", self.pack(code=4).stderr)
+        self.assertIn("none.obj", self.pack(code=4)[1])
         self.assertFalse(self.pack_folder.exists())
 
     def test_one_folder_is_wanted(self):
@@ -449,7 +459,7 @@ class Packing(Copies):
         self.scene = shots / "textured.obj"
         shutil.copy(SCENES / "textured.obj", self.scene)
         shutil.copy(SCENES / "checker.png", shots / "checker.png")
-        said = self.pack(code=3).stderr
+        said = self.pack(code=3)[1]
         self.assertIn(f"where the scene reads {self.project}/leaf.png, its copies would lead to", said)
         self.assertFalse((self.pack_folder / "manifest.json").exists())
         self.assertEqual([file.name for file in self.pack_folder.iterdir()], ["objects"])
@@ -461,10 +471,16 @@ class Packing(Copies):
         lines = [f"search_path: {self.project}/studio/grades" if line.startswith("search_path:")
                  else line for line in text.splitlines()]
         config.write_text("\n".join(lines) + "\n")
-        said = self.pack("--ocio", config, "--context", "SHOT=a", code=3).stderr
+        said = self.pack("--ocio", config, "--context", "SHOT=a", code=3)[1]
         self.assertIn("is found by an absolute path", said)
 
 
 if __name__ == "__main__":
     HOST = os.path.abspath(sys.argv.pop(1))
-    unittest.main()
+    for name in CLEARED:
+        os.environ.pop(name, None)
+    FORKS = Forks(os.path.abspath(sys.argv.pop(1)), os.path.abspath(sys.argv.pop(1)))
+    try:
+        unittest.main()
+    finally:
+        FORKS.close()

@@ -2,9 +2,10 @@
 // SPDX-FileCopyrightText: The pm authors
 // Runs pm_host many times from one process that has loaded all of its libraries, which takes longer
 // than a small picture. Each line of standard input is {"folder": F, "arguments": [...], "seconds":
-// N}; a child of its own runs pm_host so in F, standard output and error in F/.out and F/.err, and
-// the answer is one line {"code", "cpuSeconds", "peakKib"}. A code of 1000 + N is signal N; beyond
-// N seconds of processor time it is SIGXCPU's or SIGKILL's, beyond 20 N of a clock SIGALRM's.
+// N}; a child of its own runs pm_host so in F, standard output and error in F/.out and F/.err, or
+// in "output": O there, and with "variables": {NAME: VALUE} besides; the answer is one line
+// {"code", "cpuSeconds", "peakKib"}. A code of 1000 + N is signal N; beyond N seconds of processor
+// time it is SIGXCPU's or SIGKILL's, beyond 20 N of a clock SIGALRM's.
 //
 // usage: pm_host_forks PLUGIN
 #include <dlfcn.h>
@@ -26,6 +27,10 @@ namespace {
 [[noreturn]] void runChild(const nlohmann::json& task) {
     const auto folder = task.at("folder").get<std::string>();
     const auto seconds = task.at("seconds").get<unsigned>();
+    const std::string output = task.value("output", ".");
+    if (task.contains("variables"))
+        for (const auto& [name, value] : task["variables"].items())
+            setenv(name.c_str(), value.get<std::string>().c_str(), 1);
     std::vector<std::string> arguments{"pm_host"};
     for (const auto& argument : task.at("arguments"))
         arguments.push_back(argument.get<std::string>());
@@ -33,8 +38,8 @@ namespace {
     for (std::string& argument : arguments) raw.push_back(argument.data());
     const rlimit limit{seconds, seconds + 1};
     if (chdir(folder.c_str()) != 0 || !freopen("/dev/null", "rb", stdin) ||
-        !freopen(".out", "wb", stdout) || !freopen(".err", "wb", stderr) ||
-        setrlimit(RLIMIT_CPU, &limit) != 0)
+        !freopen((output + "/.out").c_str(), "wb", stdout) ||
+        !freopen((output + "/.err").c_str(), "wb", stderr) || setrlimit(RLIMIT_CPU, &limit) != 0)
         _exit(99);
     alarm(20 * seconds);
     const int code = pm::host::runProcess(static_cast<int>(raw.size()), raw.data());

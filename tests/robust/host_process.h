@@ -3,7 +3,6 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -14,7 +13,6 @@
 #include <fstream>
 #include <functional>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -63,39 +61,12 @@ class HostProcess : public ::testing::Test {
         std::ofstream(path(name), std::ios::binary) << text;
     }
 
-    // Runs in the folder; while it runs, during is called with its process id.
+    // Runs in the folder; while it runs, during is called with its process id. A pm_host that
+    // nothing is to happen to meanwhile may be a fork of HostZygote; what starts itself again, or
+    // looks for its library, is the program itself.
     Outcome run(std::vector<std::string> arguments,
                 const std::function<void(pid_t)>& during = nullptr,
-                const std::vector<std::pair<std::string, std::string>>& variables = {}) const {
-        const pid_t child = fork();
-        // A test that then killed process -1 would kill all of the user's.
-        if (child < 0) throw std::runtime_error("no process can be made");
-        if (child == 0) {
-            if (chdir(m_folder.c_str()) != 0 || !freopen(".out", "wb", stdout) ||
-                !freopen(".err", "wb", stderr)) {
-                _exit(99);
-            }
-            for (const char* name : {"OCIO", "OPENIMAGEIO_OPTIONS", "LC_ALL", "LC_NUMERIC", "LANG",
-                                     "PM_PLUGIN_PATH"}) {
-                unsetenv(name);
-            }
-            // Textures of one test are no business of another's, nor of the user's.
-            setenv("XDG_CACHE_HOME", (m_folder / ".cache").c_str(), 1);
-            for (const auto& [name, value] : variables) setenv(name.c_str(), value.c_str(), 1);
-            arguments.insert(arguments.begin(), PM_HOST);
-            std::vector<char*> raw;
-            for (std::string& argument : arguments) raw.push_back(argument.data());
-            raw.push_back(nullptr);
-            execv(PM_HOST, raw.data());
-            _exit(98);
-        }
-        m_lastChild = child;
-        if (during) during(child);
-        int status = 0;
-        waitpid(child, &status, 0);
-        const int code = WIFEXITED(status) ? WEXITSTATUS(status) : 1000 + WTERMSIG(status);
-        return {code, readText(path(".out")), readText(path(".err"))};
-    }
+                const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
 
     // A small render of the box that takes a moment.
     Outcome render(std::vector<std::string> more) const {
