@@ -28,7 +28,7 @@ namespace pm::test {
 namespace {
 
 // For one walk, of some milliseconds: beyond it hangs, however busy the machine is.
-constexpr unsigned kMostSeconds = 10;
+constexpr unsigned kMostSeconds = 4;
 constexpr std::size_t kMostFindings = 64;
 
 enum class What : std::int32_t { kStatus, kNoText, kLeak, kNotRefused, kOtherPixels };

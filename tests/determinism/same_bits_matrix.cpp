@@ -108,15 +108,12 @@ Settings pairSettings() {
     return {{"width", "96"},     {"height", "72"},        {"passes", "3"},
             {"photons", "4500"},  // a batch is 4096
             {"aaLevel", "2"},    {"aaLevelMost", "3"},    {"aaThreshold", "0.05"},
-            {"gatherRays", "4"}, {"layers", everyLayer()}};
+            {"gatherRays", "2"}, {"layers", everyLayer()}};
 }
 
 Settings fullMatrixSettings(bool isOneBucket) {
-    Settings settings = {{"aaLevel", "0"},
-
-                         {"gatherRays", "2"},
-                         {"photons", isOneBucket ? "4200" : "300"},
-                         {"estimatePhotons", "20"}};
+    Settings settings = {
+        {"aaLevel", "0"}, {"photons", isOneBucket ? "4200" : "300"}, {"estimatePhotons", "20"}};
     settings.merge(pairSettings());  // the rest
     return settings;
 }

@@ -13,6 +13,12 @@
 namespace pm::host::test {
 namespace {
 
+// Textures of one test are no business of another's, nor of the user's.
+HostTask taskIn(const fs::path& folder, std::vector<std::string> arguments) {
+    return {
+        folder.string(), std::move(arguments), {{"XDG_CACHE_HOME", (folder / ".cache").string()}}};
+}
+
 pid_t startProgram(const HostTask& task) {
     const pid_t child = fork();
     // A test that then killed process -1 would kill all of the user's.
@@ -42,11 +48,20 @@ bool needsTheProgram(const HostTask& task) {
 Outcome HostProcess::run(std::vector<std::string> arguments,
                          const std::function<void(pid_t)>& during,
                          const std::vector<std::pair<std::string, std::string>>& variables) const {
-    HostTask task{m_folder.string(), std::move(arguments), {}};
-    // Textures of one test are no business of another's, nor of the user's.
-    task.variables.emplace_back("XDG_CACHE_HOME", (m_folder / ".cache").string());
+    HostTask task = taskIn(m_folder, std::move(arguments));
     task.variables.insert(task.variables.end(), variables.begin(), variables.end());
-    m_lastChild = during || needsTheProgram(task) ? startProgram(task) : startInZygote(task);
+    m_lastChild = needsTheProgram(task) ? startProgram(task) : startInZygote(task);
+    return end(during);
+}
+
+Outcome HostProcess::runProgram(std::vector<std::string> arguments,
+                                const std::function<void(pid_t)>& during) const {
+    m_lastChild = startProgram(taskIn(m_folder, std::move(arguments)));
+    return end(during);
+}
+
+// Of the child that was started last.
+Outcome HostProcess::end(const std::function<void(pid_t)>& during) const {
     if (during) during(m_lastChild);
     int status = 0;
     waitpid(m_lastChild, &status, 0);

@@ -61,12 +61,15 @@ class HostProcess : public ::testing::Test {
         std::ofstream(path(name), std::ios::binary) << text;
     }
 
-    // Runs in the folder; while it runs, during is called with its process id. A pm_host that
-    // nothing is to happen to meanwhile may be a fork of HostZygote; what starts itself again, or
-    // looks for its library, is the program itself.
+    // Runs in the folder; while it runs, during is called with its process id. It is a fork of a
+    // process that has loaded pm_host, or, where pm_host starts itself again or looks for its
+    // library, the program.
     Outcome run(std::vector<std::string> arguments,
                 const std::function<void(pid_t)>& during = nullptr,
                 const std::vector<std::pair<std::string, std::string>>& variables = {}) const;
+    // The program, for tests of how it begins.
+    Outcome runProgram(std::vector<std::string> arguments,
+                       const std::function<void(pid_t)>& during = nullptr) const;
 
     // A small render of the box that takes a moment.
     Outcome render(std::vector<std::string> more) const {
@@ -136,6 +139,9 @@ class HostProcess : public ::testing::Test {
 
     fs::path m_folder;
     mutable pid_t m_lastChild{};
+
+  private:
+    Outcome end(const std::function<void(pid_t)>& during) const;
 };
 
 }  // namespace pm::host::test

@@ -69,14 +69,14 @@ class Interrupt : public HostProcess {
                         const std::vector<std::string>& arguments,
                         const std::function<void(const Outcome&)>& check) const {
         const auto start = std::chrono::steady_clock::now();
-        EXPECT_EQ(run(arguments, [](pid_t) {}).exitCode, 0);  // a process like those below
+        EXPECT_EQ(runProgram(arguments).exitCode, 0);
         const auto whole = std::chrono::steady_clock::now() - start;
         int terminated = 0;
         for (const double share : shares) {
             fs::remove(path("s.json"));
             fs::remove_all(path(".cache"));
             std::chrono::steady_clock::time_point told;
-            const Outcome outcome = run(arguments, [&](pid_t child) {
+            const Outcome outcome = runProgram(arguments, [&](pid_t child) {
                 std::this_thread::sleep_for(share * whole);
                 told = std::chrono::steady_clock::now();
                 kill(child, SIGTERM);

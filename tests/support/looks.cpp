@@ -86,21 +86,37 @@ RegionMeans photonMapped(const std::shared_ptr<const Scene>& scene, const LookSi
     return result;
 }
 
+std::vector<RegionMeans> lookByPhotons(const std::shared_ptr<const Scene>& scene,
+                                       const LookSize& size, const std::vector<Rect>& regions,
+                                       std::uint64_t firstSeed, Photons photons) {
+    std::vector<RegionMeans> seen;
+    for (int i = 0; i < size.renders; ++i)
+        seen.push_back(
+            photonMapped(scene, size, regions, firstSeed + static_cast<std::uint64_t>(i), photons));
+    return seen;
+}
+
 // Again: with 16 times as many samples of path tracing.
-Look lookAt(const std::shared_ptr<const Scene>& scene, const LookSize& size,
-            const std::vector<Rect>& regions, std::uint64_t firstSeed, Photons photons) {
-    Look result;
-    for (std::uint64_t seed = firstSeed;
-         seed < firstSeed + static_cast<std::uint64_t>(size.renders); ++seed) {
-        result.photon.push_back(photonMapped(scene, size, regions, seed, photons));
-        RenderSettings path = size.settings(IntegratorKind::kPath, seed);
+std::vector<RegionMeans> lookByPaths(const std::shared_ptr<const Scene>& scene,
+                                     const LookSize& size, const std::vector<Rect>& regions,
+                                     std::uint64_t firstSeed, Photons photons) {
+    std::vector<RegionMeans> seen;
+    for (int i = 0; i < size.renders; ++i) {
+        RenderSettings path =
+            size.settings(IntegratorKind::kPath, firstSeed + static_cast<std::uint64_t>(i));
         if (photons != Photons::kFirst) {
             path.passes *= 4;
             ++path.aaLevel;
         }
-        result.path.push_back(withClassesChecked(render(scene, path, regions)));
+        seen.push_back(withClassesChecked(render(scene, path, regions)));
     }
-    return result;
+    return seen;
+}
+
+Look lookAt(const std::shared_ptr<const Scene>& scene, const LookSize& size,
+            const std::vector<Rect>& regions, std::uint64_t firstSeed, Photons photons) {
+    return {lookByPhotons(scene, size, regions, firstSeed, photons),
+            lookByPaths(scene, size, regions, firstSeed, photons)};
 }
 
 constexpr std::array<Layer, 6> kLayers = {kEmission, kDirect,    kCaustic,
@@ -175,7 +191,8 @@ Look look(const std::shared_ptr<const Scene>& scene, const LookSize& size) {
 
 Look lookAtTwin(const std::shared_ptr<const Scene>& ofPhotons,
                 const std::shared_ptr<const Scene>& ofPaths, const LookSize& size) {
-    return {look(ofPhotons, size).photon, look(ofPaths, size).path};
+    return {lookByPhotons(ofPhotons, size, size.regions(), firstSeed(), Photons::kFirst),
+            lookByPaths(ofPaths, size, size.regions(), firstSeed(), Photons::kFirst)};
 }
 
 void lookAgain(const std::shared_ptr<const Scene>& scene, const LookSize& size, const Look& first,

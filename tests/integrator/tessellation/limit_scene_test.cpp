@@ -87,7 +87,7 @@ TEST(LimitScene, IsTheSameBitsFromACacheTooSmall) {
     const auto large = onDemand(gridCage(24), 12).build(),
                small = onDemand(gridCage(24), 12).build();
     small->setGroupBudget(100'000);
-    constexpr int kRays = 2000;
+    constexpr int kRays = 1000;
     std::array<std::vector<Met>, 8> fromLarge, fromSmall;
     tbb::parallel_for(0, 8, [&](int i) {
         const auto at = static_cast<std::size_t>(i);
@@ -169,7 +169,7 @@ TEST(LimitScene, HasNoCracks) {
             SceneMaker maker;
             addLimit(maker, cage, 0, maker.diffuse(Rgb(0.5f)), place);
             const double size = place[0];
-            maker.camera(Vec3d{place[3], place[7], place[11]} + Vec3d{2, 1.5, 1.2} * size,
+            maker.camera(Vec3d{place[3], place[7], place[11]} + Vec3d{4, 3, 2.4} * size,
                          {place[3], place[7], place[11]}, {0, 1, 0}, 40);
             EXPECT_EQ(missedFromInside(*maker.build(), raysOfCrackTest()), 0u)
                 << isBilinear << " " << size;

@@ -130,7 +130,8 @@ Pairs renderPairs(const Room& room, std::uint32_t pass, int renders) {
 // its surface, most in the first pass; that bias is gone in a later one.
 TEST_P(GatherPointRooms, BringWhatOwnRaysBring) {
     for (const std::uint32_t pass : {0u, 15u}) {
-        const Pairs pairs = renderPairs(GetParam(), pass, 16);
+        // Where bias is allowed for, that is more than the noise of few renders.
+        const Pairs pairs = renderPairs(GetParam(), pass, pass == 0 ? 6 : 16);
         const std::string what = fmt::format("{}, pass {}", GetParam().name, pass);
         expectAgreement(pairs.byPoints, pairs.byRays, kIndirect, pass == 0 ? 0.03 : 0.01, 4, what);
         expectAgreement(wholeFrames(pairs.byPoints), wholeFrames(pairs.byRays), kIndirect,
