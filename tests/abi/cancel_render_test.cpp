@@ -140,8 +140,8 @@ TEST_F(CancelRender, InsideAPassWithManyLamps) {
 TEST_F(CancelRender, StartReturnsAtOnce) {
     for (const PmrMaterialDesc& material : {PMR_INIT(PmrMaterialDesc), lamp()}) {
         const PmrScene scene = litSheet(material);
-        double least =
-            1e9;  // half of it is the system's, for pages of memory, slow on a busy machine
+        // The least of three: half of it is the system's, for memory, and slow on a busy machine.
+        double least = 1e9;
         for (int i = 0; i < 3; ++i) {
             PmrRender render = nullptr;
             ASSERT_EQ(PMR_OK, api().createRender(scene, nullptr, &render));
