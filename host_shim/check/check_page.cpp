@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <array>
+#include <vector>
 
+#include "host_shim/folders/own_folder.h"
 #include "host_shim/pictures/finished_file.h"
 #include "host_shim/report/report_html.h"
 #include "host_shim/report/report_pictures.h"
@@ -78,6 +80,22 @@ std::string thumbnailHtml(EmbeddedPicture picture) {
     return imageHtml(picture, "the new picture");
 }
 
+bool isPages(const fs::path& folder) {
+    return isOwnPage(folder / "index.html");
+}
+
+constexpr FolderKind kPagesKind{"check-pages", "a folder of pages", "--html", nullptr, isPages};
+
+// What is there is to be of an earlier check. Errors: kFile.
+void checkPage(const fs::path& page) {
+    std::error_code ignored;
+    if (fs::exists(fs::symlink_status(page, ignored)) && !isOwnPage(page))
+        throw HostError(ExitCode::kFile,
+                        fmt::format("--html: {} is there and no page of pm's; it would be "
+                                    "overwritten",
+                                    page.string()));
+}
+
 std::string link(const std::string& file, const std::string& words) {
     return fmt::format("<a href=\"{}\">{}</a>", escaped(file), escaped(words));
 }
@@ -86,16 +104,21 @@ std::string link(const std::string& file, const std::string& words) {
 
 CheckPages::CheckPages(fs::path folder, const Suite& suite)
     : m_folder(std::move(folder)), m_suite(suite) {
-    std::error_code failed, ignored;
-    for (const SuiteScene& scene : m_suite.scenes) {
-        for (const fs::path& page : {scenePage(m_folder, scene), reportPage(m_folder, scene)}) {
-            fs::create_directories(page.parent_path(), failed);
-            if (failed || !fs::is_directory(page.parent_path()))
-                throw HostError(ExitCode::kFile,
-                                fmt::format("--html {}: no folder can be made", m_folder.string()));
-            fs::remove(page, ignored);  // of an earlier check
-        }
+    OwnFolder::check(m_folder, kPagesKind);
+    std::vector<fs::path> pages{m_folder / "index.html"};
+    for (const SuiteScene& scene : m_suite.scenes)
+        for (const fs::path& page : {scenePage(m_folder, scene), reportPage(m_folder, scene)})
+            pages.push_back(page);
+    for (const fs::path& page : pages) checkPage(page);
+    std::error_code failed;
+    for (const fs::path& page : pages) {
+        fs::create_directories(page.parent_path(), failed);
+        if (failed || !fs::is_directory(page.parent_path()))
+            throw HostError(ExitCode::kFile,
+                            fmt::format("--html {}: no folder can be made", m_folder.string()));
+        if (page != pages.front()) fs::remove(page, failed);
     }
+    const OwnFolder own(m_folder, kPagesKind);
 }
 
 void CheckPages::add(const SceneOutcome& outcome) {

@@ -29,6 +29,20 @@ bool isNamed(const std::vector<std::string>& options, std::string_view name) {
     });
 }
 
+// The numbers say whose the pictures are. Errors: kFile, kBadInput.
+void checkIsReference(const ReferenceFiles& files) {
+    if (fs::exists(files.numbers)) {
+        readReference(files.numbers);
+        return;
+    }
+    for (const fs::path& picture : {files.picture, files.display})
+        if (fs::exists(picture))
+            throw HostError(ExitCode::kFile,
+                            fmt::format("--update: {} is there without {}, so it is no reference "
+                                        "of pm's; it would be overwritten",
+                                        picture.string(), files.numbers.filename().string()));
+}
+
 // What a program said last, of errors if there are any.
 std::string lastLine(const fs::path& file) {
     constexpr std::string_view kOurs = "pm_host: ", kWarning = "pm_host: warning: ";
@@ -178,7 +192,7 @@ std::vector<SceneOutcome> CheckRun::update() {
         // Before the first ray: they can be written, and what is there can be read.
         const ReferenceFiles files = referenceFiles(m_suite, *m_outcomes[i].scene);
         checkOutputs({files.picture, files.display}, {files.numbers}, true);
-        if (fs::exists(files.numbers)) readReference(files.numbers);
+        checkIsReference(files);
         renders.push_back(addRender(i, kOwnSeed));
         for (std::uint64_t other = 0; other < others; ++other)
             renders.push_back(addRender(i, kFirstOtherSeed + other));

@@ -4,11 +4,16 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "host_shim/copies/manifest.h"
+#include "host_shim/folders/own_folder.h"
 #include "host_shim/log/log.h"
+#include "host_shim/process/temporary_folder.h"
 
 namespace pm::host {
 
@@ -16,14 +21,17 @@ namespace pm::host {
 //   objects/ab/ab12...   contents, named by their SHA-256
 //   packs/ID.json        a manifest, ID its SHA-256; locked (shared) by who renders it
 //   packs/ID/            its files by their names, hard links to objects
+//   set_aside/           files that somebody else laid among those of a scene
 //   lock                 locked by who fetches or makes room
 // Whatever of it is removed while nobody renders is fetched again.
 class CopiesFolder {
   public:
-    // Makes the folder where it isn't there. Errors: HostError kFile.
-    CopiesFolder(std::filesystem::path folder, std::uint64_t limitBytes, Log& log);
+    // Makes the folder where it isn't there. Errors: HostError kFile, also for one that is not
+    // pm's.
+    CopiesFolder(const std::filesystem::path& folder, std::uint64_t limitBytes, Log& log);
 
-    const std::filesystem::path& path() const { return m_folder; }
+    const std::filesystem::path& path() const { return m_own.path(); }
+    bool isWritable() const;
     std::filesystem::path object(const std::string& sha256) const;
     std::filesystem::path tree(const std::string& id) const;
 
@@ -31,8 +39,8 @@ class CopiesFolder {
     // removed, with a warning. All bytes are read. Errors: HostError kFile; Interrupted.
     std::vector<std::string> missing(const Manifest& manifest) const;
 
-    // Lays out the files by their names, and removes whatever else is there. False where a content
-    // went meanwhile. Errors: HostError kFile.
+    // Lays out the files by their names, and sets aside whatever else is there, with a warning.
+    // False where a content went meanwhile. Errors: HostError kFile.
     bool layOut(const std::string& id, const Manifest& manifest) const;
 
     // Removes the contents of packs that nobody renders, those not used for longest first, until
@@ -44,9 +52,14 @@ class CopiesFolder {
 
   private:
     bool isWhole(const PackedFile& file) const;
-    void removeStrangers(const std::string& id, const Manifest& manifest) const;
+    void setAsideStrangers(const std::string& id, const Manifest& manifest) const;
+    void setAside(const std::filesystem::path& path) const;
+    void removePack(const std::string& id) const;
+    std::map<std::string, std::uint64_t> objects() const;
+    // A content by its name in a scene. False where there is no such content any more.
+    bool link(const std::filesystem::path& object, const std::filesystem::path& place) const;
 
-    std::filesystem::path m_folder;
+    OwnFolder m_own;
     std::uint64_t m_limitBytes;
     Log& m_log;
 };
@@ -74,8 +87,11 @@ class PackInUse {
     PackInUse& operator=(PackInUse&&) = delete;
 
     const std::string& id() const { return m_id; }
+    // A folder of copies for this run alone, which goes with this.
+    void keep(std::shared_ptr<TemporaryFolder> folder) { m_folder = std::move(folder); }
 
   private:
+    std::shared_ptr<TemporaryFolder> m_folder;
     std::string m_id;
     int m_file{-1};
 };

@@ -32,8 +32,6 @@ constexpr auto kGlance = std::chrono::milliseconds(20);
 constexpr auto kBeforeTelling = std::chrono::seconds(1);
 constexpr double kMib = 1024.0 * 1024.0;
 
-using Objects = std::map<std::string, std::uint64_t>;  // hash -> bytes
-
 // A pack that nobody uses, and nobody can begin to while this lives.
 struct IdlePack {
     fs::path manifest;
@@ -41,21 +39,6 @@ struct IdlePack {
     std::set<std::string> objects;
     int file{-1};
 };
-
-// A name that was made by uniqueness, not by content: someone was stopped while he wrote it.
-void addObjects(const fs::path& folder, Objects& objects) {
-    std::error_code failed;
-    for (fs::recursive_directory_iterator entry(folder, failed), end; !failed && entry != end;
-         entry.increment(failed)) {
-        struct stat status {};
-        if (::lstat(entry->path().c_str(), &status) != 0 || !S_ISREG(status.st_mode)) continue;
-        const std::string name = entry->path().filename().string();
-        if (isSha256(name))
-            objects[name] = static_cast<std::uint64_t>(status.st_size);
-        else
-            ::unlink(entry->path().c_str());
-    }
-}
 
 std::set<std::string> hashesOf(const Manifest& manifest) {
     std::set<std::string> hashes;
@@ -77,7 +60,8 @@ class Packs {
         std::error_code failed;
         for (fs::directory_iterator entry(folder, failed), end; !failed && entry != end;
              entry.increment(failed))
-            if (entry->path().extension() == ".json" && entry->path().stem() != own)
+            if (entry->path().extension() == ".json" && entry->path().stem() != own &&
+                isSha256(entry->path().stem().string()))
                 look(entry->path());
         std::ranges::sort(idle, [](const IdlePack& a, const IdlePack& b) {
             return std::pair(a.used.tv_sec, a.used.tv_nsec) <
@@ -111,12 +95,6 @@ class Packs {
     }
 };
 
-void removePack(const IdlePack& pack) {
-    std::error_code ignored;
-    fs::remove_all(fs::path(pack.manifest).replace_extension(), ignored);
-    fs::remove(pack.manifest, ignored);
-}
-
 int openFile(const fs::path& file, int flags) {
     const int opened = ::open(file.c_str(), flags | O_CLOEXEC | O_NOFOLLOW, 0666);
     if (opened < 0 && errno != ENOENT)
@@ -133,10 +111,28 @@ int openFile(const fs::path& file, int flags) {
 
 }  // namespace
 
+// Bytes by hash. A name that is pm's and no hash was left by one who was stopped while he wrote.
+std::map<std::string, std::uint64_t> CopiesFolder::objects() const {
+    std::map<std::string, std::uint64_t> objects;
+    std::error_code failed;
+    for (fs::recursive_directory_iterator entry(path() / "objects", failed), end;
+         !failed && entry != end; entry.increment(failed)) {
+        struct stat status {};
+        if (!m_own.owns(entry->path()) || ::lstat(entry->path().c_str(), &status) != 0 ||
+            !S_ISREG(status.st_mode))
+            continue;
+        const std::string name = entry->path().filename().string();
+        if (isSha256(name))
+            objects[name] = static_cast<std::uint64_t>(status.st_size);
+        else
+            m_own.remove(entry->path());
+    }
+    return objects;
+}
+
 void CopiesFolder::makeRoom(const std::string& id, const Manifest& manifest) const {
-    Objects objects;
-    addObjects(m_folder / "objects", objects);
-    Packs packs(m_folder / "packs", id);
+    auto objects = this->objects();
+    Packs packs(path() / "packs", id);
     std::set<std::string> kept = hashesOf(manifest);
     kept.insert(packs.used.begin(), packs.used.end());
     std::uint64_t bytes = manifest.bytes();
@@ -149,13 +145,13 @@ void CopiesFolder::makeRoom(const std::string& id, const Manifest& manifest) con
                 ++object;
                 continue;
             }
-            ::unlink(this->object(object->first).c_str());
+            m_own.remove(this->object(object->first));
             bytes -= object->second;
             object = objects.erase(object);
         }
     };
     for (std::size_t gone = 0; bytes > m_limitBytes && gone <= packs.idle.size(); ++gone) {
-        if (gone > 0) removePack(packs.idle[gone - 1]);
+        if (gone > 0) removePack(packs.idle[gone - 1].manifest.stem().string());
         std::set<std::string> wanted;
         for (std::size_t i = gone; i < packs.idle.size(); ++i)
             wanted.insert(packs.idle[i].objects.begin(), packs.idle[i].objects.end());
@@ -166,7 +162,7 @@ void CopiesFolder::makeRoom(const std::string& id, const Manifest& manifest) con
             ExitCode::kFile,
             fmt::format("{}: the scene is {:.1f} MiB, and with what others render now there would "
                         "be {:.1f} MiB; --copies-limit allows {:.1f}",
-                        m_folder.string(), static_cast<double>(manifest.bytes()) / kMib,
+                        path().string(), static_cast<double>(manifest.bytes()) / kMib,
                         static_cast<double>(bytes) / kMib,
                         static_cast<double>(m_limitBytes) / kMib));
 }
@@ -216,6 +212,8 @@ PackInUse::~PackInUse() {
 }
 
 PackInUse::PackInUse(PackInUse&& other) noexcept
-    : m_id(std::move(other.m_id)), m_file(std::exchange(other.m_file, -1)) {}
+    : m_folder(std::move(other.m_folder)),
+      m_id(std::move(other.m_id)),
+      m_file(std::exchange(other.m_file, -1)) {}
 
 }  // namespace pm::host

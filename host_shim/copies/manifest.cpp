@@ -99,6 +99,10 @@ std::uint64_t Manifest::bytes() const {
     return sum;
 }
 
+std::string Manifest::beginning() {
+    return fmt::format("{{\"schema\":\"{}\"", kSchema);
+}
+
 std::string Manifest::toJson() const {
     Json json = {{"schema", kSchema},
                  {"scene", scene},

@@ -36,6 +36,8 @@ struct Manifest {
 
     std::uint64_t bytes() const;  // of all contents, those that are alike once
 
+    // Of toJson(), white space left out.
+    static std::string beginning();
     std::string toJson() const;
     // Errors: kBadInput for anything else than toJson() gives; where: for messages.
     static Manifest fromJson(std::string_view text, const std::string& where);

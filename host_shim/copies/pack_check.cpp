@@ -3,9 +3,11 @@
 #include "host_shim/copies/pack_check.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
+#include <stdlib.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 
 #include "host_shim/copies/copied_options.h"
 #include "host_shim/formats/scene_reader.h"
@@ -21,9 +23,8 @@ namespace fs = std::filesystem;
 class LinkTree {
   public:
     LinkTree(const Manifest& manifest, const fs::path& folder)
-        : m_root(fs::absolute(folder / fmt::format("check.tmp.{}", ::getpid()))) {
+        : m_root(newFolder(fs::absolute(folder))) {
         try {
-            makeFolder(m_root);
             for (const std::string& place : manifest.folders) makeFolder(m_root / place);
             for (const std::string& place : manifest.searchPaths) makeFolder(m_root / place);
             for (const PackedFile& file : manifest.files)
@@ -39,6 +40,14 @@ class LinkTree {
     const fs::path& root() const { return m_root; }
 
   private:
+    // Under a name that nothing has.
+    static fs::path newFolder(const fs::path& folder) {
+        std::string name = (folder / "check.tmp.XXXXXX").string();
+        if (::mkdtemp(name.data()) == nullptr)
+            throw HostError(ExitCode::kFile, fmt::format("{}: no folder can be made there: {}",
+                                                         folder.string(), std::strerror(errno)));
+        return name;
+    }
     static void makeFolder(const fs::path& folder) {
         std::error_code failed;
         fs::create_directories(folder, failed);

@@ -12,6 +12,7 @@
 #include "host_shim/copies/pack_check.h"
 #include "host_shim/copies/pack_places.h"
 #include "host_shim/copies/sha256.h"
+#include "host_shim/folders/own_folder.h"
 #include "host_shim/formats/scene_reader.h"
 #include "host_shim/formats/source_file.h"
 #include "host_shim/pictures/finished_file.h"
@@ -26,13 +27,21 @@ namespace fs = std::filesystem;
 constexpr double kMib = 1024.0 * 1024.0;
 constexpr mode_t kReadOnly = 0444;
 
+bool isPack(const fs::path& folder) {
+    return beginsWith(folder / "manifest.json", Manifest::beginning());
+}
+
+constexpr FolderKind kPackKind{"pack", "a folder", "pack -o", nullptr, isPack};
+
 class Packing {
   public:
     Packing(const Options& options, Log& log)
         : m_options(options), m_log(log), m_folder(options.outputs.front()) {}
 
     int run() {
+        OwnFolder::check(m_folder, kPackKind);
         collect();
+        const OwnFolder own(m_folder, kPackKind);
         Manifest manifest = describe();
         for (const auto& [place, file] : m_places.files()) {
             throwIfInterrupted();

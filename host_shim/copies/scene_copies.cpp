@@ -10,6 +10,7 @@
 #include <cmath>
 #include <cstring>
 #include <map>
+#include <memory>
 #include <set>
 #include <string_view>
 
@@ -19,6 +20,7 @@
 #include "host_shim/copies/sha256.h"
 #include "host_shim/formats/scene_url.h"
 #include "host_shim/pictures/finished_file.h"
+#include "host_shim/process/temporary_folder.h"
 #include "host_shim/textures/texture_cache.h"
 
 namespace pm::host {
@@ -31,14 +33,31 @@ constexpr double kUsualLimitGib = 20, kMib = 1024.0 * 1024.0, kGib = 1024.0 * kM
 constexpr int kTries = 2;  // of a content that comes with another hash
 constexpr mode_t kReadOnly = 0444;
 
-fs::path folderOf(const Options& options) {
+std::uint64_t limitOf(const Options& options) {
+    return static_cast<std::uint64_t>(
+        std::llround(options.copiesGib.value_or(kUsualLimitGib) * kGib));
+}
+
+// Why copies can't be kept in the folder that nobody named; empty: they can.
+std::string whyUnusable(const fs::path& folder, Log& log) {
+    if (folder.empty()) return "neither XDG_CACHE_HOME nor HOME says where copies are kept";
+    try {
+        const CopiesFolder usual(folder, 0, log);
+        return usual.isWritable() ? "" : folder.string() + ": nothing can be written there";
+    } catch (const HostError& error) {
+        return error.what();
+    }
+}
+
+// temporary: made for this run where the usual place can't be used.
+fs::path folderOf(const Options& options, TemporaryFolder& temporary, Log& log) {
     if (!options.copies.empty()) return options.copies;
-    const fs::path usual = usualCacheFolder();
-    if (usual.empty())
-        throw HostError(ExitCode::kFile,
-                        "neither XDG_CACHE_HOME nor HOME says where copies are kept; give "
-                        "--copies DIR");
-    return usual / "copies";
+    const fs::path cache = usualCacheFolder();
+    const fs::path usual = cache.empty() ? cache : cache / "copies";
+    const std::string why = whyUnusable(usual, log);
+    if (why.empty()) return usual;
+    log.info(why + "; copies are kept for this run only");
+    return temporary.path();
 }
 
 // The folder of a manifest, with the slash at its end.
@@ -49,14 +68,11 @@ std::string folderOfUrl(const std::string& url) {
 
 class Fetching {
   public:
-    Fetching(const Options& options, Log& log)
+    Fetching(const Options& options, TemporaryFolder& temporary, Log& log)
         : m_url(options.scene.string()),
           m_log(log),
           m_download(log),
-          m_folder(folderOf(options),
-                   static_cast<std::uint64_t>(
-                       std::llround(options.copiesGib.value_or(kUsualLimitGib) * kGib)),
-                   log),
+          m_folder(folderOf(options, temporary, log), limitOf(options), log),
           m_text(m_download.text(m_url, kMostManifestBytes)),
           m_manifest(Manifest::fromJson(m_text, m_url)) {}
 
@@ -156,8 +172,10 @@ std::optional<PackInUse> takeCopies(Options& options, Log& log) {
     if (options.writeSidecar)
         throw HostError(ExitCode::kUsage,
                         "--write-sidecar: a scene that is fetched has no place for it");
-    Fetching fetching(options, log);
+    auto temporary = std::make_shared<TemporaryFolder>();
+    Fetching fetching(options, *temporary, log);
     PackInUse pack = fetching.run();
+    pack.keep(std::move(temporary));
     nameCopies(fetching.manifest(), fetching.tree(pack), options);
     return pack;
 }

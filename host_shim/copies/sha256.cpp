@@ -13,6 +13,7 @@
 #include <cstring>
 #include <vector>
 
+#include "host_shim/folders/own_folder.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
@@ -92,9 +93,7 @@ std::string sha256OfFile(const std::filesystem::path& file,
 
 bool isSha256(std::string_view text) {
     constexpr std::size_t kDigits = 64;
-    return text.size() == kDigits && std::ranges::all_of(text, [](char c) {
-               return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f');
-           });
+    return isHex(text, kDigits);
 }
 
 }  // namespace pm::host

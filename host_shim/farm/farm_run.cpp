@@ -72,7 +72,10 @@ class Farm {
     }
     void makePlan(const std::vector<Options>& frames) {
         const FarmOptions& farm = *m_options.farm;
-        if (!farm.dryRun) m_folder.prepare();
+        if (farm.dryRun)
+            m_folder.check();
+        else
+            m_folder.prepare();
         if (farm.engine != "commands") m_engine = makeEngine(farm, m_folder, m_log);
         if (auto plan = m_folder.readPlan()) {
             checkPlanFits(*plan, farm, m_folder);

@@ -72,6 +72,23 @@ int writeAll(int file, std::string_view bytes) {
     return 0;
 }
 
+// By what each picture of pm's says of itself, near its beginning or, in a TIFF, its end.
+bool isOwnPicture(const std::filesystem::path& path) {
+    constexpr off_t kNear = 1 << 16;
+    const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK);
+    if (file < 0) return false;
+    struct stat status {};
+    std::string text(2 * kNear, '\0');
+    if (::fstat(file, &status) == 0 && S_ISREG(status.st_mode)) {
+        const ssize_t head = ::pread(file, text.data(), kNear, 0);
+        const ssize_t tail =
+            ::pread(file, text.data() + kNear, kNear, std::max<off_t>(0, status.st_size - kNear));
+        static_cast<void>(head + tail);
+    }
+    ::close(file);
+    return text.find("pm:complete") != text.npos || text.find("pm:exposure") != text.npos;
+}
+
 [[noreturn]] void fail(const std::filesystem::path& path, int error) {
     throw HostError(ExitCode::kFile,
                     fmt::format("{}: can't be written: {}", path.string(), std::strerror(error)));
@@ -140,7 +157,15 @@ void writeFinishedFile(const std::filesystem::path& path, std::string_view bytes
 }
 
 std::filesystem::path partialName(const std::filesystem::path& path) {
-    return withEnding(path, path.stem().string(), ".partial" + path.extension().string());
+    for (int i = 1;; ++i) {
+        const std::string number = i == 1 ? "" : fmt::format(".{}", i);
+        const auto name =
+            withEnding(path, path.stem().string(), ".partial" + number + path.extension().string());
+        std::error_code ignored;
+        if (!std::filesystem::exists(std::filesystem::symlink_status(name, ignored)) ||
+            isOwnPicture(name))
+            return name;
+    }
 }
 
 }  // namespace pm::host

@@ -49,7 +49,8 @@ class FinishedFile {
 void writeFinishedFile(const std::filesystem::path& path, std::string_view bytes);
 
 // NAME.EXT -> NAME.partial.EXT, where an interrupted render leaves its picture (with the attribute
-// pm:complete = 0 and alpha 0 where nothing is); NAME cut where that is too long.
+// pm:complete = 0 and alpha 0 where nothing is); NAME cut where that is too long. Where a file is
+// there that is no picture of pm's, NAME.partial.2.EXT and so on.
 std::filesystem::path partialName(const std::filesystem::path& path);
 
 }  // namespace pm::host

@@ -9,6 +9,7 @@
 
 #include "host_shim/formats/warnings.h"
 #include "host_shim/render/scene_memory.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {
@@ -30,15 +31,20 @@ std::uint64_t textureCacheBytes(const Options& options) {
 std::shared_ptr<TextureCache> openTextureCache(const Options& options, TemporaryFolder& temporary,
                                                Log& log) {
     const std::filesystem::path folder = textureCacheFolder(options);
+    std::string why = "no folder for caches is known";
     if (!folder.empty()) {
-        auto cache = std::make_shared<TextureCache>(folder, textureCacheBytes(options));
-        if (cache->isWritable()) return cache;
+        try {
+            auto cache = std::make_shared<TextureCache>(folder, textureCacheBytes(options));
+            if (cache->isWritable()) return cache;
+            why = folder.string() + ": nothing can be written there";
+        } catch (const HostError& error) {
+            if (!options.textureCache.empty()) throw;
+            why = error.what();
+        }
     }
-    const std::string text = fmt::format(
-        "{}: textures can't be kept here; they are made for this run only",
-        folder.empty() ? std::string("no folder for caches is known") : folder.string());
+    const std::string text = why + "; textures are made for this run only";
     if (options.textureCache.empty())
-        log.message(Level::kDebug, text);
+        log.info(text);
     else
         log.warning(static_cast<int>(Warning::kTexture), text);
     return std::make_shared<TextureCache>(temporary.path(), textureCacheBytes(options));

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "host_shim/folders/own_folder.h"
 #include "host_shim/process/plain_text.h"
 
 namespace pm::host {
@@ -35,6 +36,13 @@ input[type=range] { max-width: 100%; margin: 0; }
 // Nothing is fetched from anywhere.
 constexpr const char* kPolicy =
     "default-src 'none'; img-src data:; style-src 'unsafe-inline'; script-src 'unsafe-inline'";
+
+std::string pageBeginning() {
+    return fmt::format(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\"/>\n",
+        kPolicy);
+}
 
 }  // namespace
 
@@ -98,12 +106,16 @@ std::string wholePage(std::string_view title, const std::string& body, int refre
         refreshSeconds > 0
             ? fmt::format("<meta http-equiv=\"refresh\" content=\"{}\"/>\n", refreshSeconds)
             : "";
-    return fmt::format(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n"
-        "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\"/>\n"
-        "<meta name=\"viewport\" content=\"width=device-width\"/>\n{}"
-        "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
-        kPolicy, refresh, escaped(title), kStyle, body);
+    return pageBeginning() +
+           fmt::format(
+               "<meta name=\"generator\" content=\"pm_host\"/>\n"
+               "<meta name=\"viewport\" content=\"width=device-width\"/>\n{}"
+               "<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n{}</body>\n</html>\n",
+               refresh, escaped(title), kStyle, body);
+}
+
+bool isOwnPage(const std::filesystem::path& file) {
+    return beginsWith(file, pageBeginning());
 }
 
 }  // namespace pm::host

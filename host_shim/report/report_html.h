@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -32,5 +33,8 @@ std::string details(std::string_view summary, const std::string& content);
 // The whole page. title is plain text, body HTML. refreshSeconds: after that a browser reads it
 // again; 0: it does not.
 std::string wholePage(std::string_view title, const std::string& body, int refreshSeconds = 0);
+
+// Whether a file begins as pages do that wholePage() gave, also those of versions before.
+bool isOwnPage(const std::filesystem::path& file);
 
 }  // namespace pm::host

@@ -6,6 +6,7 @@
 #include <cstdio>
 
 #include "host_shim/colour/display_picture.h"
+#include "host_shim/folders/own_folder.h"
 #include "host_shim/pictures/compare.h"
 #include "host_shim/pictures/display_compare.h"
 #include "host_shim/pictures/picture_io.h"
@@ -73,7 +74,9 @@ void Session::noteEnd() {
     }
     // Only now that all is written nothing is lost without it.
     std::error_code ignored;
-    if (!m_options.checkpoint.empty() && !m_options.keepCheckpoint)
+    constexpr std::string_view kPieceBegins = "pmpiece1";  // somebody else's may be there by now
+    if (!m_options.checkpoint.empty() && !m_options.keepCheckpoint &&
+        beginsWith(fs::canonical(m_options.checkpoint, ignored), kPieceBegins))
         fs::remove(m_options.checkpoint, ignored);
     m_statistics.stopReason = m_statistics.libraryStopReason();
     if (m_statistics.stopReason == "error target" || m_statistics.stopReason == "time limit")

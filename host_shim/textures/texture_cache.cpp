@@ -61,10 +61,45 @@ std::vector<fs::path> filesOf(const fs::path& folder) {
     return files;
 }
 
+constexpr std::size_t kHashDigits = 32;  // of hashText()
+
+// Whether it is "NAME.HASH.tx" and the like, of a name that may be anything.
+bool hasHashBefore(std::string_view name, std::string_view ending) {
+    if (!name.ends_with(ending)) return false;
+    name.remove_suffix(ending.size());
+    return name.size() > kHashDigits + 1 && name[name.size() - kHashDigits - 1] == '.' &&
+           isHex(name.substr(name.size() - kHashDigits), kHashDigits);
+}
+
+// A name of who writes a file until it is whole; left by one who was killed.
 bool isTemporary(const fs::path& file) {
     const std::string name = file.filename().string();
-    return name.starts_with("tmp-") || name.find(".tx.tmp.") != std::string::npos;
+    const std::size_t dot = name.find('.');
+    if (dot == name.npos || !isUniqueName(std::string_view(name).substr(0, dot))) return false;
+    const std::string_view ending = std::string_view(name).substr(dot);
+    return ending == ".tx" || ending == ".rec" || ending == ".lease" ||
+           (ending.starts_with(".tx.tmp.") && !hasHashBefore(name, ".tx"));
 }
+
+Own ownershipInCache(std::string_view place, bool isFolder) {
+    const std::size_t slash = place.find('/');
+    const std::string_view part = place.substr(0, slash);
+    if (isFolder) {
+        if (place == "copies") return Own::kWithAllInIt;  // of scenes, a folder of its own
+        return place == "textures" || place == "index" || place == "leases" ? Own::kYes : Own::kNo;
+    }
+    if (slash == place.npos) return Own::kNo;
+    const std::string_view name = place.substr(slash + 1);
+    const bool isOurs =
+        isTemporary(name) ||
+        (part == "textures" && (hasHashBefore(name, ".tx") || hasHashBefore(name, ".rec"))) ||
+        (part == "index" && name.ends_with(".rec") &&
+         isHex(name.substr(0, name.size() - std::string_view(".rec").size()), kHashDigits));
+    return isOurs ? Own::kYes : Own::kNo;
+}
+
+constexpr FolderKind kCacheKind{"texture-cache", "a texture cache", "--texture-cache",
+                                ownershipInCache};
 
 [[noreturn]] void failWriting(const fs::path& file) {
     throw HostError(ExitCode::kFile,
@@ -82,8 +117,8 @@ fs::path usualCacheFolder() {
     return {};
 }
 
-TextureCache::TextureCache(fs::path folder, std::uint64_t limitBytes)
-    : m_folder(std::move(folder)), m_limitBytes(limitBytes) {
+TextureCache::TextureCache(const fs::path& folder, std::uint64_t limitBytes)
+    : m_own(folder, kCacheKind), m_folder(m_own.path()), m_limitBytes(limitBytes) {
     std::error_code failed;
     for (const char* part : {"textures", "index", "leases"})
         fs::create_directories(m_folder / part, failed);
@@ -203,7 +238,7 @@ std::vector<std::string> TextureCache::leasedNames() const {
         const bool isLeft = file != m_leaseFile && ::flock(lease, LOCK_EX | LOCK_NB) == 0 &&
                             now() - lastModified(file) > kJustUsed;
         if (isLeft) {
-            removeFile(file);
+            m_own.remove(file);
         } else {
             std::ifstream lines(file);
             for (std::string name; std::getline(lines, name);) names.push_back(name);
@@ -216,7 +251,7 @@ std::vector<std::string> TextureCache::leasedNames() const {
 std::vector<TextureCache::Entry> TextureCache::list() const {
     std::vector<Entry> entries;
     for (const fs::path& file : filesOf(m_folder / "textures")) {
-        if (file.extension() != ".tx" || isTemporary(file)) continue;
+        if (file.extension() != ".tx" || isTemporary(file) || !m_own.owns(file)) continue;
         Entry entry;
         entry.name = file.stem().string();
         entry.file = file;
@@ -233,21 +268,21 @@ std::vector<TextureCache::Entry> TextureCache::list() const {
 }
 
 void TextureCache::removeTexture(const std::string& name) const {
-    removeFile(recordFile(name));
-    removeFile(textureFile(name));
+    m_own.remove(recordFile(name));
+    m_own.remove(textureFile(name));
 }
 
 void TextureCache::removeLeftovers() const {
     const std::int64_t time = now();
     for (const char* part : {"textures", "index"})
         for (const fs::path& file : filesOf(m_folder / part))
-            if (isTemporary(file) && time - lastModified(file) > kOldTemporary) removeFile(file);
+            if (isTemporary(file) && time - lastModified(file) > kOldTemporary) m_own.remove(file);
     for (const fs::path& file : filesOf(m_folder / "index"))
-        if (time - lastModified(file) > kOldIndex) removeFile(file);
+        if (time - lastModified(file) > kOldIndex) m_own.remove(file);
     for (const fs::path& file : filesOf(m_folder / "textures"))
         if (file.extension() == ".rec" && time - lastModified(file) > kOldIndex &&
             !fs::exists(textureFile(file.stem().string())))
-            removeFile(file);
+            m_own.remove(file);
 }
 
 void TextureCache::makeRoom() {
@@ -274,14 +309,13 @@ std::size_t TextureCache::clear() {
     const std::unordered_set<std::string> used(leased.begin(), leased.end());
     std::size_t count = 0;
     for (const fs::path& file : filesOf(m_folder / "textures")) {
-        const bool isOurs = file.extension() == ".tx" || file.extension() == ".rec";
-        if (!isOurs || used.contains(file.stem().string())) continue;
+        if (!m_own.owns(file) || used.contains(file.stem().string())) continue;
         if (isTemporary(file) && now() - lastModified(file) < kOldTemporary) continue;
         count += file.extension() == ".tx" ? 1 : 0;
-        removeFile(file);
+        m_own.remove(file);
     }
     for (const fs::path& file : filesOf(m_folder / "index"))
-        if (file.extension() == ".rec") removeFile(file);
+        if (file.extension() == ".rec") m_own.remove(file);
     return count;
 }
 
@@ -294,9 +328,10 @@ std::vector<std::string> TextureCache::verify() {
         removeTexture(entry.name);
     }
     for (const fs::path& file : filesOf(m_folder / "index")) {
+        if (!m_own.owns(file) || isTemporary(file)) continue;
         const auto record = Record::read(file);
         if (!record) {
-            removeFile(file);
+            m_own.remove(file);
             continue;
         }
         const fs::path source = record->get("source");
@@ -305,7 +340,7 @@ std::vector<std::string> TextureCache::verify() {
         if (hashFile(source, {}) == record->get("content")) continue;
         faults.push_back(
             fmt::format("{}: its bytes are others than its dates say; forgotten", source.string()));
-        removeFile(file);
+        m_own.remove(file);
     }
     return faults;
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "host_shim/folders/own_folder.h"
 #include "host_shim/pictures/finished_file.h"
 #include "host_shim/textures/texture_index.h"
 
@@ -28,9 +29,10 @@ class TextureCache {
         std::string source;       // of which it was made, as it was then called
     };
 
-    // Makes the folder where it isn't there. limitBytes: see makeRoom. Nothing is thrown: where
-    // nothing can be written isWritable() is false, and what is there can still be read.
-    TextureCache(std::filesystem::path folder, std::uint64_t limitBytes);
+    // Makes the folder where it isn't there. limitBytes: see makeRoom. Where nothing can be written
+    // isWritable() is false, and what is there can still be read. Errors: HostError kFile for a
+    // folder that is not pm's.
+    TextureCache(const std::filesystem::path& folder, std::uint64_t limitBytes);
     ~TextureCache();
     TextureCache(const TextureCache&) = delete;
     TextureCache& operator=(const TextureCache&) = delete;
@@ -77,6 +79,7 @@ class TextureCache {
     void removeLeftovers() const;
     std::filesystem::path recordFile(const std::string& name) const;
 
+    OwnFolder m_own;
     std::filesystem::path m_folder;
     std::uint64_t m_limitBytes;
     std::mutex m_mutex;

@@ -17,12 +17,14 @@
 #include <memory>
 #include <new>
 
+#include "host_shim/folders/own_folder.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {
 
-constexpr std::string_view kCheckKey = "check ";
+constexpr std::string_view kCheckKey = "check ", kUnique = "tmp-";
+constexpr std::size_t kUniqueDigits = 16;
 constexpr std::size_t kLargestRecord = 1 << 16;
 
 std::int64_t nanoseconds(const timespec& time) {
@@ -181,7 +183,11 @@ std::string uniqueName() {
     std::uint64_t number = 0;
     if (::getrandom(&number, sizeof number, 0) != sizeof number)
         number = static_cast<std::uint64_t>(::getpid());
-    return fmt::format("tmp-{:016x}", number);
+    return fmt::format("{}{:0{}x}", kUnique, number, kUniqueDigits);
+}
+
+bool isUniqueName(std::string_view name) {
+    return name.starts_with(kUnique) && isHex(name.substr(kUnique.size()), kUniqueDigits);
 }
 
 std::filesystem::path makeTemporaryBeside(const std::filesystem::path& file) {

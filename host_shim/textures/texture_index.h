@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pm::host {
@@ -49,8 +50,9 @@ class Record {
     std::map<std::string, std::string> m_values;
 };
 
-// "tmp-" and 16 digits by chance.
+// "tmp-" and 16 hexadecimal digits by chance.
 std::string uniqueName();
+bool isUniqueName(std::string_view name);
 // Makes an empty file beside `file` under a name that nothing has, with the permissions that files
 // have; empty where that can't be.
 std::filesystem::path makeTemporaryBeside(const std::filesystem::path& file);

@@ -28,30 +28,22 @@ namespace fs = std::filesystem;
 constexpr std::chrono::seconds kBetweenSyncs{1};
 constexpr std::uint64_t kSumsRecordBytes = std::uint64_t{1} << 24;  // about so many each
 
-// A name that leads nowhere else: a rename would replace a link, not what it leads to.
+// A name that leads nowhere else: a rename would replace a link, not what it leads to, which need
+// not be there yet.
 std::string withoutLinks(const std::string& file) {
+    constexpr int kMostLinks = 40;  // as the kernel has it
     std::error_code error;
-    const fs::path real = fs::canonical(file, error);
-    return error ? file : real.string();
+    fs::path path(file);
+    for (int i = 0; i < kMostLinks && fs::is_symlink(path, error); ++i) {
+        const fs::path target = fs::read_symlink(path, error);
+        if (error) break;
+        path = target.is_absolute() ? target : path.parent_path() / target;
+    }
+    return path.string();
 }
 
 CallError unusable(const std::string& file, const std::string& why) {
     return {CallStatus::kFile, fmt::format("{}: {}", file, why)};
-}
-
-// isNew: it was made; else it was there.
-std::shared_ptr<OwnedFile> openOrMake(const std::string& file, bool& isNew) {
-    std::error_code ignored;
-    isNew = !fs::exists(file, ignored);
-    if (isNew) {
-        try {
-            return std::make_shared<OwnedFile>(file, O_RDWR | O_CREAT | O_EXCL);
-        } catch (const CallError&) {
-            // Somebody else made it meanwhile, or it can't be made, as the next will say.
-            isNew = false;
-        }
-    }
-    return std::make_shared<OwnedFile>(file, O_RDWR | O_CREAT);
 }
 
 // What a frame holds in rectangles of whole rows, of which each fits into a record.
@@ -90,28 +82,18 @@ std::uint64_t writeBands(const FrameStore& frame, const PieceHead& head, const O
 Checkpoint::Checkpoint(const std::string& file, bool resume, PieceHead head, const Rect& window)
     : m_head(std::move(head)), m_done(window) {
     open(withoutLinks(file));
-    try {
-        take(resume);
-    } catch (...) {
-        // Of what this made nothing stays that isn't whole.
-        std::error_code ignored;
-        if (m_madeName && m_file) fs::remove(m_file->name(), ignored);
-        throw;
-    }
+    m_foundNone = resume && m_isNew;
+    if (!m_isNew) take(resume);
 }
 
 void Checkpoint::take(bool resume) {
-    const PieceReader reader(*m_file);
-    m_isNew = m_file->size() == 0;
-    if (!m_isNew && !reader.isPiece())
+    // Also an empty file is somebody's: what begins here has its head from the start.
+    if (!PieceReader(*m_file).isPiece())
         throw unusable(m_file->name(), "is there and no checkpoint; it would be overwritten");
-    m_replacesOther = !resume && !m_isNew;
-    m_foundNone = resume && m_isNew;
-    if (m_replacesOther) refuseOtherPieces();
-    if (resume && !m_isNew)
-        readHead();
-    else
-        beginAnew();
+    if (resume) return readHead();
+    m_replacesOther = true;
+    refuseOtherPieces();
+    beginAnew();
 }
 
 Checkpoint::~Checkpoint() {
@@ -124,8 +106,12 @@ Checkpoint::~Checkpoint() {
 void Checkpoint::open(const std::string& file) {
     constexpr int kTries = 10;  // of taking it over from a render that replaces it meanwhile
     for (int i = 0; i < kTries; ++i) {
-        m_madeName = false;
-        m_file = openOrMake(file, m_madeName);
+        std::error_code ignored;
+        if (!fs::exists(file, ignored)) {
+            m_isNew = make(file);
+            if (m_isNew) return;
+        }
+        m_file = std::make_shared<OwnedFile>(file, O_RDWR);
         if (!m_file->lock()) break;
         if (m_file->isAtItsName()) return;
     }
@@ -168,14 +154,27 @@ void Checkpoint::readHead() {
 }
 
 void Checkpoint::beginAnew() {
-    m_isNew = true;
     TemporaryFile next(m_file->name());
-    next.file()->lock();
-    const std::vector<std::byte> bytes = beginningOfPiece(m_head.toJson());
-    next.append(bytes);
-    next.sync();
+    writeHead(next);
     next.commit();
+    m_isNew = true;
     m_file = next.file();
+}
+
+// False where somebody has the name by now.
+bool Checkpoint::make(const std::string& file) {
+    TemporaryFile next(file);
+    writeHead(next);
+    if (!next.commitNew()) return false;
+    m_file = next.file();
+    return true;
+}
+
+void Checkpoint::writeHead(TemporaryFile& file) {
+    file.file()->lock();
+    const std::vector<std::byte> bytes = beginningOfPiece(m_head.toJson());
+    file.append(bytes);
+    file.sync();
     m_end = m_sumsEnd = bytes.size();
 }
 

@@ -14,6 +14,7 @@
 #include "plugin/storage/done_pixels.h"
 #include "plugin/storage/owned_file.h"
 #include "plugin/storage/piece_head.h"
+#include "plugin/storage/temporary_file.h"
 #include "scheduler/film/frame_store.h"
 
 namespace pm::plugin {
@@ -70,6 +71,8 @@ class Checkpoint {
 
   private:
     void open(const std::string& file);
+    bool make(const std::string& file);
+    void writeHead(TemporaryFile& file);
     void take(bool resume);
     void refuseOtherPieces() const;
     void readHead();
@@ -89,8 +92,7 @@ class Checkpoint {
     std::size_t m_channels = 0;
     std::uint64_t m_sumPixels = 0;  // loaded
     std::uint64_t m_droppedBytes = 0;
-    bool m_isNew = false;     // made or begun anew by this
-    bool m_madeName = false;  // nothing had it
+    bool m_isNew = false;  // made or begun anew by this
     bool m_replacesOther = false;
     bool m_foundNone = false;
 

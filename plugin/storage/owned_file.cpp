@@ -100,6 +100,21 @@ void OwnedFile::rename(const std::string& to) {
     m_name = to;
 }
 
+bool OwnedFile::renameToNew(const std::string& to) {
+    const auto tried = [&](unsigned flags) {
+        return ::renameat2(AT_FDCWD, m_name.c_str(), AT_FDCWD, to.c_str(), flags) == 0;
+    };
+    if (!tried(RENAME_NOREPLACE)) {
+        if (errno == EEXIST) return false;
+        // A file system that can't tell in one step, such as one of a network.
+        struct stat there {};
+        if ((errno != EINVAL && errno != ENOSYS) || ::lstat(to.c_str(), &there) == 0 || !tried(0))
+            fail("can't be renamed");
+    }
+    m_name = to;
+    return true;
+}
+
 std::uint64_t OwnedFile::size() const {
     struct stat found {};
     if (::fstat(m_file, &found) != 0) fail("can't be measured");

@@ -29,6 +29,8 @@ class OwnedFile {
     // This is its name from then on. What had it is replaced, and its mode, and its owner and group
     // where this user may give it to them, are kept.
     void rename(const std::string& to);
+    // The same where nothing has that name; else false.
+    bool renameToNew(const std::string& to);
 
     std::uint64_t size() const;
     void truncate(std::uint64_t size) const;

@@ -55,7 +55,6 @@ const std::string& checkedName(const std::string& file) {
     if (fs::is_regular_file(file, error)) {
         const OwnedFile there(file, O_RDONLY);
         PieceReader reader(there);
-        if (there.size() == 0) return file;
         try {
             if (reader.next() && reader.kind() == PieceRecord::kHead &&
                 PieceHead::fromJson(reader.payload()).kind == PieceKind::kPhotonMap)

@@ -36,4 +36,11 @@ void TemporaryFile::commit() {
     syncFolderOf(m_final);
 }
 
+bool TemporaryFile::commitNew() {
+    if (!m_file->renameToNew(m_final)) return false;
+    m_isThere = false;
+    syncFolderOf(m_final);
+    return true;
+}
+
 }  // namespace pm::plugin

@@ -32,6 +32,8 @@ class TemporaryFile {
     void rename();
     // And syncs the folder.
     void commit();
+    // The same where nothing has the name yet; else false, and this stays as it was.
+    bool commitNew();
 
   private:
     const std::string m_final;

@@ -462,7 +462,7 @@ class Packing(Copies):
         said = self.pack(code=3)[1]
         self.assertIn(f"where the scene reads {self.project}/leaf.png, its copies would lead to", said)
         self.assertFalse((self.pack_folder / "manifest.json").exists())
-        self.assertEqual([file.name for file in self.pack_folder.iterdir()], ["objects"])
+        self.assertEqual(sorted(file.name for file in self.pack_folder.iterdir()), [".pm-folder", "objects"])
 
     def test_config_with_an_absolute_search_path(self):
         config = self.project / "studio" / "config.ocio"

@@ -199,8 +199,9 @@ TEST_F(Checkpoints, EmptyOnesAreNotLeftBehind) {
     const Outcome outcome = render(on({{"memoryLimitGib", "0.000001"}}));
     EXPECT_EQ(PMR_ERROR_MEMORY, outcome.started);
     EXPECT_TRUE(files().empty());
-    writeFile(path("c"), "");  // killed between the making and the first byte
-    expectSameBits(render({}), render(on()));
+    writeFile(path("c"), "");  // somebody's: what begins here has its head from the start
+    expectRefusal(render(on()), PMR_ERROR_FILE, "is there and no checkpoint");
+    EXPECT_EQ(files(), std::vector<std::string>{"c"});
 }
 
 // Of a user's own, and where a link leads to.

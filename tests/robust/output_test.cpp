@@ -210,5 +210,15 @@ TEST_F(Outputs, progressForProgramsGoesLineByLine) {
     EXPECT_TRUE(nlohmann::json::parse(line).contains("remaining_seconds")) << json.err;
 }
 
+TEST_F(Outputs, PartialPicturesReplaceOnlyTheirOwn) {
+    EXPECT_EQ(partialName(path("a.exr")), path("a.partial.exr"));
+    write("a.partial.exr", "somebody's");
+    EXPECT_EQ(partialName(path("a.exr")), path("a.partial.2.exr"));
+    write("a.partial.2.exr", "v/1 with pm:complete in its head");
+    EXPECT_EQ(partialName(path("a.exr")), path("a.partial.2.exr"));
+    fs::create_symlink("nowhere", path("b.partial.png"));
+    EXPECT_EQ(partialName(path("b.png")), path("b.partial.2.png"));
+}
+
 }  // namespace
 }  // namespace pm::host::test

@@ -86,6 +86,10 @@ int FarmPlan::photonsOf(std::size_t frame) const {
     return 0;
 }
 
+std::string FarmPlan::beginning() {
+    return fmt::format("{{\"schema\":\"{}\"", kSchema);
+}
+
 std::string FarmPlan::toJson() const {
     Json json = {{"schema", kSchema},
                  {"program", program.string()},

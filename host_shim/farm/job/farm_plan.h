@@ -49,6 +49,8 @@ struct FarmPlan {
     // The number of the task that makes the photons of a frame; 0 where none is needed.
     int photonsOf(std::size_t frame) const;
 
+    // Of toJson(), white space left out.
+    static std::string beginning();
     std::string toJson() const;
     // Errors: kBadInput for anything else than toJson() gives; file: for messages.
     static FarmPlan fromJson(std::string_view text, const std::filesystem::path& file);

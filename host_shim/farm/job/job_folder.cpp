@@ -13,6 +13,7 @@
 #include <sstream>
 
 #include "host_shim/farm/job/run_script.h"
+#include "host_shim/folders/own_folder.h"
 #include "host_shim/pictures/finished_file.h"
 #include "host_shim/values/host_error.h"
 
@@ -24,6 +25,13 @@ namespace fs = std::filesystem;
 [[noreturn]] void fail(const fs::path& path, const std::string& why) {
     throw HostError(ExitCode::kFile, fmt::format("{}: {}", path.string(), why));
 }
+
+// By its plan, of which this is the beginning.
+bool isJob(const fs::path& folder) {
+    return beginsWith(folder / "plan.json", FarmPlan::beginning());
+}
+
+constexpr FolderKind kJobKind{"farm-job", "a job's folder", "--job", nullptr, isJob};
 
 fs::path named(const fs::path& folder, std::size_t number, const char* ending) {
     return folder / fmt::format("{:04}{}", number, ending);
@@ -64,7 +72,12 @@ std::optional<FarmPlan> JobFolder::readPlan() const {
     return FarmPlan::fromJson(text.str(), file);
 }
 
+void JobFolder::check() const {
+    OwnFolder::check(m_folder, kJobKind);
+}
+
 void JobFolder::prepare() {
+    const OwnFolder own(m_folder, kJobKind);
     std::error_code failed;
     for (const char* name : {"photons", "parts", "logs", "checkpoints", "locks"}) {
         fs::create_directories(m_folder / name, failed);

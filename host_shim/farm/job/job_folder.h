@@ -32,8 +32,10 @@ class JobFolder {
 
     // The plan that is there, if any. Errors: kFile, kBadInput.
     std::optional<FarmPlan> readPlan() const;
-    // Makes the folder where it isn't there, and keeps others out while this lives. Errors: kFile,
-    // also where another process has it.
+    // Errors: kFile for a folder that has files and is no job's.
+    void check() const;
+    // The same; makes the folder where it isn't there, and keeps others out while this lives.
+    // Errors: kFile, also where another process has it.
     void prepare();
     // Writes the plan, the list of tasks and the script that makes one of them. Errors: kFile.
     void writePlan(const FarmPlan& plan) const;
