@@ -9,6 +9,7 @@
 #include <ctime>
 #include <string>
 
+#include "host_shim/process/interrupt.h"
 #include "host_shim/render/texture_setup.h"
 #include "host_shim/values/host_error.h"
 
@@ -58,7 +59,7 @@ int runCacheCommand(const Options& options) {
     TextureCache cache(folder, limit);
     int code = 0;
     if (options.cacheVerify) {
-        for (const std::string& fault : cache.verify()) {
+        for (const std::string& fault : cache.verify(throwIfInterrupted)) {
             print(fault + "\n");
             code = static_cast<int>(ExitCode::kBadInput);
         }

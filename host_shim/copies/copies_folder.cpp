@@ -28,6 +28,7 @@ namespace fs = std::filesystem;
 }
 
 void makeFolder(const fs::path& folder) {
+    throwIfInterrupted();
     std::error_code failed;
     fs::create_directories(folder, failed);
     if (failed) fail(folder, "can't be made: " + failed.message());
@@ -223,6 +224,7 @@ bool CopiesFolder::layOut(const std::string& id, const Manifest& manifest) const
     setAsideStrangers(id, manifest);
     for (const std::string& folder : foldersOf(manifest)) makeFolder(tree(id) / folder);
     return std::ranges::all_of(manifest.files, [&](const PackedFile& file) {
+        throwIfInterrupted();
         return link(object(file.sha256), tree(id) / file.place);
     });
 }

@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <set>
 #include <thread>
@@ -109,6 +110,20 @@ int openFile(const fs::path& file, int flags) {
     throw HostError(ExitCode::kFile, fmt::format("{}: can't be locked: {}", file.string(), why));
 }
 
+// Closes the file where it throws. tell: called once where it lasts.
+void waitForLock(int opened, int kind, const fs::path& file, const std::function<void()>& tell) {
+    const auto start = std::chrono::steady_clock::now();
+    for (bool isTold = false; ::flock(opened, kind | LOCK_NB) != 0;
+         std::this_thread::sleep_for(kGlance)) {
+        if (errno != EWOULDBLOCK && errno != EINTR) failLocking(opened, file);
+        if (interruptSignal() != 0) ::close(opened);
+        throwIfInterrupted();
+        if (isTold || std::chrono::steady_clock::now() - start < kBeforeTelling) continue;
+        isTold = true;
+        tell();
+    }
+}
+
 }  // namespace
 
 // Bytes by hash. A name that is pm's and no hash was left by one who was stopped while he wrote.
@@ -170,16 +185,9 @@ void CopiesFolder::makeRoom(const std::string& id, const Manifest& manifest) con
 FetchLock::FetchLock(const CopiesFolder& folder, Log& log) {
     const fs::path file = folder.path() / "lock";
     m_file = openFile(file, O_RDWR | O_CREAT);
-    const auto start = std::chrono::steady_clock::now();
-    for (bool isTold = false; ::flock(m_file, LOCK_EX | LOCK_NB) != 0;
-         std::this_thread::sleep_for(kGlance)) {
-        if (errno != EWOULDBLOCK && errno != EINTR) failLocking(m_file, file);
-        if (interruptSignal() != 0) ::close(m_file);
-        throwIfInterrupted();
-        if (isTold || std::chrono::steady_clock::now() - start < kBeforeTelling) continue;
-        isTold = true;
+    waitForLock(m_file, LOCK_EX, file, [&] {
         log.info(fmt::format("{}: another process fetches; waiting", folder.path().string()));
-    }
+    });
 }
 
 FetchLock::~FetchLock() {
@@ -195,8 +203,7 @@ PackInUse::PackInUse(const CopiesFolder& folder, const std::string& text) : m_id
             continue;
         }
         // One who makes room has it for a moment, and it may be gone then.
-        while (::flock(m_file, LOCK_SH) != 0)
-            if (errno != EINTR) failLocking(m_file, file);
+        waitForLock(m_file, LOCK_SH, file, [] {});
         struct stat status {};
         if (::fstat(m_file, &status) == 0 && status.st_nlink > 0) {
             if (static_cast<std::size_t>(status.st_size) == text.size()) break;

@@ -26,6 +26,7 @@ constexpr long kConnectSeconds = 20;
 constexpr long kSlowBytes = 100, kSlowSeconds = 30;  // slower for longer is a connection lost
 constexpr long kMostRedirections = 5;
 constexpr auto kGlance = std::chrono::milliseconds(20);
+constexpr auto kLook = std::chrono::milliseconds(100);  // for signals, while nothing comes
 
 // Once for the process, before any thread that may use it.
 void beginCurl() {
@@ -66,19 +67,29 @@ struct Download::State {
     explicit State(Log& itsLog) : log(itsLog) {
         beginCurl();
         handle = curl_easy_init();
-        if (handle == nullptr) throw HostError(ExitCode::kInternal, "libcurl can't be used");
+        multi = curl_multi_init();
+        if (handle != nullptr && multi != nullptr) return;
+        cleanUp();
+        throw HostError(ExitCode::kInternal, "libcurl can't be used");
     }
-    ~State() { curl_easy_cleanup(handle); }
+    ~State() { cleanUp(); }
     State(const State&) = delete;
     State& operator=(const State&) = delete;
 
     static std::size_t write(char* bytes, std::size_t size, std::size_t count, void* user);
     static int progress(void* user, curl_off_t, curl_off_t, curl_off_t, curl_off_t);
+    void cleanUp() {
+        curl_multi_cleanup(multi);
+        curl_easy_cleanup(handle);
+    }
+    // As curl_easy_perform, which looks up only once a second while a name is resolved.
+    CURLcode perform();
     void setUp(const std::string& url);
     std::string whyFailed(CURLcode code, long status) const;
 
     Log& log;
     CURL* handle{};
+    CURLM* multi{};
     std::array<char, CURL_ERROR_SIZE> error{};
     const DownloadTarget* target{};
     std::uint64_t bytes{}, mostBytes{};  // of this try
@@ -105,6 +116,32 @@ int Download::State::progress(void*, curl_off_t, curl_off_t, curl_off_t, curl_of
     return interruptSignal() != 0 ? 1 : 0;
 }
 
+CURLcode Download::State::perform() {
+    const auto check = [](CURLMcode code) {
+        if (code != CURLM_OK) throw HostError(ExitCode::kInternal, curl_multi_strerror(code));
+    };
+    struct Added {
+        Added(CURLM* itsMulti, CURL* itsHandle) : multi(itsMulti), handle(itsHandle) {}
+        ~Added() { curl_multi_remove_handle(multi, handle); }
+        Added(const Added&) = delete;
+        Added& operator=(const Added&) = delete;
+        CURLM* multi;
+        CURL* handle;
+    };
+    check(curl_multi_add_handle(multi, handle));
+    const Added added(multi, handle);
+    for (int running = 1; running > 0;) {
+        throwIfInterrupted();
+        check(curl_multi_perform(multi, &running));
+        if (running > 0)
+            check(curl_multi_poll(multi, nullptr, 0, static_cast<int>(kLook.count()), nullptr));
+    }
+    int left = 0;
+    while (const CURLMsg* message = curl_multi_info_read(multi, &left))
+        if (message->msg == CURLMSG_DONE) return message->data.result;
+    return CURLE_OK;
+}
+
 void Download::State::setUp(const std::string& url) {
     curl_easy_reset(handle);
     const auto set = [this](CURLoption option, auto value) {
@@ -120,6 +157,9 @@ void Download::State::setUp(const std::string& url) {
     set(CURLOPT_MAXREDIRS, kMostRedirections);
     set(CURLOPT_FAILONERROR, 1L);
     set(CURLOPT_NOSIGNAL, 1L);
+    set(CURLOPT_NETRC, static_cast<long>(CURL_NETRC_OPTIONAL));
+    // A name server that doesn't answer is not waited for at the end.
+    set(CURLOPT_QUICK_EXIT, 1L);
     set(CURLOPT_CONNECTTIMEOUT, kConnectSeconds);
     set(CURLOPT_LOW_SPEED_LIMIT, kSlowBytes);
     set(CURLOPT_LOW_SPEED_TIME, kSlowSeconds);
@@ -154,7 +194,7 @@ void Download::fetch(const std::string& url, std::uint64_t mostBytes,
         state.thrown = nullptr;
         state.error[0] = '\0';
         target.begin();
-        const CURLcode code = curl_easy_perform(state.handle);
+        const CURLcode code = state.perform();
         throwIfInterrupted();
         if (state.thrown) std::rethrow_exception(state.thrown);
         if (state.isTooLong)

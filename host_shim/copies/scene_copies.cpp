@@ -14,6 +14,7 @@
 #include <set>
 #include <string_view>
 
+#include "host_shim/colour/config_files.h"
 #include "host_shim/copies/copied_options.h"
 #include "host_shim/copies/download.h"
 #include "host_shim/copies/manifest.h"
@@ -165,6 +166,22 @@ class Fetching {
     Manifest m_manifest;
 };
 
+// The config that was fetched reads what was fetched with it alone: the library that finds its
+// files knows no rules. Errors: kBadInput.
+void checkConfig(const Manifest& manifest, const fs::path& tree, const ColourOptions& colour) {
+    if (!manifest.ocio || colour.ocioFile != (tree / manifest.ocio->place).string()) return;
+    const fs::path root = fs::canonical(tree);
+    for (const fs::path& file : filesOfConfig(colour)) {
+        std::error_code failed;
+        const std::string place = fs::canonical(file, failed).lexically_relative(root).string();
+        if (!failed && isPlace(place) && fs::is_regular_file(file, failed)) continue;
+        throw HostError(ExitCode::kBadInput,
+                        fmt::format("{}: reads {}, which is none of the files that were fetched "
+                                    "with it",
+                                    colour.ocioFile, file.string()));
+    }
+}
+
 }  // namespace
 
 std::optional<PackInUse> takeCopies(Options& options, Log& log) {
@@ -177,6 +194,7 @@ std::optional<PackInUse> takeCopies(Options& options, Log& log) {
     PackInUse pack = fetching.run();
     pack.keep(std::move(temporary));
     nameCopies(fetching.manifest(), fetching.tree(pack), options);
+    checkConfig(fetching.manifest(), fetching.tree(pack), options.colour);
     return pack;
 }
 

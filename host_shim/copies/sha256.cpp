@@ -5,6 +5,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <openssl/evp.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -38,8 +39,12 @@ void check(int result) {
 struct Descriptor {
     int number;
     explicit Descriptor(const std::filesystem::path& file)
-        : number(::open(file.c_str(), O_RDONLY | O_CLOEXEC)) {
+        : number(::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK | O_NOCTTY)) {
         if (number < 0) failReading(file);
+        struct stat status {};
+        if (::fstat(number, &status) == 0 && S_ISREG(status.st_mode)) return;
+        ::close(number);
+        throw HostError(ExitCode::kFile, file.string() + ": can't be read: it is no file");
     }
     ~Descriptor() { ::close(number); }
     Descriptor(const Descriptor&) = delete;

@@ -18,10 +18,12 @@
 #include "host_shim/farm/farm_words.h"
 #include "host_shim/farm/part_check.h"
 #include "host_shim/farm/task_board.h"
+#include "host_shim/formats/scene_url.h"
 #include "host_shim/log/progress.h"
 #include "host_shim/pictures/finished_file.h"
 #include "host_shim/process/interrupt.h"
 #include "host_shim/process/outputs.h"
+#include "host_shim/process/plain_text.h"
 #include "host_shim/session/session.h"
 #include "host_shim/values/host_error.h"
 
@@ -41,6 +43,12 @@ class Farm {
         : m_options(options), m_log(log), m_folder(options.farm->job) {}
 
     int run() {
+        const std::string scene = m_options.scene.string();
+        if (isSceneUrl(scene) && withoutPasswords(scene) != scene)
+            throw HostError(ExitCode::kUsage,
+                            fmt::format("{}: a job keeps no user and password in an address; put "
+                                        "them into ~/.netrc of its machines",
+                                        scene));
         const std::vector<Options> frames = perFrame(m_options);
         for (const Options& frame : frames) checkOutputs(frame.outputs, {}, frame.makeOutputPath);
         makePlan(frames);

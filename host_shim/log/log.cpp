@@ -75,7 +75,7 @@ double Log::elapsedSeconds() const {
 
 void Log::message(Level level, std::string_view text) {
     // Names come from files: none may end the line or speak to the terminal.
-    std::string line = plainText(text);
+    std::string line = plainText(withoutPasswords(text));
     const char* colour = nullptr;
     if (level == Level::kError) {
         line = "pm_host: " + line;

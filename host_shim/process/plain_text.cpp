@@ -90,4 +90,18 @@ std::string plainJson(std::string_view document) {
     });
 }
 
+std::string withoutPasswords(std::string_view text) {
+    constexpr std::string_view kBegins = "://";
+    std::string shown;
+    for (std::size_t begin = text.find(kBegins); begin != text.npos; begin = text.find(kBegins)) {
+        begin += kBegins.size();
+        shown += text.substr(0, begin);
+        text.remove_prefix(begin);
+        const std::string_view server = text.substr(0, text.find_first_of("/?# \t\n'\""));
+        const std::size_t at = server.rfind('@');
+        if (at != server.npos) text.remove_prefix(at + 1);
+    }
+    return shown.append(text);
+}
+
 }  // namespace pm::host

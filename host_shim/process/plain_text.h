@@ -15,4 +15,7 @@ std::string plainText(std::string_view text);      // in one line: "\n" and "\t"
 std::string plainLines(std::string_view text);     // "\n" and "\t" stay
 std::string plainJson(std::string_view document);  // JSON stays the same JSON, by its own "\u202e"
 
+// The text with what stands before '@' in the addresses in it, user and password, left out.
+std::string withoutPasswords(std::string_view text);
+
 }  // namespace pm::host

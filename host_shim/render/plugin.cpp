@@ -41,6 +41,11 @@ fs::path findLibrary(const fs::path& given) {
 }  // namespace
 
 Plugin::Plugin(const fs::path& given) : m_file(findLibrary(given)) {
+    std::error_code ignored;
+    // The loader would wait for who writes into a pipe.
+    if (fs::exists(m_file, ignored) && !fs::is_regular_file(m_file, ignored))
+        throw HostError(ExitCode::kInternal,
+                        fmt::format("no plugin: {} is no file", m_file.string()));
     m_library = dlopen(m_file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (m_library == nullptr) {
         throw HostError(ExitCode::kInternal, fmt::format("no plugin: {} can't be loaded: {}",

@@ -40,7 +40,8 @@ bool timesBuckets(const Options& options) {
 }  // namespace
 
 Session::Session(const Options& options, Log& log) : m_options(options), m_log(log) {
-    m_statistics.commandLine = options.commandLine;
+    for (const std::string& word : options.commandLine)
+        m_statistics.commandLine.push_back(withoutPasswords(word));
     m_statistics.commandLine.insert(m_statistics.commandLine.begin(), "pm_host");
     m_statistics.scene = options.scene.string();
     if (m_options.onlyPixel) {

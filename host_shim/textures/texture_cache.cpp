@@ -319,11 +319,11 @@ std::size_t TextureCache::clear() {
     return count;
 }
 
-std::vector<std::string> TextureCache::verify() {
+std::vector<std::string> TextureCache::verify(const std::function<void()>& goOn) {
     std::vector<std::string> faults;
     for (const Entry& entry : list()) {
         const auto record = Record::read(recordFile(entry.name));
-        if (record && hashFile(entry.file, {}) == record->get("checksum")) continue;
+        if (record && hashFile(entry.file, goOn) == record->get("checksum")) continue;
         faults.push_back(fmt::format("{}: damaged, removed", entry.file.string()));
         removeTexture(entry.name);
     }
@@ -337,7 +337,7 @@ std::vector<std::string> TextureCache::verify() {
         const fs::path source = record->get("source");
         const auto stamp = stampOf(source);
         if (!stamp || stamp->text() != record->get("stamp")) continue;  // it is looked at anew
-        if (hashFile(source, {}) == record->get("content")) continue;
+        if (hashFile(source, goOn) == record->get("content")) continue;
         faults.push_back(
             fmt::format("{}: its bytes are others than its dates say; forgotten", source.string()));
         m_own.remove(file);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -68,8 +69,8 @@ class TextureCache {
     // Removes everything but what living processes use; returns how many textures.
     std::size_t clear();
     // Reads all textures, and all originals that are still where they were; what is not as it was
-    // recorded is removed. Returns a line for each.
-    std::vector<std::string> verify();
+    // recorded is removed. Returns a line for each. goOn: called now and then; may throw.
+    std::vector<std::string> verify(const std::function<void()>& goOn);
 
   private:
     bool isWhole(const std::string& name, Record& record) const;

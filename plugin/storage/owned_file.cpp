@@ -32,8 +32,13 @@ std::string hostName() {
 }  // namespace
 
 OwnedFile::OwnedFile(std::string name, int flags) : m_name(std::move(name)) {
-    open(flags);
+    // A pipe would be waited for until somebody comes to its other end.
+    open(flags | O_NONBLOCK | O_NOCTTY);
     if (m_file < 0) fail("can't be opened");
+    struct stat found {};
+    if (::fstat(m_file, &found) == 0 && S_ISREG(found.st_mode)) return;
+    ::close(std::exchange(m_file, -1));
+    throw CallError(CallStatus::kIo, m_name + ": can't be opened: it is no file");
 }
 
 OwnedFile OwnedFile::temporaryFor(const std::string& file) {
