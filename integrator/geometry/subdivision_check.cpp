@@ -91,6 +91,9 @@ void checkValence(const PolygonMesh& mesh) {
 }  // namespace
 
 void validate(const SubdivisionCage& cage) {
+    // OpenSubdiv would print that.
+    if (cage.mesh.faceCount() == 0)
+        reject("the subdivision cage has no faces; it must have at least 1");
     validate(cage.mesh);
     checkFeatures(cage);
     checkScheme(cage);

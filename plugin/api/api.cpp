@@ -85,6 +85,7 @@ constexpr PmrApi kApi = {
 extern "C" PmrStatus PMR_CALL pmrGetApi(uint32_t abiVersion, const PmrApi** api) {
     using namespace pm::plugin;
     return onNothing([&] {
+        watchForks();
         if (api == nullptr) throw argumentError("api is null");
         *api = nullptr;
         if (abiVersion != PMR_ABI_VERSION)

@@ -41,6 +41,7 @@ PmrStatus PMR_CALL createContext(const PmrContextDesc* desc, PmrContext* context
 }
 
 PmrStatus PMR_CALL releaseContext(PmrContext context) noexcept {
+    if (isHandleCutOff<Context>(context)) return releaseHandle<Context>(context);
     return onObject<Context>(context, [&](const std::shared_ptr<Context>&) {
         if (CallbackScope::active())
             throw CallError(CallStatus::kInCallback,
@@ -53,7 +54,9 @@ PmrStatus PMR_CALL lastError(PmrContext context, char* buffer, uint64_t capacity
                              uint64_t* needed) noexcept {
     // Not onObject: neither a failure here nor a success is the last call that the host asks for.
     try {
-        if (context != nullptr && !findObject<Context>(context)) return PMR_ERROR_HANDLE;
+        if (context != nullptr && !isHandleCutOff<Context>(context) &&
+            !findObject<Context>(context))
+            return PMR_ERROR_HANDLE;
         writeText(plugin::lastError(), buffer, capacity, needed);
         return PMR_OK;
     } catch (...) {

@@ -188,6 +188,7 @@ PmrStatus PMR_CALL renderState(PmrRender render, int32_t* state, PmrStatus* stat
 }
 
 PmrStatus PMR_CALL destroyRender(PmrRender render) noexcept {
+    if (isHandleCutOff<Render>(render)) return releaseHandle<Render>(render);
     return onObject<Render>(render, [&](const RenderPointer& object) {
         // The handle lives on until `finished` has returned, so that the host may use it there.
         if (!object->shutDown()) return PMR_ERROR_HANDLE;

@@ -11,6 +11,7 @@
 #include "plugin/session/callback_scope.h"
 #include "plugin/session/setting_table.h"
 #include "plugin/values/call_error.h"
+#include "plugin/values/forks.h"
 
 namespace pm::plugin {
 
@@ -47,7 +48,13 @@ Context::Context(const PmrContextDesc& desc)
 void Context::sendMessage(std::int32_t level, std::int32_t code, const std::string& text) const {
     if (m_message == nullptr) return;
     const CallbackScope scope;
-    m_message(m_user, nullptr, level, code, text.c_str());
+    const Activity activity;
+    try {
+        m_message(m_user, nullptr, level, code, text.c_str());
+    } catch (...) {
+        // As of a render's callbacks: what a host throws through a C interface ends here.
+    }
+    if (activity.isOfParent()) throw cutOffError();
 }
 
 void Context::sendNotice(const Notice& notice) const {

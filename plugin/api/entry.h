@@ -15,6 +15,7 @@
 #include "plugin/api/status.h"
 #include "plugin/include/pm_plugin.h"
 #include "plugin/values/call_error.h"
+#include "plugin/values/forks.h"
 #include "scheduler/buckets/fp_environment.h"
 
 namespace pm::plugin {
@@ -49,6 +50,7 @@ std::shared_ptr<Object> findObject(Handle handle) {
 template <typename Object, typename Handle, typename Body>
 PmrStatus onObject(Handle handle, Body&& body) noexcept {
     const FpEnvironment environment;
+    const Activity activity;
     try {
         const std::shared_ptr<Object> object = findObject<Object>(handle);
         if (!object)
@@ -68,12 +70,19 @@ PmrStatus onObject(Handle handle, Body&& body) noexcept {
 template <typename Body>
 PmrStatus onNothing(Body&& body) noexcept {
     const FpEnvironment environment;
+    const Activity activity;
     try {
         body();
         return endCall(PMR_OK);
     } catch (...) {
         return endCallByException();
     }
+}
+
+// Whether a fork cut the object of a live handle off.
+template <typename Object, typename Handle>
+bool isHandleCutOff(Handle handle) {
+    return handleTable().isCutOff(reinterpret_cast<std::uintptr_t>(handle), kKindOf<Object>);
 }
 
 // Where a new handle goes: must not be null, and is null until there is one.
@@ -91,6 +100,7 @@ Handle publish(std::shared_ptr<Object> object) {
 
 template <typename Object, typename Handle>
 PmrStatus retainHandle(Handle handle) noexcept {
+    const Activity activity;
     const auto number = reinterpret_cast<std::uintptr_t>(handle);
     const bool live = handleTable().retain(number, kKindOf<Object>);
     return live ? endCall(PMR_OK) : endCallWithoutObject(number, kKindOf<Object>);
@@ -99,6 +109,7 @@ PmrStatus retainHandle(Handle handle) noexcept {
 template <typename Object, typename Handle>
 PmrStatus releaseHandle(Handle handle) noexcept {
     const FpEnvironment environment;
+    const Activity activity;
     const auto number = reinterpret_cast<std::uintptr_t>(handle);
     bool live = false;
     {

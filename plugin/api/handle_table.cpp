@@ -4,6 +4,8 @@
 
 #include <utility>
 
+#include "plugin/values/forks.h"
+
 namespace pm::plugin {
 
 namespace {
@@ -13,36 +15,49 @@ constexpr std::uintptr_t kHandleStep = 16;
 }  // namespace
 
 std::uintptr_t HandleTable::insert(ObjectKind kind, std::shared_ptr<void> object) {
-    const std::lock_guard lock(m_mutex);
+    const auto lock = holdOffForks();
     const std::uintptr_t handle = kFirstHandle + kHandleStep * m_next++;
-    m_entries.emplace(handle, Entry{kind, 1, std::move(object)});
+    m_entries.emplace(handle, Entry{kind, 1, std::move(object), forkCount()});
     return handle;
 }
 
-std::shared_ptr<void> HandleTable::find(std::uintptr_t handle, ObjectKind kind) const {
-    const std::lock_guard lock(m_mutex);
+const HandleTable::Entry* HandleTable::findLive(std::uintptr_t handle, ObjectKind kind) const {
     const auto found = m_entries.find(handle);
-    if (found == m_entries.end() || found->second.kind != kind) return nullptr;
-    return found->second.object;
+    const bool isLive =
+        found != m_entries.end() && found->second.kind == kind && found->second.references > 0;
+    return isLive ? &found->second : nullptr;
+}
+
+std::shared_ptr<void> HandleTable::find(std::uintptr_t handle, ObjectKind kind) const {
+    const auto lock = holdOffForks();
+    const Entry* const entry = findLive(handle, kind);
+    if (entry == nullptr) return nullptr;
+    if (plugin::isCutOff(entry->forkCount)) throw cutOffError();
+    return entry->object;
 }
 
 bool HandleTable::retain(std::uintptr_t handle, ObjectKind kind) {
-    const std::lock_guard lock(m_mutex);
-    const auto found = m_entries.find(handle);
-    if (found == m_entries.end() || found->second.kind != kind) return false;
-    ++found->second.references;
+    const auto lock = holdOffForks();
+    if (findLive(handle, kind) == nullptr) return false;
+    ++m_entries.at(handle).references;
     return true;
 }
 
 bool HandleTable::release(std::uintptr_t handle, ObjectKind kind, std::shared_ptr<void>& last) {
-    const std::lock_guard lock(m_mutex);
-    const auto found = m_entries.find(handle);
-    if (found == m_entries.end() || found->second.kind != kind) return false;
-    if (--found->second.references == 0) {
-        last = std::move(found->second.object);
-        m_entries.erase(found);
+    const auto lock = holdOffForks();
+    if (findLive(handle, kind) == nullptr) return false;
+    Entry& entry = m_entries.at(handle);
+    if (--entry.references == 0 && entry.forkCount == forkCount()) {
+        last = std::move(entry.object);
+        m_entries.erase(handle);
     }
     return true;
+}
+
+bool HandleTable::isCutOff(std::uintptr_t handle, ObjectKind kind) const {
+    const auto lock = holdOffForks();
+    const Entry* const entry = findLive(handle, kind);
+    return entry != nullptr && plugin::isCutOff(entry->forkCount);
 }
 
 HandleTable& handleTable() {

@@ -42,6 +42,18 @@
  *   render CREATED, so settings can be put right. cancelRender holds in any state: before
  *   startRender it makes the render end at once.
  *
+ * Leaving a callback
+ *   By return. A C++ exception ends at its edge and is forgotten. longjmp, and ending the thread,
+ * must not be used: the library takes the callback as running for ever. That thread then gets
+ *   PMR_ERROR_IN_CALLBACK from all that waits, and destroyRender of others waits for ever.
+ *   docs/c_interface.md tells what is left of each callback.
+ *
+ * Forks
+ *   In a child that the host forked, handles that were made before can be released and destroyed:
+ *   PMR_OK at once; nothing is called back, and their memory ends with the child. Where a render
+ *   ran, or another thread was in a call, at the fork, every other call with them returns
+ *   PMR_ERROR_STATE; else they are used as ever. See docs/c_interface.md, also for exit().
+ *
  * Slow hosts
  *   What waits to be delivered is bounded: progress and what comes again for one bucket are merged
  *   into the latest, and a bucketStarted is left out while an earlier event of its bucket waits.

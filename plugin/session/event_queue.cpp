@@ -17,9 +17,10 @@ Deadline deadlineAfter(double seconds) {
                std::chrono::duration<double>(seconds));
 }
 
-void EventQueue::open(DeliveryHooks hooks) {
+void EventQueue::open(DeliveryHooks hooks, bool hasThread) {
     const std::lock_guard lock(m_mutex);
     m_hooks = std::move(hooks);
+    if (hasThread && !m_thread) m_thread.emplace();
 }
 
 void EventQueue::push(Kind kind, std::uint32_t bucket) {
@@ -133,6 +134,17 @@ void EventQueue::call(const Parcel& parcel) const {
     }
 }
 
+// Whether this is still the process that it was before.
+bool EventQueue::callHost(const Parcel& parcel) const {
+    const Activity activity;
+    try {
+        call(parcel);
+    } catch (...) {
+        // A host in C++ must not throw through a C interface; its exception ends here.
+    }
+    return !activity.isOfParent();
+}
+
 bool EventQueue::waitFor(std::unique_lock<std::mutex>& lock, const Deadline& deadline,
                          bool (*ready)(const EventQueue&)) {
     const auto isReady = [this, ready] { return ready(*this); };
@@ -152,18 +164,23 @@ EventQueue::Delivery EventQueue::deliverOne(const Deadline& deadline) {
     const Parcel parcel = take();
     m_delivering = true;
     lock.unlock();
-    try {
-        call(parcel);
-    } catch (...) {
-        // A host in C++ must not throw through a C interface; its exception ends here.
-    }
+    if (!callHost(parcel)) return Delivery::kOver;
     if (parcel.kind == Kind::kFinishedBucket && m_hooks.after)
         m_hooks.after(parcel.bucket.bucketIndex);
-    lock.lock();
-    m_delivering = false;
-    if (parcel.kind == Kind::kFinished) m_over = true;
-    m_changed.notify_all();
+    endDelivery(parcel.kind);
     return Delivery::kDelivered;
+}
+
+void EventQueue::endDelivery(Kind kind) {
+    // Whoever has seen the end and forks then has a child that may read the render.
+    const auto noFork = holdOffForks();
+    const std::lock_guard lock(m_mutex);
+    m_delivering = false;
+    if (kind == Kind::kFinished) {
+        m_over = true;
+        m_thread.reset();
+    }
+    m_changed.notify_all();
 }
 
 void EventQueue::dropAllButFinished() {
@@ -178,6 +195,7 @@ void EventQueue::dropAllButFinished() {
 void EventQueue::close() {
     const std::lock_guard lock(m_mutex);
     m_over = true;
+    m_thread.reset();
     m_changed.notify_all();
 }
 

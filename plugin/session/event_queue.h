@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "plugin/session/render_listener.h"
+#include "plugin/values/forks.h"
 
 namespace pm::plugin {
 
@@ -40,8 +41,8 @@ class EventQueue {
     struct DeliveryHooks {
         std::function<void(std::uint32_t bucketIndex)> before, after;
     };
-    // Before the first event.
-    void open(DeliveryHooks hooks);
+    // Before the first event. hasThread: one of the library's delivers, until it is over.
+    void open(DeliveryHooks hooks, bool hasThread = false);
 
     void message(MessageLevel level, std::int32_t code, std::string text);
     void progress(double fraction, double remainingSeconds);
@@ -53,7 +54,8 @@ class EventQueue {
 
     enum class Delivery { kDelivered, kTimeout, kOver };
     // Waits for an event until the deadline and calls the host with it, on the calling thread.
-    // kOver: `finished` has returned before.
+    // kOver: `finished` has returned before, or the host has forked inside the callback and this
+    // is the child, where nothing else comes.
     Delivery deliverOne(const Deadline& deadline);
 
     // Drops what waits but `finished`, and takes nothing else from now on.
@@ -89,6 +91,8 @@ class EventQueue {
     void push(Kind kind, std::uint32_t bucket = 0);
     Parcel take();
     void call(const Parcel& parcel) const;
+    bool callHost(const Parcel& parcel) const;
+    void endDelivery(Kind kind);
     bool waitFor(std::unique_lock<std::mutex>& lock, const Deadline& deadline,
                  bool (*ready)(const EventQueue&));
 
@@ -99,6 +103,7 @@ class EventQueue {
     std::deque<Message> m_messages;
     std::unordered_map<std::uint32_t, Bucket> m_buckets;  // that an event waits of
     DeliveryHooks m_hooks;
+    std::optional<Activity> m_thread;  // of the thread that delivers
     double m_fraction = 0, m_remainingSeconds = 0;
     bool m_progressWaits = false;
     CallStatus m_status = CallStatus::kOk;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "integrator/values/error.h"
+#include "plugin/values/forks.h"
 #include "scheduler/buckets/fp_environment.h"
 
 namespace pm::plugin {
@@ -33,6 +34,7 @@ struct Job {
 
     void run(std::function<void(const CancelCheck&)> work) {
         const FpEnvironment environment;
+        const Activity activity;
         std::exception_ptr thrown;
         try {
             work(CancelCheck(cancelled));
@@ -65,6 +67,9 @@ struct LeftThread {
 // Those left behind, of the whole process.
 class LeftThreads {
   public:
+    // A child that was forked has none of them, and nobody who would unlock the mutex.
+    const std::uint32_t forkCount = plugin::forkCount();
+
     // Takes nothing where it throws.
     void add(const std::shared_ptr<Job>& job, std::thread& thread) {
         const std::lock_guard lock(m_mutex);
@@ -96,8 +101,11 @@ class LeftThreads {
 
 // Never destroyed: threads may end after static objects do.
 LeftThreads& leftThreads() {
-    static LeftThreads& threads = *new LeftThreads;
-    return threads;
+    static std::atomic<LeftThreads*> current{nullptr};
+    LeftThreads* known = current.load();
+    if (known != nullptr && known->forkCount == forkCount()) return *known;
+    auto made = std::make_unique<LeftThreads>();
+    return current.compare_exchange_strong(known, made.get()) ? *made.release() : *known;
 }
 
 // Registered as late as possible: what libraries have made until now is destroyed after this.

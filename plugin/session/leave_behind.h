@@ -20,7 +20,7 @@ namespace pm::plugin {
 //
 // Before anything new is begun here, what was left behind must have ended, or the memory of many
 // such could add up; `cancel` ends this wait, too. The end of the process waits for it, since
-// libraries crash whose statics are destroyed under them.
+// libraries crash whose statics are destroyed under them; a child that the host forks has none.
 // what: "cancelled while " and this. Threads: any. Errors: std::system_error where no thread can be
 // made.
 void callLeavable(const CancelCheck& cancel, const char* what,

@@ -11,6 +11,7 @@
 #include "plugin/session/render_pieces.h"
 #include "plugin/values/call_error.h"
 #include "plugin/values/failure.h"
+#include "plugin/values/forks.h"
 #include "scheduler/buckets/bucket_order.h"
 #include "scheduler/buckets/fp_environment.h"
 #include "scheduler/buckets/worker_arena.h"
@@ -110,27 +111,40 @@ void Render::start() {
     made->divideMemory(std::make_unique<RenderCaches>(m_scene, made->memory(),
                                                       pages ? &pages->paging() : nullptr));
     m_events.open({[made](std::uint32_t bucket) { made->beforeDelivery(bucket); },
-                   [made](std::uint32_t bucket) { made->afterDelivery(bucket); }});
-    // The threads wait for m_mutex, so they see the state that is set last.
-    if (m_callbackMode == CallbackMode::kThread && !m_delivery.joinable())
-        m_delivery = std::thread([this] {
-            while (m_events.deliverOne(std::nullopt) != EventQueue::Delivery::kOver) {
-            }
-        });
+                   [made](std::uint32_t bucket) { made->afterDelivery(bucket); }},
+                  m_callbackMode == CallbackMode::kThread);
     m_work = made;
-    m_state = RenderState::kRunning;
     try {
-        m_job = std::thread([this] { runJob(); });
+        startThreads();
     } catch (...) {
+        m_atWork.reset();
         m_work.reset();
         m_state = RenderState::kCreated;
         throw;
     }
 }
 
+// The threads wait for m_mutex, so they see the state that is set last.
+void Render::startThreads() {
+    m_forkCount = forkCount();
+    if (m_callbackMode == CallbackMode::kThread && !m_delivery.joinable())
+        m_delivery = std::thread([this] {
+            while (m_events.deliverOne(std::nullopt) != EventQueue::Delivery::kOver) {
+            }
+        });
+    m_state = RenderState::kRunning;
+    m_atWork.emplace();
+    m_job = std::thread([this] { runJob(); });
+}
+
 void Render::runJob() {
     const FpEnvironment environment;
-    const CallStatus status = runWork();
+    endJob(runWork());
+}
+
+void Render::endJob(CallStatus status) {
+    // Whoever has seen the end and forks then has a child that may read the render.
+    const auto noFork = holdOffForks();
     {
         const std::lock_guard lock(m_mutex);
         m_totalSeconds =
@@ -145,6 +159,7 @@ void Render::runJob() {
         // Without memory `finished` has to tell it.
     }
     m_events.finished(status);
+    m_atWork.reset();
 }
 
 CallStatus Render::runWork() {
@@ -181,7 +196,9 @@ CallStatus Render::poll(double timeoutSeconds) {
                         "pollRender is for renders made with PMR_CALLBACKS_POLL");
     if (!work()) throw notStarted();
     const Deadline deadline = deadlineAfter(timeoutSeconds);
+    const Activity activity;
     EventQueue::Delivery delivery = m_events.deliverOne(deadline);
+    if (activity.isOfParent()) throw cutOffError();
     if (delivery == EventQueue::Delivery::kTimeout) return CallStatus::kTimeout;
     if (delivery == EventQueue::Delivery::kOver)
         throw CallError(CallStatus::kState,
@@ -190,6 +207,7 @@ CallStatus Render::poll(double timeoutSeconds) {
     while (delivery == EventQueue::Delivery::kDelivered &&
            (!deadline || std::chrono::steady_clock::now() < *deadline))
         delivery = m_events.deliverOne(deadlineAfter(0.0));
+    if (activity.isOfParent()) throw cutOffError();
     return CallStatus::kOk;
 }
 
@@ -245,6 +263,7 @@ bool Render::shutDown() {
     {
         const std::lock_guard lock(m_mutex);
         if (std::exchange(m_shuttingDown, true)) return false;
+        if (m_forkCount != forkCount()) return true;
         job = std::move(m_job);
         delivery = std::move(m_delivery);
     }

@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "plugin/session/render_scene.h"
 #include "plugin/session/render_work.h"
 #include "plugin/session/setting_values.h"
+#include "plugin/values/forks.h"
 
 namespace pm::plugin {
 
@@ -45,7 +47,8 @@ class Render {
     CallStatus wait(double timeoutSeconds);
     void cancel();
     void stateAndStatus(RenderState& state, CallStatus& status) const;
-    // Cancels, waits, delivers `finished`. False when another call is at it already.
+    // Cancels, waits, delivers `finished`; in a child of the process whose threads it had it does
+    // nothing of these. False when another call is at it already.
     bool shutDown();
 
     // Layers of this render in the order of the pixels.
@@ -65,6 +68,8 @@ class Render {
     End endSoFar() const;
     std::string explain(const Plan& plan, const MemoryPlan& memory) const;
     void runJob();
+    void endJob(CallStatus status);
+    void startThreads();
     CallStatus runWork();
     std::shared_ptr<RenderWork> work() const;
     Plan makePlan() const;
@@ -89,7 +94,9 @@ class Render {
 
     std::condition_variable m_stateChanged;
     bool m_shuttingDown = false;
-    std::thread m_job, m_delivery;  // joined by shutDown, which alone ends the handle
+    std::thread m_job, m_delivery;            // joined by shutDown, which alone ends the handle
+    std::uint32_t m_forkCount = forkCount();  // of the process that has these threads
+    std::optional<Activity> m_atWork;         // of m_job
 };
 
 }  // namespace pm::plugin

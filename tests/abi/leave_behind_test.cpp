@@ -4,6 +4,8 @@
 #include "plugin/session/leave_behind.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <atomic>
 #include <future>
@@ -12,6 +14,7 @@
 #include <thread>
 
 #include "integrator/values/error.h"
+#include "plugin/values/forks.h"
 
 namespace pm::plugin {
 
@@ -96,6 +99,34 @@ TEST(LeaveBehind, WorkThatDoesNotIsLeft) {
     EXPECT_TRUE(runLeavable(CancelCheck(flag), "following",
                             [held](const CancelCheck&) { return held->ended.load(); }));
     releaser.join();
+}
+
+// A child that is forked meanwhile has no such thread to wait for, at its next call or its end.
+TEST(LeaveBehind, ChildWaitsForNone) {
+    watchForks();
+    const auto held = std::make_shared<Held>();
+    std::atomic<bool> flag{false};
+    std::thread other([&] {
+        while (!held->began) std::this_thread::yield();
+        flag = true;
+    });
+    const auto hold = [held](const CancelCheck&) {
+        held->began = true;
+        held->mayEnd.get_future().wait();
+        return 0;
+    };
+    EXPECT_THROW(runLeavable(CancelCheck(flag), "holding", hold), Error);
+    other.join();
+    flag = false;
+    const pid_t child = fork();
+    if (child == 0) {
+        alarm(20);
+        _exit(runLeavable(CancelCheck(flag), "following", [](const CancelCheck&) { return 7; }));
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 7) << status;
+    held->mayEnd.set_value();
 }
 
 }  // namespace

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Geometry, materials and scenes with wrong values.
+#include <unistd.h>
+
 #include <cmath>
+#include <cstdio>
+#include <iostream>
 #include <limits>
+#include <vector>
 
 #include "tests/abi/box_scene.h"
 #include "tests/abi/host.h"
@@ -93,6 +98,29 @@ TEST_F(MisuseScene, Meshes) {
     EXPECT_EQ(PMR_ERROR_ARGUMENT, mesh());
 }
 
+// What a host throws out of its message function is lost; the call is not.
+TEST_F(MisuseScene, MessageThatThrows) {
+    PmrContextDesc desc = PMR_INIT(PmrContextDesc);
+    static int messages;
+    messages = 0;
+    desc.message = [](void*, PmrRender, std::int32_t, std::int32_t, const char*) {
+        ++messages;
+        throw 1;
+    };
+    PmrContext context = nullptr;
+    ASSERT_EQ(PMR_OK, api().createContext(&desc, &context));
+    const float flat[9] = {0, 0, 0, 1, 0, 0, 2, 0, 0};
+    m_mesh.positions = flat;
+    m_mesh.positionCount = 3;
+    m_mesh.faceCount = 1;
+    m_mesh.indexCount = 3;
+    PmrMesh made = nullptr;
+    EXPECT_EQ(PMR_OK, api().createMesh(context, &m_mesh, &made));
+    EXPECT_EQ(1, messages);
+    EXPECT_EQ(PMR_OK, api().releaseMesh(made));
+    EXPECT_EQ(PMR_OK, api().releaseContext(context));
+}
+
 TEST_F(MisuseScene, Cages) {
     PmrCageDesc good = PMR_INIT(PmrCageDesc);
     good.mesh = &m_mesh;
@@ -132,6 +160,80 @@ TEST_F(MisuseScene, Cages) {
     EXPECT_EQ(PMR_ERROR_SCENE, cage(bad));
     bad.holeCount = std::uint64_t{1} << 50;
     EXPECT_EQ(PMR_ERROR_ARGUMENT, cage(bad));
+}
+
+// What lands on standard output and error while it lives, as libraries write it.
+class Printed {
+  public:
+    Printed() {
+        std::fflush(nullptr);
+        for (const int stream : {1, 2}) {
+            m_before[stream] = dup(stream);
+            dup2(fileno(m_file), stream);
+        }
+    }
+    ~Printed() { std::fclose(m_file); }
+    std::string take() {
+        std::fflush(nullptr);
+        std::cout.flush();
+        for (const int stream : {1, 2}) {
+            dup2(m_before[stream], stream);
+            close(m_before[stream]);
+        }
+        std::string text;
+        std::rewind(m_file);
+        for (int c = 0; (c = std::fgetc(m_file)) != EOF;) text += static_cast<char>(c);
+        return text;
+    }
+
+  private:
+    std::FILE* m_file = std::tmpfile();
+    int m_before[3]{};
+};
+
+TEST_F(MisuseScene, DegenerateCages) {
+    struct Case {
+        std::uint64_t positions;
+        std::vector<std::uint32_t> faceSizes, indices, holes;
+        bool isAllowed;
+    };
+    // Without faces; all holes; faces of too few corners; all corners at one vertex; twice the
+    // same.
+    const std::vector<Case> cases = {{0, {}, {}, {}, false},
+                                     {4, {}, {}, {}, false},
+                                     {4, {4}, {0, 1, 2, 3}, {0}, true},
+                                     {4, {0}, {}, {}, false},
+                                     {4, {1}, {0}, {}, false},
+                                     {4, {3, 2}, {0, 1, 2, 0, 1}, {}, false},
+                                     {0, {3}, {0, 1, 2}, {}, false},
+                                     {4, {3}, {0, 0, 0}, {}, true},
+                                     {4, {4, 4}, {0, 1, 0, 2, 0, 1, 0, 2}, {}, true}};
+    for (std::size_t i = 0; i < cases.size(); ++i)
+        for (const int features : {0, 1}) {
+            const Case& one = cases[i];
+            m_mesh.positionCount = one.positions;
+            m_mesh.faceCount = one.faceSizes.size();
+            const std::uint32_t none = 0;
+            m_mesh.faceSizes = one.faceSizes.empty() ? &none : one.faceSizes.data();
+            m_mesh.indices = one.indices.data();
+            m_mesh.indexCount = one.indices.size();
+            PmrCageDesc desc = PMR_INIT(PmrCageDesc);
+            desc.mesh = &m_mesh;
+            desc.holes = one.holes.data();
+            desc.holeCount = one.holes.size();
+            const std::uint32_t crease[2] = {0, 1};
+            const float sharpness = 2;
+            desc.creases = desc.corners = crease;
+            desc.creaseSharpness = desc.cornerSharpness = &sharpness;
+            desc.creaseCount = desc.cornerCount = one.positions > 0 ? features : 0;
+            Printed printed;
+            const PmrStatus status = cage(desc);
+            EXPECT_EQ("", printed.take()) << i;
+            EXPECT_EQ(one.isAllowed ? PMR_OK : PMR_ERROR_SCENE, status) << i;
+            if (!one.faceSizes.empty()) continue;
+            EXPECT_EQ("the subdivision cage has no faces; it must have at least 1",
+                      host.lastError());
+        }
 }
 
 TEST_F(MisuseScene, Spheres) {
