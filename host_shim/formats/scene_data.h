@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "host_shim/values/boxed.h"
+
 namespace pm::host {
 
 // The one description of a scene: what readers of files fill and what PluginScene hands to the
@@ -68,8 +70,8 @@ struct MaterialData {
     std::array<float, 3> emission{};  // radiance, W m^-2 sr^-1
     bool emitsFromBothSides{};        // see addBackSides
     float transparency{};
-    std::optional<TextureUse> diffuseTexture, glossyTexture, glossyExponentTexture,
-        roughnessTexture, transmissionTexture, emissionTexture, opacityTexture,
+    Boxed<TextureUse> diffuseTexture, glossyTexture, glossyExponentTexture, roughnessTexture,
+        transmissionTexture, emissionTexture, opacityTexture,
         normalTexture,        // in tangent space
         bumpTexture,          // heights
         displacementTexture;  // heights of a cage's limit surface
@@ -179,7 +181,7 @@ struct LightData {
 // Light from infinitely far all around; of the texture the middle lies towards -z, up is +y.
 struct EnvironmentData {
     std::array<float, 3> radiance{};     // W m^-2 sr^-1, material space; times the texture
-    std::optional<TextureUse> texture;   // latitude-longitude
+    Boxed<TextureUse> texture;           // latitude-longitude
     std::optional<Transform> transform;  // a rotation
 };
 

@@ -31,7 +31,7 @@ void store(const Rgb3& colour, float largest, float (&target)[3]) {
     for (std::size_t i = 0; i < 3; ++i) target[i] = std::clamp(colour[i], 0.0f, largest);
 }
 
-using TextureOfKind = std::pair<const std::optional<TextureUse>*, TextureKind>;
+using TextureOfKind = std::pair<const Boxed<TextureUse>*, TextureKind>;
 
 std::array<TextureOfKind, 10> usesOf(const MaterialData& material) {
     return {{{&material.diffuseTexture, TextureKind::kColour},
@@ -102,7 +102,7 @@ void MaterialBuilder::tell(const std::string& file, const BakedTexture& baked) {
                         file, baked.profile, baked.space.name));
 }
 
-PmrTexture MaterialBuilder::texture(const std::optional<TextureUse>& use, TextureKind kind,
+PmrTexture MaterialBuilder::texture(const Boxed<TextureUse>& use, TextureKind kind,
                                     const std::string& of) {
     if (!use) return nullptr;
     return use->tiles.empty() ? picture(*use, use->file, kind, of) : tiles(*use, kind, of);
@@ -222,8 +222,7 @@ void MaterialBuilder::setByName(const MaterialData& material, PmrMaterial handle
     const auto setNumber = [&](const char* name, float number) {
         setNumbers(name, {static_cast<double>(number)});
     };
-    const auto setTexture = [&](const char* name, const std::optional<TextureUse>& use,
-                                TextureKind kind) {
+    const auto setTexture = [&](const char* name, const Boxed<TextureUse>& use, TextureKind kind) {
         PmrParameterDesc own = desc;
         own.name = name;
         own.texture = texture(use, kind, of);

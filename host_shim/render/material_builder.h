@@ -35,8 +35,7 @@ class MaterialBuilder {
     // A picture that can't be had is warned of and left out. Errors: those of the plugin.
     PmrMaterial build(const MaterialData& material);
     // The same of one picture; null where there is none. of: what it is of, for messages.
-    PmrTexture texture(const std::optional<TextureUse>& use, TextureKind kind,
-                       const std::string& of);
+    PmrTexture texture(const Boxed<TextureUse>& use, TextureKind kind, const std::string& of);
     // One picture, or one that stands for all its tiles; null, with a warning, where none can be
     // read.
     PmrTexture picture(const TextureUse& use, const std::string& shown, TextureKind kind,

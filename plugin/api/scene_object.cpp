@@ -241,10 +241,21 @@ void SceneObject::commit() {
                                   return std::make_shared<const RenderScene>(std::move(made));
                               });
     m_textures = textures;
-    m_description = {};
+    forgetDescription();
     const std::shared_ptr<const RenderScene> committed = m_committed;
     lock.unlock();  // the host's function may ask for the bounds
     for (const Notice& notice : committed->scene->notices()) m_context->sendNotice(notice);
+}
+
+// The built scene has all that renders need of it.
+void SceneObject::forgetDescription() {
+    m_description = {};
+    m_cages = {};
+    m_lights = {};
+    m_environment.reset();
+    m_camera.reset();
+    m_materialIndices = {};
+    m_materials = {};
 }
 
 std::shared_ptr<const RenderScene> SceneObject::committed() const {

@@ -51,6 +51,7 @@ class SceneObject {
 
   private:
     void requireOpen() const;
+    void forgetDescription();
     void setInstanceParameter(const PmrParameterDesc& desc);
     SceneDescription describe(SceneTextures& textures) const;
     std::uint32_t materialIndex(const std::shared_ptr<MaterialObject>& material);

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "integrator/materials/texture_source.h"
+#include "plugin/parameters/packed_values.h"
 #include "plugin/parameters/parameter.h"
 #include "plugin/values/call_error.h"
 #include "plugin/values/hasher.h"
@@ -44,35 +45,35 @@ std::size_t indexOf(std::span<const Row> rows, std::string_view name, const std:
 template <typename Row>
 class ParameterSet {
   public:
-    explicit ParameterSet(std::span<const Row> rows) : m_rows(rows) {
-        for (const Row& row : rows) m_values.push_back(defaultValue(row.info));
+    explicit ParameterSet(std::span<const Row> rows) : m_rows(rows), m_values(rows.size()) {
+        for (std::size_t i = 0; i < rows.size(); ++i) m_values.put(i, defaultValue(rows[i].info));
     }
 
     std::span<const Row> rows() const { return m_rows; }
-    const ParameterValue& value(std::size_t index) const { return m_values[index]; }
-    const ParameterValue& value(std::string_view name) const {
-        return m_values[indexOf(m_rows, name, "the table")];
+    ParameterValue value(std::size_t index) const { return m_values.get(index); }
+    ParameterValue value(std::string_view name) const {
+        return m_values.get(indexOf(m_rows, name, "the table"));
     }
     double number(std::string_view name) const { return value(name).numbers.at(0); }
 
     // As it is.
-    void assign(std::size_t index, ParameterValue value) { m_values[index] = std::move(value); }
+    void assign(std::size_t index, ParameterValue value) { m_values.put(index, std::move(value)); }
     // Checked. Errors: CallError NAME, ARGUMENT; see checkedValue. The value before then stays.
     void set(std::string_view name, ParameterValue value, const std::string& owner) {
         const std::size_t index = indexOf(m_rows, name, owner);
-        m_values[index] = checkedValue(m_rows[index].info, std::move(value), owner);
+        m_values.put(index, checkedValue(m_rows[index].info, std::move(value), owner));
     }
     // The same from a text.
     void setText(std::string_view name, const std::string& text, const std::string& owner) {
         const std::size_t index = indexOf(m_rows, name, owner);
-        m_values[index] = parseValue(m_rows[index].info, text, owner);
+        m_values.put(index, parseValue(m_rows[index].info, text, owner));
     }
     // Checks what means something for objects of this kind. Errors: CallError(ARGUMENT).
     void check(std::uint32_t kind, const std::string& owner) {
         for (std::size_t i = 0; i < m_rows.size(); ++i) {
             const ParameterInfo& info = m_rows[i].info;
             if ((info.kinds >> kind & 1u) != 0 && info.type != ParameterType::kObjects)
-                m_values[i] = checkedValue(info, std::move(m_values[i]), owner);
+                m_values.put(i, checkedValue(info, m_values.get(i), owner));
         }
     }
 
@@ -84,9 +85,9 @@ class ParameterSet {
         for (std::size_t i = 0; i < m_rows.size(); ++i) {
             const auto& place = std::get<Place<Description>>(m_rows[i].places);
             const bool isTexture = m_rows[i].info.type == ParameterType::kTexture;
-            if (place.put != nullptr)
-                place.put(description, m_values[i],
-                          isTexture ? textureIndex(m_values[i].texture) : kNoTexture);
+            if (place.put == nullptr) continue;
+            const ParameterValue value = m_values.get(i);
+            place.put(description, value, isTexture ? textureIndex(value.texture) : kNoTexture);
         }
     }
     template <typename Description>
@@ -96,7 +97,7 @@ class ParameterSet {
 
   private:
     std::span<const Row> m_rows;
-    std::vector<ParameterValue> m_values;
+    PackedValues m_values;
 };
 
 // Adds what pixels depend on in a description, row by row. Of a row that came later nothing where

@@ -9,41 +9,28 @@ usage: memory_test.py PM_HOST
 
 With PM_MEMORY=all in the environment the first scene is rendered by photons, which takes minutes.
 """
-import hashlib
-import json
 import os
 import pathlib
-import re
-import struct
-import subprocess
 import sys
 import tempfile
-import zlib
 
-MIB = 1 << 20
+from memory_runs import MIB, Runs
+from memory_scenes import write_png
+
 # Heights, of which each is kept as a float of 4 bytes: 144 MiB. Each tile is met by what is cut.
 WIDTH, HEIGHT = 8192, 4608
 FACES = 64  # of the ground, along each side
 
 
-def write_heights(path):
-    def chunk(kind, data):
-        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-
-    packed = zlib.compressobj(1)
-    data = b""
+def height_rows():
     for y in range(HEIGHT):
         row = bytes((x * 7 // 64 + y * 5 // 64 + (x * y >> 16)) % 61 + (x // 128 + y // 128) % 2 * 40
                     for x in range(0, WIDTH, 16))  # fmt: skip
-        data += packed.compress(b"\0" + b"".join(bytes([v]) * 16 for v in row))
-    data += packed.flush()
-    path.write_bytes(b"\x89PNG\r\n\x1a\n"
-                     + chunk(b"IHDR", struct.pack(">IIBBBBB", WIDTH, HEIGHT, 8, 0, 0, 0, 0))
-                     + chunk(b"IDAT", data) + chunk(b"IEND", b""))  # fmt: skip
+        yield b"".join(bytes([v]) * 16 for v in row)
 
 
 def write_ground(folder):
-    write_heights(folder / "heights.png")
+    write_png(folder / "heights.png", WIDTH, HEIGHT, height_rows(), kind=0)
     (folder / "ground.mtl").write_text(
         "newmtl ground\nKd 0.5 0.5 0.4\ndisp -bm 2 heights.png\nnewmtl lamp\nKd 0 0 0\nKe 40 40 40\n",
         encoding="utf-8")  # fmt: skip
@@ -61,40 +48,7 @@ def write_ground(folder):
     (folder / "ground.obj").write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-class Runs:
-    def __init__(self, host, folder):
-        self.host, self.folder, self.faults = host, folder, 0
-
-    def check(self, good, text):
-        print(("ok: " if good else "FAULT: ") + text, flush=True)
-        self.faults += not good
-
-    def run(self, scene, *options):
-        """Exit code, standard error, statistics and the most resident bytes."""
-        with open(self.folder / "err", "w+", encoding="utf-8") as err:
-            child = subprocess.Popen(
-                [self.host, scene, "-o", "a.exr", "--stats", "s.json", "-q", "--threads", "2", *options],
-                cwd=self.folder, stderr=err, stdout=subprocess.DEVNULL,
-                env={**os.environ, "XDG_CACHE_HOME": str(self.folder / "cache")})  # fmt: skip
-            _, status, usage = os.wait4(child.pid, 0)
-            child.returncode = os.waitstatus_to_exitcode(status)
-            err.seek(0)
-            text = err.read()
-        stats = json.loads((self.folder / "s.json").read_text()) if child.returncode == 0 else None
-        return child.returncode, text, stats, usage.ru_maxrss * 1024
-
-    def picture(self):
-        """Of all pixels; the file's own metadata tell of limits."""
-        done = subprocess.run(["oiiotool", "--hash", "-i", "a.exr"], cwd=self.folder, capture_output=True,
-                              text=True, check=True)  # fmt: skip
-        return re.search(r"SHA-1: (\w+)", done.stdout).group(1)
-
-    def smallest(self, scene, *options):
-        code, text, _, _ = self.run(scene, *options, "--memory-limit", "0.05")
-        found = re.search(r"the smallest that works ([0-9.]+) GiB", text)
-        self.check(code == 5 and found, f"{scene}: a limit too small names the smallest: {text.strip()}")
-        return found.group(1)
-
+class CachedRuns(Runs):
     def within(self, scene, caches, *options):
         """caches: of statistics, each with the names of its working set and of what it read or made."""
         code, text, roomy, most = self.run(scene, *options)
@@ -140,7 +94,7 @@ def box_caches(_, stats):
 
 def main():
     with tempfile.TemporaryDirectory() as name:
-        runs = Runs(os.path.abspath(sys.argv[1]), pathlib.Path(name))
+        runs = CachedRuns(os.path.abspath(sys.argv[1]), pathlib.Path(name))
         write_ground(runs.folder)
         # Photons read pages below; here gather rays would cut the same triangles again and again.
         by = ("--photons", "2000") if os.environ.get("PM_MEMORY") == "all" else ("--integrator", "path")

@@ -48,7 +48,7 @@ void readAnisotropy(const MtlSection& section, MaterialData& material, const Mat
     material.anisotropyRotation = share(section, "anisor", note);
 }
 
-void limitStrength(std::optional<TextureUse>& use, const char* key, float least, float most,
+void limitStrength(Boxed<TextureUse>& use, const char* key, float least, float most,
                    const MaterialNote& note) {
     if (!use) return;
     const float given = use->strength;

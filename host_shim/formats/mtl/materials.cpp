@@ -83,7 +83,7 @@ class MaterialReader {
         m_warn(code, fmt::format("{}: material {}: {}", place(key), m_material.name, text));
     }
 
-    std::optional<TextureUse> map(const char* key, bool isData) {
+    Boxed<TextureUse> map(const char* key, bool isData) {
         const auto found = m_section.maps.find(key);
         if (found == m_section.maps.end()) return std::nullopt;
         MaterialMap map = readMap(found->second, m_source.folder, isData, m_files);
@@ -362,18 +362,18 @@ std::map<std::string, MaterialData> readMaterials(std::string_view mtlText, cons
                                                   SceneFiles& files, const WarningSink& warn,
                                                   const NameFilter& isUsed) {
     std::map<std::string, MaterialData> materials;
-    for (MtlSection& section : readMtlText(mtlText)) {
-        if (isUsed && !isUsed(section.name)) continue;
+    const auto isWanted = [&](const std::string& name) { return !isUsed || isUsed(name); };
+    forEachMtlSection(mtlText, isWanted, [&](MtlSection&& section) {
         if (materials.contains(section.name)) {
             warn(Warning::kMaterialValue,
                  fmt::format("{}:{}: material {} is defined twice; the first counts",
                              source.fileName, section.lines.at("newmtl"), section.name));
-            continue;
+            return;
         }
         std::string name = section.name;
         materials.emplace(std::move(name),
                           MaterialReader(std::move(section), source, files, warn).read());
-    }
+    });
     return materials;
 }
 

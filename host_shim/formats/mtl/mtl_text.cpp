@@ -3,6 +3,8 @@
 #include "host_shim/formats/mtl/mtl_text.h"
 
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include "host_shim/formats/mtl/mtl_keys.h"
 #include "host_shim/formats/text_lines.h"
@@ -82,20 +84,28 @@ std::optional<double> MtlSection::number(const std::string& key) const {
     return found->second;
 }
 
-std::vector<MtlSection> readMtlText(std::string_view text) {
-    std::vector<MtlSection> sections;
+void forEachMtlSection(std::string_view text,
+                       const std::function<bool(const std::string& name)>& isWanted,
+                       const std::function<void(MtlSection&&)>& visit) {
+    std::optional<MtlSection> section;
+    const auto finish = [&] {
+        if (section) visit(std::move(*section));
+        section.reset();
+    };
     TextLines lines(text);
     while (lines.next()) {
         std::string_view rest = lines.line();
         if (equalInAnyCase(takeWord(rest), "newmtl")) {
-            MtlSection& section = sections.emplace_back();
-            section.name = rest;
-            section.lines["newmtl"] = lines.number();
-        } else if (!sections.empty()) {
-            addStatement(lines.line(), lines.number(), sections.back());
+            finish();
+            std::string name(rest);
+            if (!isWanted(name)) continue;
+            section.emplace().name = std::move(name);
+            section->lines["newmtl"] = lines.number();
+        } else if (section) {
+            addStatement(lines.line(), lines.number(), *section);
         }
     }
-    return sections;
+    finish();
 }
 
 }  // namespace pm::host

@@ -4,11 +4,11 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace pm::host {
 
@@ -30,7 +30,10 @@ struct MtlSection {
     bool hasMap(const std::string& key) const { return maps.contains(key); }
 };
 
-// Splits the text of an MTL file. Statements before the first newmtl are dropped. No errors.
-std::vector<MtlSection> readMtlText(std::string_view text);
+// Visits the sections of an MTL file, one after the other, but for those of whose names isWanted
+// says no. Statements before the first newmtl are dropped. No errors but those of visit.
+void forEachMtlSection(std::string_view text,
+                       const std::function<bool(const std::string& name)>& isWanted,
+                       const std::function<void(MtlSection&&)>& visit);
 
 }  // namespace pm::host
