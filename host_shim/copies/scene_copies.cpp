@@ -19,6 +19,7 @@
 #include "host_shim/copies/sha256.h"
 #include "host_shim/formats/scene_url.h"
 #include "host_shim/pictures/finished_file.h"
+#include "host_shim/render/scene_memory.h"
 #include "host_shim/textures/texture_cache.h"
 
 namespace pm::host {
@@ -58,7 +59,7 @@ class Fetching {
                        std::llround(options.copiesGib.value_or(kUsualLimitGib) * kGib)),
                    log),
           m_text(m_download.text(m_url, kMostManifestBytes)),
-          m_manifest(Manifest::fromJson(m_text, m_url)) {}
+          m_manifest(Manifest::fromJson(m_text, m_url, memoryLimitBytes(options))) {}
 
     PackInUse run() {
         PackInUse pack(m_folder, m_text);

@@ -50,7 +50,7 @@ struct FarmPlan {
     int photonsOf(std::size_t frame) const;
 
     std::string toJson() const;
-    // Errors: kBadInput for anything else than toJson() gives; file: for messages.
+    // Errors: kBadInput for anything else than toJson() gives; Interrupted. file: for messages.
     static FarmPlan fromJson(std::string_view text, const std::filesystem::path& file);
 };
 
