@@ -7,15 +7,16 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "host_shim/formats/json/json_reader.h"
+#include "host_shim/process/interrupt.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {
 
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 constexpr const char* kSchema = "pm-reference/1";
 
@@ -92,10 +93,9 @@ Reference parsed(const json& text) {
 }  // namespace
 
 Reference readReference(const std::filesystem::path& file) {
-    std::ifstream stream(file, std::ios::binary);
-    if (!stream) throw HostError(ExitCode::kFile, fmt::format("{}: can't be read", file.string()));
+    const json text = parseJsonFile(file, throwIfInterrupted);
     try {
-        return parsed(json::parse(stream));
+        return parsed(text);
     } catch (const json::exception& error) {
         throw HostError(ExitCode::kBadInput,
                         fmt::format("{}: no reference: {}", file.string(), error.what()));

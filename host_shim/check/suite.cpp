@@ -5,11 +5,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
 #include <initializer_list>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 
+#include "host_shim/formats/json/json_reader.h"
+#include "host_shim/process/interrupt.h"
 #include "host_shim/values/host_error.h"
 #include "host_shim/values/letter_case.h"
 
@@ -17,30 +19,22 @@ namespace pm::host {
 namespace {
 
 namespace fs = std::filesystem;
-using nlohmann::json;
+using json = nlohmann::ordered_json;
 
 // What a scene's options may not say, as the suite says it.
 constexpr std::string_view kOwnOptions[] = {"-o",     "--output", "--reference", "--stats",
                                             "--seed", "--report", "--log",       "--progress"};
 
 constexpr std::size_t kMostNameLength = 100;
+// Each scene has all that are common, so that both have to be bounded.
+constexpr std::size_t kMostScenes = 10000, kMostOptions = 1000;
 
 class SuiteReader {
   public:
     explicit SuiteReader(const fs::path& file) { m_suite.file = file; }
 
     Suite read() {
-        std::ifstream stream(m_suite.file, std::ios::binary);
-        std::error_code ignored;
-        if (!stream || fs::is_directory(m_suite.file, ignored))
-            throw HostError(ExitCode::kFile,
-                            fmt::format("{}: can't be read", m_suite.file.string()));
-        json text;
-        try {
-            text = json::parse(stream);
-        } catch (const json::parse_error& error) {
-            fail(fmt::format("no JSON: {}", error.what()));
-        }
+        const json text = parseJsonFile(m_suite.file, throwIfInterrupted);
         m_suite.folder = fs::absolute(m_suite.file).parent_path();
         readAll(text);
         return std::move(m_suite);
@@ -71,7 +65,9 @@ class SuiteReader {
         std::vector<std::string> result;
         if (!object.contains("options")) return result;
         const json& list = object["options"];
-        if (!list.is_array()) fail(where + ": 'options' must be a list of texts");
+        if (!list.is_array() || list.size() > kMostOptions)
+            fail(fmt::format("{}: 'options' must be a list of at most {} texts", where,
+                             kMostOptions));
         for (const json& entry : list) {
             if (!entry.is_string()) fail(where + ": 'options' must be a list of texts");
             const std::string option = entry;
@@ -96,10 +92,7 @@ class SuiteReader {
         if (scene.name.size() > kMostNameLength)
             fail(fmt::format("{}: 'name' has at most {} letters", where, kMostNameLength));
         // References of both have to find room on any file system.
-        const auto isAlike = [&](const SuiteScene& other) {
-            return lowerCase(other.name) == lowerCase(scene.name);
-        };
-        if (std::ranges::any_of(m_suite.scenes, isAlike))
+        if (!m_names.insert(lowerCase(scene.name)).second)
             fail(fmt::format("{}: the name '{}' is there twice", where, scene.name));
         scene.scene = m_suite.folder / text(entry, "scene", where);
         scene.options = common;
@@ -132,13 +125,19 @@ class SuiteReader {
         m_suite.references =
             m_suite.folder / (isNamed ? text(all, "references", "the suite") : "references");
         const std::vector<std::string> common = options(all, "the suite");
-        if (!all.contains("scenes") || !all["scenes"].is_array() || all["scenes"].empty())
-            fail("'scenes' must be a list of at least one scene");
-        for (std::size_t i = 0; i < all["scenes"].size(); ++i)
-            readScene(all["scenes"][i], fmt::format("scene {}", i + 1), common);
+        const auto scenes = all.find("scenes");
+        if (scenes == all.end() || !scenes->is_array() || scenes->empty() ||
+            scenes->size() > kMostScenes)
+            fail(fmt::format("'scenes' must be a list of at least one scene and at most {}",
+                             kMostScenes));
+        for (std::size_t i = 0; i < scenes->size(); ++i) {
+            throwIfInterrupted();
+            readScene((*scenes)[i], fmt::format("scene {}", i + 1), common);
+        }
     }
 
     Suite m_suite;
+    std::set<std::string> m_names;  // in small letters
 };
 
 }  // namespace

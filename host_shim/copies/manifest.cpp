@@ -4,11 +4,14 @@
 
 #include <fmt/format.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
 
 #include "host_shim/copies/sha256.h"
+#include "host_shim/formats/json/json_reader.h"
+#include "host_shim/process/interrupt.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
@@ -19,7 +22,8 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kSchema = "pm-pack/1";
 constexpr const char* kAll = ".";
 constexpr std::size_t kLongestPlace = 4096;
-constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 50;  // of a file; sums stay exact
+constexpr std::uint64_t kMostBytes = std::uint64_t{1} << 50;  // of a file
+constexpr std::uint64_t kMostSum = std::uint64_t{1} << 60;    // of all; no sum of two overflows
 
 Json optionJson(const std::optional<PackedOption>& option) {
     if (!option) return nullptr;
@@ -62,11 +66,12 @@ void checkPlaces(const Manifest& manifest) {
     for (const PackedFile& file : manifest.files)
         if (!places.insert(file.place).second)
             throw std::runtime_error(fmt::format("'{}' is there twice", file.place));
-    for (const std::string& place : places)
-        for (auto slash = place.find('/'); slash != place.npos; slash = place.find('/', slash + 1))
-            if (places.contains(place.substr(0, slash)))
-                throw std::runtime_error(
-                    fmt::format("'{}' is a file and a folder", place.substr(0, slash)));
+    for (const std::string& place : places) {
+        throwIfInterrupted();
+        const auto below = places.lower_bound(place + "/");
+        if (below != places.end() && below->starts_with(place + "/"))
+            throw std::runtime_error(fmt::format("'{}' is a file and a folder", place));
+    }
     const auto need = [&](const std::string& place) {
         if (!places.contains(place))
             throw std::runtime_error(fmt::format("'{}' is not among its files", place));
@@ -74,6 +79,23 @@ void checkPlaces(const Manifest& manifest) {
     need(manifest.scene);
     if (manifest.ocio) need(manifest.ocio->place);
     if (manifest.environment) need(manifest.environment->place);
+}
+
+// A content has one size, and all of them a sum that is a number.
+void checkSizes(const Manifest& manifest) {
+    std::map<std::string_view, std::uint64_t> sizes;
+    std::uint64_t sum = 0;
+    for (const PackedFile& file : manifest.files) {
+        const auto [known, isNew] = sizes.emplace(file.sha256, file.bytes);
+        if (known->second != file.bytes)
+            throw std::runtime_error(
+                fmt::format("{}: {} bytes, and {} where the same content is "
+                            "named before",
+                            file.place, file.bytes, known->second));
+        if (isNew) sum += file.bytes;
+        if (sum > kMostSum)
+            throw std::runtime_error(fmt::format("its files have more than {} bytes", kMostSum));
+    }
 }
 
 Manifest manifestOf(const Json& json) {
@@ -86,6 +108,7 @@ Manifest manifestOf(const Json& json) {
     manifest.environment = optionOf(json.at("environment"));
     for (const Json& file : json.at("files")) manifest.files.push_back(fileOf(file));
     checkPlaces(manifest);
+    checkSizes(manifest);
     return manifest;
 }
 
@@ -118,14 +141,18 @@ std::string Manifest::toJson() const {
     return json.dump(1) + "\n";
 }
 
-Manifest Manifest::fromJson(std::string_view text, const std::string& where) {
-    const Json json = Json::parse(text, nullptr, false);
+Manifest Manifest::fromJson(std::string_view text, const std::string& where,
+                            std::uint64_t memoryLimit) {
+    JsonBudget budget(where, text.size(), memoryLimit);
+    const Json json = parseJson(text, budget, throwIfInterrupted);
     if (!json.is_object() || json.value("schema", Json()) != kSchema)
         throw HostError(ExitCode::kBadInput,
                         fmt::format("{}: is no packed scene, schema {}; pm_host pack makes one",
                                     where, kSchema));
     try {
         return manifestOf(json);
+    } catch (const Interrupted&) {
+        throw;
     } catch (const std::exception& fault) {
         throw HostError(ExitCode::kBadInput,
                         fmt::format("{}: can't be understood: {}", where, fault.what()));

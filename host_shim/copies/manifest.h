@@ -34,13 +34,15 @@ struct Manifest {
     std::optional<PackedOption> ocio, environment;
     std::vector<PackedFile> files;  // ordered by place, each once
 
-    std::uint64_t bytes() const;  // of all contents, those that are alike once
+    std::uint64_t bytes() const;  // of all contents, those that are alike once; at most 2^60
 
     // Of toJson(), white space left out.
     static std::string beginning();
     std::string toJson() const;
-    // Errors: kBadInput for anything else than toJson() gives; where: for messages.
-    static Manifest fromJson(std::string_view text, const std::string& where);
+    // memoryLimit: what --memory-limit says, in bytes; 0: nothing. where: for messages. Errors:
+    // kBadInput for anything else than toJson() gives; those of JsonBudget; Interrupted.
+    static Manifest fromJson(std::string_view text, const std::string& where,
+                             std::uint64_t memoryLimit = 0);
 };
 
 // "objects/ab/ab12..." of a hash.

@@ -22,6 +22,7 @@
 #include "host_shim/formats/scene_url.h"
 #include "host_shim/pictures/finished_file.h"
 #include "host_shim/process/temporary_folder.h"
+#include "host_shim/render/scene_memory.h"
 #include "host_shim/textures/texture_cache.h"
 
 namespace pm::host {
@@ -75,7 +76,7 @@ class Fetching {
           m_download(log),
           m_folder(folderOf(options, temporary, log), limitOf(options), log),
           m_text(m_download.text(m_url, kMostManifestBytes)),
-          m_manifest(Manifest::fromJson(m_text, m_url)) {}
+          m_manifest(Manifest::fromJson(m_text, m_url, memoryLimitBytes(options))) {}
 
     PackInUse run() {
         PackInUse pack(m_folder, m_text);

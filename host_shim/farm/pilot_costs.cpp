@@ -7,14 +7,15 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <nlohmann/json.hpp>
 
 #include "host_shim/farm/job/task_events.h"
+#include "host_shim/formats/json/json_reader.h"
 #include "host_shim/formats/text_lines.h"
 #include "host_shim/pictures/picture_io.h"
 #include "host_shim/process/child_process.h"
+#include "host_shim/process/interrupt.h"
 #include "host_shim/process/temporary_folder.h"
 #include "host_shim/values/host_error.h"
 
@@ -73,9 +74,7 @@ void readBucketTimes(const fs::path& file, PilotFindings& findings) {
 }
 
 void readStatistics(const fs::path& file, PilotFindings& findings) {
-    std::ifstream stream(file, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    const auto json = nlohmann::json::parse(text, nullptr, false);
+    const auto json = parseJsonFile(file, throwIfInterrupted);
     if (!json.is_object() || !json.contains("isa"))
         throw HostError(ExitCode::kInternal, "the pilot's statistics can't be read");
     findings.isa = json.at("isa").get<std::string>();

@@ -4,11 +4,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
-#include <utility>
 
 #include "host_shim/values/host_error.h"
 
@@ -16,6 +15,8 @@ namespace pm::host {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::streamsize kPieceBytes = 1 << 20;
 
 // What is no file may never end; opening a pipe would wait, deaf to Ctrl-C, for somebody to write
 // into it.
@@ -54,15 +55,28 @@ void checkSceneFile(const fs::path& file, std::string_view wanted) {
     openFile(file);
 }
 
-std::string readWholeFile(const fs::path& file) {
+std::string readWholeFile(const fs::path& file, const GoOn& goOn, std::uint64_t mostBytes) {
     refuseWhatIsNoFile(file);
+    std::error_code unknown;
+    const auto size = fs::file_size(file, unknown);
     std::ifstream stream = openFile(file);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    if (stream.bad() || (text.fail() && !text.str().empty())) {
+    std::string text;
+    if (!unknown) text.reserve(std::min<std::uint64_t>(size, mostBytes));
+    // What it holds may be more or less by now than what it was said to hold.
+    do {
+        if (goOn) goOn();
+        const std::size_t before = text.size();
+        text.resize(before + kPieceBytes);
+        stream.read(text.data() + before, kPieceBytes);
+        text.resize(before + static_cast<std::size_t>(stream.gcount()));
+        if (text.size() > mostBytes)
+            throw HostError(ExitCode::kBadInput,
+                            fmt::format("{}: has {} bytes; at most {} are read", file.string(),
+                                        std::max<std::uint64_t>(size, text.size()), mostBytes));
+    } while (stream);
+    if (stream.bad())
         throw HostError(ExitCode::kFile, fmt::format("{}: can't be read", file.string()));
-    }
-    return std::move(text).str();
+    return text;
 }
 
 }  // namespace pm::host

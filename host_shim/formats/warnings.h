@@ -5,6 +5,8 @@
 #include <functional>
 #include <string>
 
+#include "host_shim/values/go_on.h"
+
 namespace pm::host {
 
 // Codes of the host's own warnings; the library's are below 1000. Texts may change, codes don't.
@@ -26,8 +28,5 @@ enum class Warning : int {
 };
 
 using WarningSink = std::function<void(Warning code, const std::string& text)>;
-
-// Called now and then by what takes long; throws where it is to be given up. May be empty.
-using GoOn = std::function<void()>;
 
 }  // namespace pm::host

@@ -133,7 +133,10 @@ void PluginScene::build(const Request& request, const ColourPipeline& colour,
     if (const auto matrix = colour.renderingToXyzD65()) std::ranges::copy(*matrix, desc.rgbToXyz);
     m_context.check(api.createScene(m_context.handle(), &desc, &m_handle), request.sceneName);
     addInstances(request, buildMaterials(data, materials));
-    for (const LightData& light : data.lights) addLight(light, colour);
+    for (const LightData& light : data.lights) {
+        throwIfInterrupted();
+        addLight(light, colour);
+    }
     if (data.environment) setEnvironment(*data.environment, colour, materials);
     setCamera(request.camera);
     m_context.check(api.commitScene(m_handle), request.sceneName);
@@ -151,6 +154,7 @@ PluginScene::Materials PluginScene::buildMaterials(const SceneData& data,
     materials.prepare(used);
     Materials built(data.materials.size());
     for (const InstanceData& instance : data.instances) {
+        throwIfInterrupted();
         for (const uint32_t material : data.materialsOf(instance)) {
             if (built[material] == nullptr) {
                 built[material] = materials.build(data.materials[material]);

@@ -57,6 +57,11 @@ double memoryLimitGib(const Options& options) {
     return limit;
 }
 
+std::uint64_t memoryLimitBytes(const Options& options) {
+    constexpr double kMost = 9e18;
+    return static_cast<std::uint64_t>(std::min(memoryLimitGib(options) * kGib, kMost));
+}
+
 void checkFileFits(const Options& options) {
     std::error_code unknown;
     const auto bytes = std::filesystem::file_size(options.scene, unknown);

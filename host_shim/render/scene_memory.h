@@ -13,6 +13,7 @@ inline constexpr std::uint32_t kTessellationRate = 8;  // of cages
 
 // What --memory-limit says; 0: nothing, and the library goes by the machine.
 double memoryLimitGib(const Options& options);
+std::uint64_t memoryLimitBytes(const Options& options);
 
 // Of what a scene file says and what it makes of it, before either is there.
 // Errors: HostError, exit code 5, where --memory-limit is given and is less.

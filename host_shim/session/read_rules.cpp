@@ -11,6 +11,7 @@
 #include "host_shim/formats/sidecar/sidecar_parts.h"
 #include "host_shim/formats/source_file.h"
 #include "host_shim/process/interrupt.h"
+#include "host_shim/render/scene_memory.h"
 
 namespace pm::host {
 
@@ -74,10 +75,11 @@ SceneData readScene(const Options& options, const WarningSink& warn,
                     const std::optional<std::array<double, 3>>& eye) {
     ReadRules rules = readRules(options);
     const GoOn goOn = throwIfInterrupted;
+    const SidecarLimits limits{goOn, memoryLimitBytes(options)};
     std::optional<Sidecar> sidecar;
     if (const fs::path file = sidecarInUse(options); !file.empty()) {
         SceneFiles files(options.scene.parent_path(), rules.files);
-        sidecar = readSidecarFile(file, files);
+        sidecar = readSidecarFile(file, files, limits);
         rules.materials = sidecar->materialNames();
     }
     const CameraData* camera =
@@ -85,7 +87,7 @@ SceneData readScene(const Options& options, const WarningSink& warn,
     std::optional<std::array<double, 3>> place = eye;
     if (!place && camera != nullptr) place = placeOf(*camera);
     SceneData scene = sceneReaderFor(options.scene).read({options.scene, warn, goOn, place, rules});
-    if (sidecar) addSidecar(*sidecar, scene);
+    if (sidecar) addSidecar(*sidecar, scene, limits);
     addSky(options.sky, scene);
     return scene;
 }

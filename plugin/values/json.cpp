@@ -15,6 +15,9 @@ namespace pm::plugin {
 namespace {
 
 constexpr std::size_t kMostLevels = 64;
+constexpr std::size_t kMostValues = 100'000;
+constexpr std::size_t kMostBytes = std::size_t{16} << 20;
+constexpr std::size_t kFewKeys = 16;  // which are looked through
 
 // Of a number or a text alone; these take no memory to be destroyed.
 std::string written(const nlohmann::json& scalar) {
@@ -72,10 +75,29 @@ Json Json::array() {
 
 Json& Json::operator[](const char* key) {
     if (m_kind == Kind::kNull) m_kind = Kind::kObject;
+    if (const auto place = placeOf(key)) return m_elements[*place];
+    return addMember(key);
+}
+
+std::optional<std::size_t> Json::placeOf(std::string_view key) const {
+    if (m_keys.size() > kFewKeys) {
+        const auto found = m_places.find(key);
+        return found == m_places.end() ? std::nullopt : std::optional(found->second);
+    }
     const auto found = std::find(m_keys.begin(), m_keys.end(), key);
-    if (found != m_keys.end()) return m_elements[static_cast<std::size_t>(found - m_keys.begin())];
-    m_elements.reserve(m_elements.size() + 1);
-    m_keys.emplace_back(key);
+    if (found == m_keys.end()) return std::nullopt;
+    return static_cast<std::size_t>(found - m_keys.begin());
+}
+
+// What may fail for want of memory comes first; then keys, places and elements agree.
+Json& Json::addMember(std::string key) {
+    const std::size_t count = m_keys.size();
+    if (m_keys.capacity() == count) m_keys.reserve(2 * count + 1);
+    if (m_elements.capacity() == count) m_elements.reserve(2 * count + 1);
+    for (std::size_t i = m_places.size(); i < count && count >= kFewKeys; ++i)
+        m_places.emplace(m_keys[i], i);
+    if (count >= kFewKeys) m_places.emplace(key, count);
+    m_keys.push_back(std::move(key));
     return m_elements.emplace_back();
 }
 
@@ -85,9 +107,8 @@ void Json::push_back(Json element) {
 }
 
 const Json* Json::find(const char* key) const {
-    const auto found = std::find(m_keys.begin(), m_keys.end(), key);
-    return found == m_keys.end() ? nullptr
-                                 : &m_elements[static_cast<std::size_t>(found - m_keys.begin())];
+    const auto place = placeOf(key);
+    return place ? &m_elements[*place] : nullptr;
 }
 
 const Json& Json::at(const char* key) const {
@@ -175,26 +196,28 @@ class JsonReader : public nlohmann::json::json_sax_t {
     }
 
   private:
+    // Null where there are too many, or one of this key is there.
     Json* place(Json value) {
+        if (++m_count > kMostValues) return nullptr;
         if (m_open.empty()) {
             m_root = std::move(value);
             return &m_root;
         }
         Json& parent = *m_open.back();
-        if (parent.m_kind == Json::Kind::kObject)
-            return &(parent[m_key.c_str()] = std::move(value));
+        if (parent.m_kind == Json::Kind::kObject) {
+            if (parent.placeOf(m_key)) return nullptr;
+            return &(parent.addMember(std::move(m_key)) = std::move(value));
+        }
         parent.push_back(std::move(value));
         return &parent.m_elements.back();
     }
-    bool put(Json value) {
-        place(std::move(value));
-        return true;
-    }
+    bool put(Json value) { return place(std::move(value)) != nullptr; }
     // A parent gets no other element while one of its own is open, so it stays where it is.
     bool open(Json value) {
         if (m_open.size() >= kMostLevels) return false;
-        m_open.push_back(place(std::move(value)));
-        return true;
+        Json* const placed = place(std::move(value));
+        if (placed != nullptr) m_open.push_back(placed);
+        return placed != nullptr;
     }
     bool close() {
         m_open.pop_back();
@@ -204,11 +227,13 @@ class JsonReader : public nlohmann::json::json_sax_t {
     Json m_root;
     std::vector<Json*> m_open;
     std::string m_key;
+    std::size_t m_count{};
 };
 
 Json Json::parse(std::span<const std::byte> text) {
     const auto* first = reinterpret_cast<const char*>(text.data());
     JsonReader reader;
+    if (text.size() > kMostBytes) throw notUnderstood();
     if (!nlohmann::json::sax_parse(first, first + text.size(), &reader)) throw notUnderstood();
     return reader.take();
 }

@@ -4,10 +4,13 @@
 
 #include <concepts>
 #include <cstddef>
+#include <functional>
 #include <initializer_list>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace pm::plugin {
@@ -40,7 +43,8 @@ class Json {
     static Json object();
     static Json array();
 
-    // A member of an object, which null becomes; null where it was not there.
+    // A member of an object, which null becomes; null where it was not there. Many are found by a
+    // table.
     Json& operator[](const char* key);
     // To an array, which null becomes.
     void push_back(Json element);
@@ -58,7 +62,9 @@ class Json {
     // that are no UTF-8 are replaced.
     std::string dump(std::optional<std::size_t> spaces = std::nullopt) const;
 
-    // Errors: CallError(FILE) for what is no JSON, or has more than 64 levels.
+    // In time that grows as the text does. Errors: CallError(FILE) for what is no JSON, has a key
+    // twice, more than 64 levels, 100,000 values or 16 MiB: what is read here is the head of a
+    // file.
     static Json parse(std::span<const std::byte> text);
 
   private:
@@ -67,11 +73,14 @@ class Json {
 
     static Json ofKind(Kind kind);
     bool isPair() const;
+    std::optional<std::size_t> placeOf(std::string_view key) const;
+    Json& addMember(std::string key);
     void write(std::optional<std::size_t> spaces, std::size_t level, std::string& text) const;
 
     Kind m_kind = Kind::kNull;
     std::string m_text;               // a text as it is; a number or truth as it is written
     std::vector<std::string> m_keys;  // an object's, one for each element
+    std::map<std::string, std::size_t, std::less<>> m_places;  // of its keys, once they are many
     std::vector<Json> m_elements;
 };
 

@@ -232,6 +232,11 @@ TEST_F(Check, BadSuitesAreRefused) {
     refused(suiteOf({"a"}, "\"options\": [\"-o\", \"x.exr\"]"), "for the check itself");
     refused(suiteOf({"a"}, "\"options\": [\"-ox.exr\"]"), "not for a suite");
     refused(suiteOf({"a"}, "\"options\": [\"--explain\"]"), "not for a suite");
+    refused(suiteOf({"a"}, "\"options\": [\"--frames\", \"1-3\"]"), "--frames is not for a suite");
+    refused(suiteOf({"a"}, "\"options\": [\"--frames=1-3\"]"), "--frames is not for a suite");
+    refused(suiteOf({"a"}, "\"options\": [\"--write-sidecar\"]"), "--write-sidecar is not for");
+    refused(suiteOf({"a"}, "\"name\": \"b\""), "'name' is there twice");
+    refused(suiteOf({"a"}, "\"options\": [], \"options\": []"), "'options' is there twice");
     refused(suiteOf({"a"}, "\"options\": [\"--checkpoint\", \"c\"]"), "not for a suite");
     refused(suiteOf({"a"}, "\"display\": true, \"options\": [\"--view\", \"none\"]"), "none");
     refused(suiteOf({"a"}, "\"options\": [\"--pases\", \"3\"]"), "--pases");

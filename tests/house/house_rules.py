@@ -43,7 +43,7 @@ THIRD_PARTY = [
     (re.compile(r"tiny_obj_loader"), ("host_shim/formats/",)),
     (re.compile(r"CLI/"), ("host_shim/cli/",)),
     (re.compile(r"nlohmann/"), 
-     ("plugin/", "host_shim/check/", "host_shim/copies/", "host_shim/farm/", "host_shim/formats/sidecar/", "host_shim/render/", "host_shim/session/")),
+     ("plugin/", "host_shim/check/", "host_shim/copies/", "host_shim/farm/", "host_shim/formats/sidecar/", "host_shim/formats/json/", "host_shim/render/", "host_shim/session/")),
     (re.compile(r"(?:curl|openssl)/"), ("host_shim/copies/",)),
     (re.compile(r"xxhash"), ("plugin/", "host_shim/colour/", "host_shim/textures/")),
     # Programs of their own, signals and a loaded library.

@@ -146,6 +146,29 @@ TEST_F(Interrupt, beforeTheRenderBegins) {
     EXPECT_GE(interrupted, 2);
 }
 
+// In all that a sidecar of many entries goes through: reading, adding to the scene, handing over.
+// PM_ENTRIES=1000000 takes so many of each.
+TEST_F(Interrupt, whileALargeSidecarIsTaken) {
+    const char* asked = std::getenv("PM_ENTRIES");
+    const int count = asked == nullptr ? 15000 : std::atoi(asked);
+    const auto list = [count](const std::string& entry) {
+        std::string text = "[" + entry;
+        for (int i = 1; i < count; ++i) text += ",\n" + entry;
+        return text + "]";
+    };
+    write("box.pm.json",
+          "{\"schema\": \"pm-sidecar/1\", \"instances\": " + list(R"({"translate": [0, 0, 1]})") +
+              ", \"spheres\": " + list(R"({"radius": 0.01, "material": "wall"})") +
+              ", \"lights\": " +
+              list(R"({"type": "point", "position": [0, 0, 0], "intensity": 1})") + "}");
+    const std::vector<std::string> arguments{"box.obj", "--explain", "--stats", "s.json"};
+    const int interrupted =
+        terminateAt(2, {0.3, 0.5, 0.7, 0.9}, arguments, [&](const Outcome& outcome) {
+            EXPECT_NE(outcome.err.find("pm_host: terminated"), std::string::npos) << outcome.err;
+        });
+    EXPECT_GE(interrupted, 2);
+}
+
 // The libraries that read and bake a large picture can't be told to stop; nobody waits for them.
 // PM_TEXELS=8192 takes one of so many columns.
 TEST_F(Interrupt, whileATextureIsBaked) {

@@ -7,14 +7,14 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
-#include <fstream>
-#include <iterator>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
 
 #include "host_shim/farm/engines/machine_question.h"
 #include "host_shim/farm/engines/slurm_script.h"
+#include "host_shim/formats/json/json_reader.h"
 #include "host_shim/formats/text_lines.h"
 #include "host_shim/formats/warnings.h"
 #include "host_shim/pictures/finished_file.h"
@@ -31,6 +31,7 @@ using Json = nlohmann::ordered_json;
 // Indices of an array are below MaxArraySize, 1001 where nobody has set it.
 constexpr int kArraySize = 1000;
 constexpr std::chrono::seconds kBetweenTries{2};
+constexpr int kMostOffset = std::numeric_limits<int>::max();
 // A job that Slurm holds is let go again, but not for ever.
 constexpr int kMostReleases = 5;
 
@@ -68,16 +69,22 @@ bool isUnfinished(const std::string& state) {
 
 SlurmEngine::SlurmEngine(const FarmOptions& options, const JobFolder& folder, Log& log)
     : m_options(options), m_folder(folder), m_log(log) {
-    std::ifstream stream(folder.engineState(), std::ios::binary);
-    if (!stream) return;
-    const std::string text{std::istreambuf_iterator<char>(stream), {}};
-    const Json json = Json::parse(text, nullptr, false);
-    if (!json.is_object())
+    std::error_code ignored;
+    if (!std::filesystem::exists(folder.engineState(), ignored)) return;
+    const auto fail = [&folder] {
         throw HostError(ExitCode::kBadInput,
                         folder.engineState().string() + ": is no list of Slurm's arrays");
-    const Json arrays = json.value("arrays", Json::object());
-    for (const auto& [number, offset] : arrays.items())
-        if (offset.is_number_integer()) m_arrays[number] = offset.get<int>();
+    };
+    const auto json = parseJsonFile(folder.engineState(), throwIfInterrupted);
+    const auto arrays = json.find("arrays");
+    if (arrays == json.end() || !arrays->is_object()) fail();
+    for (const auto& [number, offset] : arrays->items()) {
+        const bool isNumber = !number.empty() && std::ranges::all_of(number, [](char letter) {
+            return letter >= '0' && letter <= '9';
+        });
+        if (!isNumber || !offset.is_number_integer() || offset < 0 || offset > kMostOffset) fail();
+        m_arrays[number] = offset.get<int>();
+    }
 }
 
 void SlurmEngine::keep() const {

@@ -6,6 +6,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "host_shim/formats/json/json_reader.h"
+#include "host_shim/formats/json/json_values.h"
+#include "host_shim/process/interrupt.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
@@ -34,10 +37,10 @@ FarmTask taskOf(const Json& json) {
     FarmTask task;
     const bool isRun = json.at("kind").get<std::string>() == kRun;
     task.kind = isRun ? FarmTask::Kind::kRun : FarmTask::Kind::kPhotons;
-    task.frame = json.at("frame").get<std::size_t>();
+    task.frame = wholeNumber<std::size_t>(json, "frame");
     if (isRun) {
-        task.first = json.at("firstBucket").get<std::uint32_t>();
-        task.last = json.at("lastBucket").get<std::uint32_t>();
+        task.first = wholeNumber<std::uint32_t>(json, "firstBucket");
+        task.last = wholeNumber<std::uint32_t>(json, "lastBucket");
         task.predictedCost = json.at("predictedThreadSeconds").get<double>();
     }
     task.product = json.at("product").get<std::string>();
@@ -53,14 +56,15 @@ FarmPlan planOf(const Json& json) {
     plan.program = json.at("program").get<std::string>();
     plan.folder = json.at("folder").get<std::string>();
     plan.isa = json.at("isa").get<std::string>();
-    plan.bucketCount = json.at("bucketCount").get<std::uint32_t>();
+    plan.bucketCount = wholeNumber<std::uint32_t>(json, "bucketCount");
     for (const Json& frame : json.at("frames")) {
         FarmFrame read;
-        if (!frame.at("number").is_null()) read.number = frame.at("number").get<std::int64_t>();
+        if (!frame.at("number").is_null()) read.number = wholeNumber<std::int64_t>(frame, "number");
         read.mergeWords = frame.at("mergeWords").get<std::vector<std::string>>();
         plan.frames.push_back(std::move(read));
     }
     for (const Json& task : json.at("tasks")) {
+        throwIfInterrupted();
         plan.tasks.push_back(taskOf(task));
         static_cast<void>(plan.frames.at(plan.tasks.back().frame));
     }
@@ -109,12 +113,14 @@ std::string FarmPlan::toJson() const {
 }
 
 FarmPlan FarmPlan::fromJson(std::string_view text, const std::filesystem::path& file) {
-    const Json json = Json::parse(text, nullptr, false);
+    const Json json = parseJson(text, file.string(), throwIfInterrupted);
     if (!json.is_object() || json.value("schema", Json()) != kSchema)
         throw HostError(ExitCode::kBadInput,
                         fmt::format("{}: is no plan of a farm, schema {}", file.string(), kSchema));
     try {
         return planOf(json);
+    } catch (const Interrupted&) {
+        throw;
     } catch (const std::exception& fault) {
         throw HostError(ExitCode::kBadInput, fmt::format("{}: the plan can't be understood: {}",
                                                          file.string(), fault.what()));

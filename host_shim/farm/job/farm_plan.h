@@ -52,7 +52,7 @@ struct FarmPlan {
     // Of toJson(), white space left out.
     static std::string beginning();
     std::string toJson() const;
-    // Errors: kBadInput for anything else than toJson() gives; file: for messages.
+    // Errors: kBadInput for anything else than toJson() gives; Interrupted. file: for messages.
     static FarmPlan fromJson(std::string_view text, const std::filesystem::path& file);
 };
 

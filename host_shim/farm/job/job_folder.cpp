@@ -10,17 +10,20 @@
 #include <cerrno>
 #include <cstring>
 #include <fstream>
-#include <sstream>
 
 #include "host_shim/farm/job/run_script.h"
 #include "host_shim/folders/own_folder.h"
+#include "host_shim/formats/source_file.h"
 #include "host_shim/pictures/finished_file.h"
+#include "host_shim/process/interrupt.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::uint64_t kMostPlanBytes = std::uint64_t{512} << 20;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& why) {
     throw HostError(ExitCode::kFile, fmt::format("{}: {}", path.string(), why));
@@ -65,11 +68,7 @@ std::optional<FarmPlan> JobFolder::readPlan() const {
     const fs::path file = m_folder / "plan.json";
     std::error_code failed;
     if (!fs::exists(file, failed)) return std::nullopt;
-    std::ostringstream text;
-    std::ifstream stream(file, std::ios::binary);
-    text << stream.rdbuf();
-    if (!stream) fail(file, "can't be read");
-    return FarmPlan::fromJson(text.str(), file);
+    return FarmPlan::fromJson(readWholeFile(file, throwIfInterrupted, kMostPlanBytes), file);
 }
 
 void JobFolder::check() const {

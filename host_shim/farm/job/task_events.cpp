@@ -8,7 +8,10 @@
 #include <sstream>
 #include <string_view>
 
+#include "host_shim/formats/json/json_reader.h"
 #include "host_shim/formats/text_lines.h"
+#include "host_shim/process/interrupt.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 namespace {
@@ -48,6 +51,18 @@ void addEnd(const std::vector<std::string>& words, double time,
     found->exitCode = static_cast<int>(code);
 }
 
+// None where a line is no JSON: it may have been written to while it was read.
+std::optional<double> progressOf(const std::string& line, const std::filesystem::path& log) {
+    try {
+        const auto json = parseJson(line, log.string(), throwIfInterrupted);
+        const auto progress = json.find("progress");
+        if (progress == json.end() || !progress->is_number()) return std::nullopt;
+        return std::clamp(progress->get<double>(), 0.0, 1.0);
+    } catch (const HostError&) {
+        return std::nullopt;
+    }
+}
+
 }  // namespace
 
 std::vector<TaskAttempt> readAttempts(const std::filesystem::path& file) {
@@ -69,9 +84,7 @@ double readProgress(const std::filesystem::path& log) {
     const std::vector<std::string> lines = lastLines(log);
     for (auto line = lines.rbegin(); line != lines.rend(); ++line) {
         if (!line->starts_with(kProgressLine)) continue;
-        const auto json = nlohmann::json::parse(*line, nullptr, false);
-        if (json.is_object() && json.value("progress", nlohmann::json()).is_number())
-            return std::clamp(json.at("progress").get<double>(), 0.0, 1.0);
+        if (const auto progress = progressOf(*line, log)) return *progress;
     }
     return 0;
 }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 
 #include "host_shim/values/host_error.h"
@@ -16,9 +15,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr std::size_t kMostShown = 60;     // letters of a value
-constexpr std::size_t kMostOfFault = 200;  // of the parser's text
-constexpr int kMostDepth = 16;
+constexpr std::size_t kMostShown = 60;  // letters of a value
 
 std::string shortened(std::string text, std::size_t most) {
     if (text.size() > most) text = text.substr(0, most) + "...";
@@ -91,12 +88,15 @@ JsonPlace JsonPlace::member(const char* key) const {
 }
 
 std::vector<std::pair<std::string, JsonPlace>> JsonPlace::members() const {
+    if (!m_value->is_object()) refuseValue("an object");
     std::vector<std::pair<std::string, JsonPlace>> all;
     for (const auto& [key, value] : m_value->items())
-        all.emplace_back(
-            key,
-            JsonPlace(value, *m_file, fmt::format("{}['{}']", m_path, shortened(key, kMostShown))));
+        all.emplace_back(key, JsonPlace(value, *m_file, memberPath(m_path, key)));
     return all;
+}
+
+std::string JsonPlace::memberPath(const std::string& path, const std::string& key) {
+    return fmt::format("{}['{}']", path, shortened(key, kMostShown));
 }
 
 JsonPlace JsonPlace::entry(std::size_t index) const {
@@ -155,35 +155,6 @@ std::size_t JsonPlace::choice(std::initializer_list<std::string_view> allowed) c
     const auto found = std::ranges::find(allowed, m_value->get_ref<const std::string&>());
     if (found == allowed.end()) refuseValue(words);
     return static_cast<std::size_t>(found - allowed.begin());
-}
-
-ordered_json parseJson(std::string_view text, const std::string& file) {
-    const auto refuse = [&file](const std::string& why) {
-        throw HostError(ExitCode::kBadInput, fmt::format("{}: {}", file, why));
-    };
-    // The parser would take the last of two, without a word.
-    std::vector<std::set<std::string>> keys;
-    const auto check = [&](int depth, ordered_json::parse_event_t event, ordered_json& parsed) {
-        using Event = ordered_json::parse_event_t;
-        const bool begins = event == Event::object_start || event == Event::array_start;
-        if (begins && depth >= kMostDepth)
-            refuse(
-                fmt::format("lists and objects stand in each other more than {} deep", kMostDepth));
-        if (event == Event::object_start) keys.emplace_back();
-        if (event == Event::object_end) keys.pop_back();
-        if (event == Event::key && !keys.back().insert(parsed.get<std::string>()).second)
-            refuse(fmt::format("'{}' is there twice",
-                               shortened(parsed.get<std::string>(), kMostShown)));
-        return true;
-    };
-    try {
-        return ordered_json::parse(text, check);
-    } catch (const ordered_json::exception& error) {
-        std::string why = error.what();
-        if (const auto end = why.find("] "); end != why.npos) why = why.substr(end + 2);
-        refuse("no JSON: " + shortened(why, kMostOfFault));
-    }
-    return {};
 }
 
 }  // namespace pm::host

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace pm::host {
@@ -27,8 +28,9 @@ struct NumberRange {
 // file's value and name, which must outlive it.
 class JsonPlace {
   public:
-    JsonPlace(const nlohmann::ordered_json& value, const std::string& file)
-        : m_value(&value), m_file(&file) {}
+    // path: empty for the whole.
+    JsonPlace(const nlohmann::ordered_json& value, const std::string& file, std::string path = {})
+        : m_value(&value), m_file(&file), m_path(std::move(path)) {}
 
     // Throws: the place, and text after it.
     [[noreturn]] void refuse(const std::string& text) const;
@@ -37,6 +39,7 @@ class JsonPlace {
     void allowKeys(std::initializer_list<std::string_view> allowed) const;
     bool has(const char* key) const { return m_value->contains(key); }
     JsonPlace member(const char* key) const;  // refuses where there is none
+    // Of an object.
     std::vector<std::pair<std::string, JsonPlace>> members() const;
     // The entries of a list; of a key that is not there none.
     std::vector<JsonPlace> entries() const;
@@ -54,12 +57,12 @@ class JsonPlace {
     // Which of the words it is.
     std::size_t choice(std::initializer_list<std::string_view> allowed) const;
 
+    // The path of an object's member, however long its key is.
+    static std::string memberPath(const std::string& path, const std::string& key);
     const std::string& path() const { return m_path; }
     const std::string& file() const { return *m_file; }
 
   private:
-    JsonPlace(const nlohmann::ordered_json& value, const std::string& file, std::string path)
-        : m_value(&value), m_file(&file), m_path(std::move(path)) {}
     [[noreturn]] void refuseValue(const std::string& allowed) const;
     JsonPlace entry(std::size_t index) const;
 
@@ -67,9 +70,5 @@ class JsonPlace {
     const std::string* m_file;
     std::string m_path;
 };
-
-// Parses a text. Errors: kBadInput for what is no JSON, a key that is there twice, and more than 16
-// lists and objects within each other.
-nlohmann::ordered_json parseJson(std::string_view text, const std::string& file);
 
 }  // namespace pm::host

@@ -3,7 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
+#include <set>
 
+#include "host_shim/formats/json/json_reader.h"
 #include "host_shim/formats/sidecar/sidecar.h"
 #include "host_shim/formats/sidecar/sidecar_parts.h"
 #include "host_shim/formats/source_file.h"
@@ -13,8 +16,9 @@ namespace pm::host {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 
-constexpr std::uintmax_t kMostBytes = std::uintmax_t{64} << 20;
+constexpr std::uint64_t kMostBytes = std::uint64_t{2} << 30;
 
 std::uint32_t readHiddenFrom(const JsonPlace& at) {
     std::uint32_t bits = 0;
@@ -26,38 +30,38 @@ std::uint32_t readHiddenFrom(const JsonPlace& at) {
     return bits;
 }
 
-SidecarInstance readInstance(const JsonPlace& at) {
+void readReplaced(const JsonPlace& at, NameTable& names, SidecarInstance& instance) {
+    if (at.isText()) {
+        instance.material = names.numberOf(at.text());
+    } else if (at.isObject()) {
+        for (const auto& [old, name] : at.members())
+            instance.materials.emplace_back(names.numberOf(old), names.numberOf(name.text()));
+        std::ranges::sort(instance.materials);
+    } else {
+        at.refuse(" must be the name of a material, or an object with names in place of names");
+    }
+}
+
+SidecarInstance readInstance(const JsonPlace& at, NameTable& names) {
     at.allowKeys(
         {"of", "name", "matrix", "translate", "rotate", "scale", "materials", "hiddenFrom"});
     SidecarInstance instance;
-    instance.place = at.path();
-    if (at.has("of")) instance.of = at.member("of").text();
+    if (at.has("of")) instance.of = names.numberOf(at.member("of").text());
     if (at.has("name")) instance.name = at.member("name").text();
     instance.transform = readPlacement(at);
     instance.hiddenFrom = readHiddenFrom(at);
-    if (!at.has("materials")) return instance;
-    const JsonPlace materials = at.member("materials");
-    if (materials.isText()) {
-        instance.material = materials.text();
-    } else if (materials.isObject()) {
-        for (const auto& [old, name] : materials.members())
-            instance.materials.emplace_back(old, name.text());
-    } else {
-        materials.refuse(
-            " must be the name of a material, or an object with names in place of names");
-    }
+    if (at.has("materials")) readReplaced(at.member("materials"), names, instance);
     return instance;
 }
 
-SidecarSphere readSphere(const JsonPlace& at) {
+SidecarSphere readSphere(const JsonPlace& at, NameTable& names) {
     at.allowKeys({"name", "centre", "radius", "material", "matrix", "translate", "rotate", "scale",
                   "hiddenFrom"});
     SidecarSphere sphere;
-    sphere.place = at.path();
     sphere.sphere.name = at.has("name") ? at.member("name").text() : at.path();
     if (at.has("centre")) sphere.sphere.centre = at.member("centre").triple();
     sphere.sphere.radius = at.member("radius").number({0, 1e30, false, true, "scene units"});
-    sphere.material = at.member("material").text();
+    sphere.material = names.numberOf(at.member("material").text());
     sphere.transform = readPlacement(at);
     sphere.hiddenFrom = readHiddenFrom(at);
     return sphere;
@@ -65,7 +69,6 @@ SidecarSphere readSphere(const JsonPlace& at) {
 
 SidecarMaterial readMaterial(const std::string& name, const JsonPlace& at) {
     SidecarMaterial material;
-    material.place = at.path();
     material.name = name;
     for (const auto& [key, value] : at.members()) {
         NamedValue& named = material.values.emplace_back();
@@ -119,6 +122,121 @@ SkyData readSky(const JsonPlace& at) {
     return sky;
 }
 
+// What an entry of a list takes beside its own size.
+std::uint64_t bytesOf(const SidecarInstance& instance) {
+    return instance.name.size() + instance.materials.size() * sizeof instance.materials[0];
+}
+std::uint64_t bytesOf(const SidecarSphere& sphere) {
+    return sphere.sphere.name.size();
+}
+std::uint64_t bytesOf(const LightData& light) {
+    return light.name.size();
+}
+std::uint64_t bytesOf(const CameraData& camera) {
+    return camera.name.size();
+}
+std::uint64_t bytesOf(const SidecarMaterial& material) {
+    std::uint64_t bytes = material.name.size();
+    for (const NamedValue& value : material.values)
+        bytes += sizeof value + value.name.size() + value.place.size() + value.text.size() +
+                 value.numbers.size() * sizeof(double);
+    return bytes;
+}
+
+// Takes the parts of a sidecar as they come.
+class SidecarParts {
+  public:
+    SidecarParts(const std::string& file, SceneFiles& files, const SidecarLimits& limits)
+        : m_files(files),
+          m_goOn(limits.goOn),
+          m_limit(limits.memoryBytes),
+          m_held(JsonBudget::ofLimit(file, limits.memoryBytes)) {
+        m_sidecar.file = file;
+    }
+
+    Sidecar read(std::string_view text) {
+        m_held.take(text.size());
+        JsonBudget parsed(m_sidecar.file, text.size(), m_limit);
+        const Json whole = readJsonParts(
+            text, parsed, m_goOn,
+            {[](const std::string& key, bool isObject) {
+                 return isObject ? key == "materials"
+                                 : key == "instances" || key == "spheres" || key == "lights" ||
+                                       key == "cameras";
+             },
+             [this](const JsonPart& part) { part.isEntry ? takeEntry(part) : takeMember(part); }});
+        const JsonPlace all(whole, m_sidecar.file);
+        all.allowKeys({});
+        if (!m_hasSchema) all.member("schema");
+        if (m_sidecar.environment && m_sidecar.sky)
+            all.refuse(" has environment and sky; it is one of them");
+        return std::move(m_sidecar);
+    }
+
+  private:
+    template <typename Entry>
+    void keep(Entry entry, std::vector<Entry>& list) {
+        // As lists grow they are copied: both are there.
+        m_held.take(2 * sizeof entry + bytesOf(entry));
+        list.push_back(std::move(entry));
+    }
+
+    void takeEntry(const JsonPart& part) {
+        if (part.key == "materials") {
+            const JsonPlace at(part.value, m_sidecar.file,
+                               JsonPlace::memberPath(part.key, part.name));
+            keep(readMaterial(part.name, at), m_sidecar.materials);
+            return;
+        }
+        const JsonPlace at(part.value, m_sidecar.file, fmt::format("{}[{}]", part.key, part.index));
+        if (part.key == "instances") {
+            if (part.index >= kMostInstances)
+                at.refuse(fmt::format(" is one of more than {}, which is the most of a scene",
+                                      kMostInstances));
+            SidecarInstance instance = readInstance(at, m_sidecar.names);
+            instance.index = static_cast<std::uint32_t>(part.index);
+            keep(std::move(instance), m_sidecar.instances);
+        } else if (part.key == "spheres") {
+            keep(readSphere(at, m_sidecar.names), m_sidecar.spheres);
+        } else if (part.key == "lights") {
+            keep(readLight(at), m_sidecar.lights);
+        } else {
+            CameraData camera = readCamera(at);
+            if (!m_cameras.insert(camera.name).second)
+                at.refuse(fmt::format(" is named '{}' like one before it", camera.name));
+            keep(std::move(camera), m_sidecar.cameras);
+        }
+    }
+
+    void takeMember(const JsonPart& part) {
+        const JsonPlace at(part.value, m_sidecar.file, part.key);
+        if (part.key == "schema") {
+            at.choice({kSidecarSchema});
+            m_hasSchema = true;
+        } else if (part.key == "sky") {
+            m_sidecar.sky = readSky(at);
+        } else if (part.key == "environment") {
+            m_sidecar.environment = readEnvironment(at, m_files);
+        } else if (part.key == "materials") {
+            at.members();
+        } else if (part.key != "$schema") {
+            const Json none{{part.key, nullptr}};
+            JsonPlace(none, m_sidecar.file)
+                .allowKeys({"$schema", "schema", "instances", "spheres", "materials", "lights",
+                            "environment", "sky", "cameras"});
+            at.entries();
+        }
+    }
+
+    SceneFiles& m_files;
+    const GoOn& m_goOn;
+    std::uint64_t m_limit;
+    JsonBudget m_held;
+    Sidecar m_sidecar;
+    std::set<std::string> m_cameras;
+    bool m_hasSchema{};
+};
+
 }  // namespace
 
 fs::path sidecarOf(const fs::path& scene) {
@@ -127,55 +245,28 @@ fs::path sidecarOf(const fs::path& scene) {
 }
 
 std::vector<std::string> Sidecar::materialNames() const {
-    std::vector<std::string> names;
+    std::vector<bool> isPut(names.size());
     for (const SidecarInstance& instance : instances) {
-        if (!instance.material.empty()) names.push_back(instance.material);
-        for (const auto& [old, name] : instance.materials) names.push_back(name);
+        if (instance.material != NameTable::kNone) isPut[instance.material] = true;
+        for (const auto& [old, name] : instance.materials) isPut[name] = true;
     }
-    for (const SidecarSphere& sphere : spheres) names.push_back(sphere.material);
-    for (const SidecarMaterial& material : materials) names.push_back(material.name);
-    std::ranges::sort(names);
-    names.erase(std::unique(names.begin(), names.end()), names.end());
-    return names;
+    for (const SidecarSphere& sphere : spheres) isPut[sphere.material] = true;
+    std::vector<std::string> all;
+    for (std::uint32_t number = 0; number < isPut.size(); ++number)
+        if (isPut[number]) all.push_back(names[number]);
+    for (const SidecarMaterial& material : materials) all.push_back(material.name);
+    std::ranges::sort(all);
+    all.erase(std::unique(all.begin(), all.end()), all.end());
+    return all;
 }
 
-Sidecar readSidecar(std::string_view text, const std::string& file, SceneFiles& files) {
-    const nlohmann::ordered_json json = parseJson(text, file);
-    const JsonPlace all(json, file);
-    all.allowKeys({"$schema", "schema", "instances", "spheres", "materials", "lights",
-                   "environment", "sky", "cameras"});
-    all.member("schema").choice({kSidecarSchema});
-    Sidecar sidecar;
-    sidecar.file = file;
-    for (const JsonPlace& at : all.entriesOf("instances"))
-        sidecar.instances.push_back(readInstance(at));
-    for (const JsonPlace& at : all.entriesOf("spheres")) sidecar.spheres.push_back(readSphere(at));
-    if (all.has("materials"))
-        for (const auto& [name, at] : all.member("materials").members())
-            sidecar.materials.push_back(readMaterial(name, at));
-    for (const JsonPlace& at : all.entriesOf("lights")) sidecar.lights.push_back(readLight(at));
-    if (all.has("environment") && all.has("sky"))
-        all.refuse(" has environment and sky; it is one of them");
-    if (all.has("sky")) sidecar.sky = readSky(all.member("sky"));
-    if (all.has("environment"))
-        sidecar.environment = readEnvironment(all.member("environment"), files);
-    for (const JsonPlace& at : all.entriesOf("cameras")) {
-        CameraData camera = readCamera(at);
-        if (std::ranges::any_of(sidecar.cameras,
-                                [&](const CameraData& other) { return other.name == camera.name; }))
-            at.refuse(fmt::format(" is named '{}' like one before it", camera.name));
-        sidecar.cameras.push_back(std::move(camera));
-    }
-    return sidecar;
+Sidecar readSidecar(std::string_view text, const std::string& file, SceneFiles& files,
+                    const SidecarLimits& limits) {
+    return SidecarParts(file, files, limits).read(text);
 }
 
-Sidecar readSidecarFile(const fs::path& file, SceneFiles& files) {
-    std::error_code unknown;
-    const auto bytes = fs::file_size(file, unknown);
-    if (!unknown && bytes > kMostBytes)
-        throw HostError(ExitCode::kBadInput, fmt::format("{}: has {} bytes; at most {} are read",
-                                                         file.string(), bytes, kMostBytes));
-    return readSidecar(readWholeFile(file), file.string(), files);
+Sidecar readSidecarFile(const fs::path& file, SceneFiles& files, const SidecarLimits& limits) {
+    return readSidecar(readWholeFile(file, limits.goOn, kMostBytes), file.string(), files, limits);
 }
 
 }  // namespace pm::host

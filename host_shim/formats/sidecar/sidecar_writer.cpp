@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 #include <algorithm>
+#include <nlohmann/json.hpp>
 
+#include "host_shim/formats/json/json_reader.h"
 #include "host_shim/formats/sidecar/sidecar.h"
 #include "host_shim/formats/sidecar/sidecar_parts.h"
 
@@ -60,10 +62,12 @@ ordered_json describe(const LightData& light) {
 
 std::string withGuess(std::string_view before, const SidecarGuess& guess) {
     ordered_json all;
+    // It has been read, so memory is there for it.
+    JsonBudget budget = JsonBudget::ofLimit("sidecar", 0);
     if (before.empty())
         all["schema"] = kSidecarSchema;
     else
-        all = parseJson(before, "sidecar");
+        all = parseJson(before, budget, {});
     if (guess.light) all["lights"].push_back(describe(*guess.light));
     const bool hasCamera = all.contains("cameras") && !all["cameras"].empty();
     if (guess.camera && !hasCamera) all["cameras"].push_back(describe(*guess.camera));
