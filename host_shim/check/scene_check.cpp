@@ -16,7 +16,7 @@ namespace fs = std::filesystem;
 constexpr double kCodeRounding = 1e-3;  // codes are floats here
 
 // What a scene's options may not ask for: the check renders one whole picture of it.
-void refuseWhatIsNoPicture(const Options& options, const SuiteScene& scene) {
+void refuseWhatIsNoPicture(const Options& options) {
     const auto refuse = [](const std::string& what) {
         throw HostError(ExitCode::kBadInput, what +
                                                  " is not for a suite: whole pictures are "
@@ -27,7 +27,7 @@ void refuseWhatIsNoPicture(const Options& options, const SuiteScene& scene) {
     if (options.photonsOnly) refuse("--photons-only");
     if (!options.checkpoint.empty()) refuse("--checkpoint");
     if (options.onlyPixel) refuse("--only-pixel");
-    const fs::path own = scene.scene.stem().string() + ".exr";
+    const fs::path own = options.scene.stem().string() + ".exr";
     if (!options.part.empty() || options.outputs != std::vector<fs::path>{own}) refuse("-o");
 }
 
@@ -39,7 +39,7 @@ Options parsedOptions(const Suite& suite, const SuiteScene& scene) {
         if (options.exposure.kind == ExposureOption::Kind::kAuto)
             throw HostError(ExitCode::kBadInput,
                             "--exposure auto: a suite's pictures are of one exposure; give STOPS");
-        refuseWhatIsNoPicture(options, scene);
+        refuseWhatIsNoPicture(options);
         std::string& config = options.colour.ocioFile;
         if (!config.empty() && !config.starts_with("ocio://"))
             config = (suite.folder / config).string();
