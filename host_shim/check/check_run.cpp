@@ -117,7 +117,7 @@ std::vector<std::string> CheckRun::wordsOf(const SuiteScene& scene, std::uint64_
 std::string CheckRun::commandOf(const SuiteScene& scene, std::uint64_t seed) const {
     std::vector<std::string> words = wordsOf(scene, seed);
     words.insert(words.begin(), "pm_host");
-    words.insert(words.end(), {"-o", "/tmp/" + scene.name + ".exr"});
+    words.insert(words.end(), {"-o", (temporaryPlace() / (scene.name + ".exr")).string()});
     return fmt::format("cd {} && {}", shellCommand({m_suite.folder.string()}), shellCommand(words));
 }
 

@@ -149,11 +149,12 @@ void readSettings(const Typed& typed, std::optional<std::int64_t> frame, Options
     }
 }
 
-void readFiles(const Typed& typed, std::optional<std::int64_t> frame, Options& options) {
-    options.scene = withFrame("SCENE", typed.scene, frame);
+void readFiles(const Typed& typed, const FrameNumber& frame, Options& options) {
+    options.scene = withFrameOfInput("SCENE", typed.scene, frame);
     for (const std::string& output : typed.outputs) {
         if (output.empty()) throw HostError(ExitCode::kUsage, "-o '': a file name is wanted");
-        options.outputs.emplace_back(withFrame("-o", output, frame));
+        // A pack is a folder.
+        options.outputs.emplace_back(options.pack ? output : withFrame("-o", output, frame));
     }
     options.statistics = withFrame("--stats", options.statistics, frame);
     options.log = withFrame("--log", options.log.string(), frame);
@@ -165,8 +166,13 @@ void readFiles(const Typed& typed, std::optional<std::int64_t> frame, Options& o
                         fmt::format("--report '{}': its name must end in .html or .htm",
                                     options.report.string()));
     }
+    // That need not be there yet.
+    const auto isFolder = [&](const std::string& part) {
+        return options.watch &&
+               !std::filesystem::path(part).filename().string().ends_with(".pmpart");
+    };
     for (const std::string& part : typed.parts) {
-        options.merge.emplace_back(withFrame("PART", part, frame));
+        options.merge.emplace_back(isFolder(part) ? part : withFrameOfInput("PART", part, frame));
     }
 }
 
@@ -302,7 +308,7 @@ void readWords(const std::vector<std::string>& arguments, Command command, Typed
 
 }  // namespace
 
-Options parseCommandLine(const std::vector<std::string>& arguments) {
+Options parseCommandLine(const std::vector<std::string>& arguments, bool areNamesFilled) {
     refuseWhatIsNotAvailableYet(arguments);
     const Command command = commandOf(arguments);
     const bool isMerge = command == Command::kMerge;
@@ -338,11 +344,11 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
     if (!typed.frame.empty()) {
         frame = integerValue("--frame", typed.frame, 0, std::numeric_limits<std::int32_t>::max());
     }
-    readFiles(typed, frame, options);
+    readFiles(typed, {frame, areNamesFilled}, options);
     options.exposure = exposureValue(typed);
     readChoices(typed, options);
     if (options.watch) {
-        readWatch(typed, frame, options);
+        readWatch(typed, {frame, areNamesFilled}, options);
         return options;
     }
     if (isMerge) {
@@ -352,10 +358,10 @@ Options parseCommandLine(const std::vector<std::string>& arguments) {
     readReadRules(typed, options);
     readCamera(typed, options);
     readSettings(typed, frame, options);
-    readPhotonMap(typed.photonMap, typed.settings, frame, options);
+    readPhotonMap(typed.photonMap, typed.settings, {frame, areNamesFilled}, options);
     if (options.pack) checkPack(options);
     addDefaultOutput(options);
-    readPieces(typed.checkpoint, frame, options);
+    readPieces(typed.checkpoint, {frame, areNamesFilled}, options);
     checkBuckets(typed.settings, options);
     if (options.scene.empty() && options.list.empty()) {
         throw HostError(ExitCode::kUsage,

@@ -11,9 +11,10 @@
 namespace pm::host {
 
 // Reads the command line; arguments are those after the program's name.
-// Errors: kUsage for an unknown option, a bad value, and an option that later work will bring ("not
-// available yet").
-Options parseCommandLine(const std::vector<std::string>& arguments);
+// areNamesFilled: numbers of frames are in its names of files already, and nothing in them is a
+// pattern. Errors: kUsage for an unknown option, a bad value, and an option that later work will
+// bring ("not available yet").
+Options parseCommandLine(const std::vector<std::string>& arguments, bool areNamesFilled = false);
 
 // One line of help for a setting of the library; empty when it has none.
 using SettingHelp = std::function<std::string(const std::string& setting)>;

@@ -7,6 +7,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <filesystem>
 #include <string_view>
 
 #include "host_shim/cli/option_values.h"
@@ -64,6 +65,20 @@ void readEngine(const Typed& typed, FarmOptions& farm) {
     farm.slurmOptions = typed.slurmOptions;
 }
 
+// The file of tasks has one a line.
+void checkLines(const FarmOptions& farm, const std::string& job) {
+    const auto check = [](const std::string& name, const std::string& value) {
+        if (value.find('\n') == std::string::npos) return;
+        throw HostError(ExitCode::kUsage,
+                        fmt::format("{} '{}': of a farm's names and values none can have a line "
+                                    "break",
+                                    name, value));
+    };
+    check("--job", std::filesystem::absolute(job).string());
+    for (const GivenOption& option : farm.given)
+        for (const std::string& value : option.values) check(option.name, value);
+}
+
 }  // namespace
 
 std::vector<GivenOption> givenOptions(const CLI::App& app) {
@@ -95,11 +110,7 @@ void readFarm(const Typed& typed, Options& options) {
     if (typed.job.empty())
         throw HostError(ExitCode::kUsage,
                         "farm needs --job FOLDER, where plan, photons, parts and logs are kept");
-    // What fills in frame numbers would take it for a pattern.
-    if (typed.job.find_first_of("#%\n") != std::string::npos)
-        throw HostError(
-            ExitCode::kUsage,
-            fmt::format("--job '{}': its name can't have #, % or a line break", typed.job));
+    checkLines(farm, typed.job);
     farm.job = typed.job;
     if (!typed.runs.empty() && typed.runs != "auto")
         farm.runs = static_cast<int>(integerValue("--runs", typed.runs, 1, kMostRuns));

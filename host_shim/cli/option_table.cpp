@@ -69,7 +69,8 @@ void addOutputOptions(CLI::App& app, Typed& typed, Options& options, bool isMerg
                                : ", .pmpart is a part for pm_host merge (SCENE.exr in the "
                                  "working folder)"));
     addText(app, "--frame", typed.frame, "N",
-            std::string("fills #### and %04d in ") + (isMerge ? "PART" : "SCENE") + " and outputs");
+            std::string("fills #### and %04d in the names of ") + (isMerge ? "PART" : "SCENE") +
+                " and outputs, not of folders; an input of that very name wins");
     if (!isMerge)
         addText(app, "--frames", typed.frames, "A-BxS",
                 "renders one frame after the other: 1-10, 1-10x2 or 1-5,8");

@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
+#include <system_error>
 #include <vector>
 
 #include "host_shim/formats/scene_url.h"
@@ -61,13 +63,21 @@ struct Pattern {
     std::size_t digits{};
 };
 
+bool isThere(const std::string& name) {
+    std::error_code ignored;
+    return !isSceneUrl(name) &&
+           std::filesystem::exists(std::filesystem::symlink_status(name, ignored));
+}
+
 Pattern findPattern(const std::string& name) {
-    const auto hash = name.find('#');
+    const auto slash = isSceneUrl(name) ? std::string::npos : name.rfind('/');
+    const auto file = slash == std::string::npos ? 0 : slash + 1;
+    const auto hash = name.find('#', file);
     if (hash != std::string::npos) {
         const auto end = std::min(name.find_first_not_of('#', hash), name.size());
         return {hash, end - hash, end - hash};
     }
-    for (auto percent = name.find('%'); percent != std::string::npos;
+    for (auto percent = name.find('%', file); percent != std::string::npos;
          percent = name.find('%', percent + 1)) {
         auto end = percent + 1;
         while (end < name.size() && name[end] >= '0' && name[end] <= '9') ++end;
@@ -145,15 +155,25 @@ PixelRect cropValue(const std::string& option, std::string_view text) {
 }
 
 std::string withFrame(const std::string& option, const std::string& name,
-                      std::optional<std::int64_t> frame) {
+                      const FrameNumber& frame) {
+    if (frame.isFilled) return name;
     std::string filled = name;
     for (Pattern pattern = findPattern(filled); pattern.begin != std::string::npos;
          pattern = findPattern(filled)) {
-        if (!frame) refuse(option, name, "a pattern for frame numbers needs --frame N");
+        if (!frame.number && isThere(name)) return name;
+        if (!frame.number)
+            refuse(option, name,
+                   "a pattern for frame numbers needs --frame N (and there is no file of that very "
+                   "name)");
         filled.replace(pattern.begin, pattern.length,
-                       fmt::format("{:0{}}", *frame, pattern.digits));
+                       fmt::format("{:0{}}", *frame.number, pattern.digits));
     }
     return filled;
+}
+
+std::string withFrameOfInput(const std::string& option, const std::string& name,
+                             const FrameNumber& frame) {
+    return isThere(name) ? name : withFrame(option, name, frame);
 }
 
 }  // namespace pm::host

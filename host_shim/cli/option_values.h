@@ -26,9 +26,19 @@ std::array<std::int32_t, 2> sizeValue(const std::string& option, std::string_vie
 std::array<std::int32_t, 2> pixelValue(const std::string& option, std::string_view text);  // X,Y
 PixelRect cropValue(const std::string& option, std::string_view text);  // x0,y0,x1,y1
 
-// Fills #### (padded to as many digits as there are) and %d, %04d in a file name; in an address
-// #### and %04d. Errors: kUsage for a pattern when no frame is given.
-std::string withFrame(const std::string& option, const std::string& name,
-                      std::optional<std::int64_t> frame);
+// What fills the patterns in names of files.
+struct FrameNumber {
+    std::optional<std::int64_t> number;
+    bool isFilled{};  // it was, and what looks like a pattern is none
+};
+
+// Fills #### (padded to as many digits as there are) and %d, %04d in the last component of the name
+// of a file that is written, never in its folders; in an address #### and %04d, wherever they are.
+// Without a frame a file of that very name is meant. Errors: kUsage for a pattern when no frame is
+// given and there is no such file.
+std::string withFrame(const std::string& option, const std::string& name, const FrameNumber& frame);
+// The same of what is read: a file or folder of that very name wins, with a frame too.
+std::string withFrameOfInput(const std::string& option, const std::string& name,
+                             const FrameNumber& frame);
 
 }  // namespace pm::host

@@ -18,8 +18,7 @@ bool isPart(const std::filesystem::path& file) {
 
 }  // namespace
 
-void readPieces(const std::string& checkpoint, std::optional<std::int64_t> frame,
-                Options& options) {
+void readPieces(const std::string& checkpoint, const FrameNumber& frame, Options& options) {
     for (const auto& output : options.outputs) {
         if (!isPart(output)) continue;
         if (!options.part.empty())
@@ -43,8 +42,9 @@ void readPieces(const std::string& checkpoint, std::optional<std::int64_t> frame
 }
 
 void readPhotonMap(const std::string& photonMap, const std::map<std::string, std::string>& typed,
-                   std::optional<std::int64_t> frame, Options& options) {
-    options.photonMap = withFrame("--photon-map", photonMap, frame);
+                   const FrameNumber& frame, Options& options) {
+    options.photonMap = options.photonsOnly ? withFrame("--photon-map", photonMap, frame)
+                                            : withFrameOfInput("--photon-map", photonMap, frame);
     if (!options.photonMap.empty())
         options.settings.push_back({"--photon-map", "photonMap", options.photonMap.string()});
     if (!options.photonsOnly) return;

@@ -4,18 +4,17 @@
 
 #include <fmt/format.h>
 
-#include "host_shim/cli/option_values.h"
 #include "host_shim/cli/piece_options.h"
 #include "host_shim/pictures/picture_io.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
 
-void readWatch(const Typed& typed, std::optional<std::int64_t> frame, Options& options) {
+void readWatch(const Typed& typed, const FrameNumber& frame, Options& options) {
     constexpr double kLeast = 0.05, kMost = 3600;
     WatchOptions& watch = *options.watch;
     watch.job = typed.job;
-    watch.frame = frame;
+    watch.frame = frame.number;
     watch.page = withFrame("--page", typed.page, frame);
     if (!typed.interval.empty())
         watch.intervalSeconds = numberValue("--interval", typed.interval, kLeast, kMost);

@@ -2,15 +2,13 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include <cstdint>
-#include <optional>
-
 #include "host_shim/cli/option_table.h"
+#include "host_shim/cli/option_values.h"
 #include "host_shim/cli/options.h"
 
 namespace pm::host {
 
 // What the command line of pm_host watch says beside that of a merge. Errors: kUsage.
-void readWatch(const Typed& typed, std::optional<std::int64_t> frame, Options& options);
+void readWatch(const Typed& typed, const FrameNumber& frame, Options& options);
 
 }  // namespace pm::host

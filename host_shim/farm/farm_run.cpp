@@ -177,7 +177,7 @@ class Farm {
                 words.push_back(task.product.string());
         const auto& more = m_plan.frames[frame].mergeWords;
         words.insert(words.end(), more.begin(), more.end());
-        Options options = parseCommandLine(words);
+        Options options = parseCommandLine(words, /*areNamesFilled=*/true);
         options.commandLine = words;
         return options;
     }

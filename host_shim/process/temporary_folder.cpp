@@ -8,12 +8,19 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <string>
 
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
+
+std::filesystem::path temporaryPlace() {
+    const char* const place = std::getenv("TMPDIR");
+    const bool isGiven = place != nullptr && *place != '\0';
+    return std::filesystem::absolute(isGiven ? place : P_tmpdir);
+}
 
 TemporaryFolder::~TemporaryFolder() {
     std::error_code ignored;
@@ -22,11 +29,12 @@ TemporaryFolder::~TemporaryFolder() {
 
 const std::filesystem::path& TemporaryFolder::path() {
     if (!m_path.empty()) return m_path;
-    std::string name = fmt::format("{}/pm_host.{}.XXXXXX", P_tmpdir, getpid());
-    if (mkdtemp(name.data()) == nullptr) {
-        throw HostError(ExitCode::kFile, fmt::format("{}: no folder for textures can be made: {}",
-                                                     name, std::strerror(errno)));
-    }
+    const std::filesystem::path place = temporaryPlace();
+    std::string name = place / fmt::format("pm_host.{}.XXXXXX", getpid());
+    if (mkdtemp(name.data()) == nullptr)
+        throw HostError(ExitCode::kFile, fmt::format("{}: no temporary folder can be made there "
+                                                     "($TMPDIR, else /tmp, says where): {}",
+                                                     place.string(), std::strerror(errno)));
     m_path = name;
     return m_path;
 }

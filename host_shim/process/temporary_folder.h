@@ -6,7 +6,10 @@
 
 namespace pm::host {
 
-// A folder of our own for baked textures, made when it is first asked for and removed with this.
+// Where folders and files go that nobody keeps: $TMPDIR, else /tmp. Absolute.
+std::filesystem::path temporaryPlace();
+
+// A folder of our own there, made when it is first asked for and removed with this.
 class TemporaryFolder {
   public:
     TemporaryFolder() = default;

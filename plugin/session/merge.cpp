@@ -8,11 +8,13 @@
 
 #include "integrator/values/error.h"
 #include "plugin/session/frame_samples.h"
+#include "plugin/session/memory_limit.h"
 #include "plugin/session/pixel_reader.h"
 #include "plugin/session/statistics_json.h"
 #include "plugin/storage/part_file.h"
 #include "plugin/values/call_error.h"
 #include "plugin/values/version.h"
+#include "scheduler/buckets/bucket_grid.h"
 #include "scheduler/film/frame_store_bytes.h"
 
 namespace pm::plugin {
@@ -35,11 +37,33 @@ void checkBuild(const std::string& file, const PieceHead& head) {
 
 }  // namespace
 
+// A head may claim any size: before memory is taken for that.
+void checkSize(const std::string& file, const PieceHead& head, const RenderSettings& render) {
+    constexpr std::uint64_t kMostOfBucket = 1024 * 1024;  // pixels, by the setting bucketSize
+    const Rect area = wholeAtoms(render.window);
+    const auto pixels = static_cast<std::uint64_t>(area.area());
+    if (head.bucketCount > pixels / (kAtomSizePixels * kAtomSizePixels) ||
+        pixels / kMostOfBucket > head.bucketCount)
+        throw refusal(CallStatus::kFile, file,
+                      fmt::format("its head is broken: {} buckets for {} x {} pixels",
+                                  head.bucketCount, area.width(), area.height()));
+    const std::uint64_t bytes =
+        frameMemoryBytes(render) + std::uint64_t{head.bucketCount} * sizeof(std::string);
+    const std::uint64_t left = memoryLeftBytes(0.0);
+    if (bytes > left)
+        throw refusal(
+            CallStatus::kMemory, file,
+            fmt::format("its picture of {} x {} pixels takes {:.3f} GiB of memory; {:.3f} GiB "
+                        "are left",
+                        render.window.width(), render.window.height(), toGib(bytes), toGib(left)));
+}
+
 Merge::Picture::Picture(PieceHead partHead, std::string fileName)
     : head(std::move(partHead)), firstFile(std::move(fileName)) {
     for (const auto& [name, value] : head.settings) settings.setText(name, value);
     settings.setInteger("passes", head.passes);
     const RenderSettings render = settings.toRenderSettings();
+    checkSize(firstFile, head, render);
     layout = channelLayout(render);
     frame = std::make_unique<FrameStore>(makeFrame(render, head.sharesNoise));
     files.resize(head.bucketCount);
@@ -102,6 +126,9 @@ void Merge::addPart(const std::string& file) {
             checkPhotons(file, head);
             keepNote(head);
             keepVendor(head);
+            const FrameStore& frame = *m_picture->frame;
+            return FrameStoreBytes::bytesPerPixel(frame) *
+                   static_cast<std::uint64_t>(FrameStoreBytes::area(frame).area());
         },
         [&](const Rect& rect, std::span<const std::byte> sums) {
             addBucket(file, index++, rect, sums);

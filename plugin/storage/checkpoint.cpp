@@ -187,7 +187,11 @@ std::uint32_t Checkpoint::load(FrameStore& frame, std::size_t channels, std::uin
     m_passes = m_head.passes;
     bool passesBegan = false;
     try {
-        while (reader.next()) {
+        const std::uint64_t perPixel = std::max<std::uint64_t>(
+            FrameStoreBytes::bytesPerPixel(frame), (channels + 1) * sizeof(float));
+        const std::uint64_t mostBytes =
+            kAreaBytes + perPixel * static_cast<std::uint64_t>(FrameStoreBytes::area(frame).area());
+        while (reader.next(mostBytes)) {
             if (cancelled) throw Error(Status::kCancelled, "cancelled while resuming");
             if (reader.kind() == PieceRecord::kSums && !passesBegan) {
                 loadSums(reader.payload(), frame);

@@ -23,14 +23,15 @@ CallError damaged(const std::string& file, const std::string& why) {
     return {CallStatus::kFile, fmt::format("{}: {}", file, why)};
 }
 
-// Calls `onRecord` with every record up to the end of the part, and checks that it is whole.
+// Calls `onRecord` with every record up to the end of the part, and checks that it is whole. Of
+// records with more bytes than these the payload is empty.
 template <typename OnRecord>
-void forEachRecord(const OwnedFile& file, OnRecord onRecord) {
+void forEachRecord(const OwnedFile& file, std::uint64_t mostBytes, OnRecord onRecord) {
     PieceReader reader(file);
     if (!reader.isPiece()) throw damaged(file.name(), "is no part of a picture");
     bool ended = false;
     std::uint64_t records = 0, told = 0;
-    while (!ended && reader.next()) {
+    while (!ended && reader.next(mostBytes)) {
         ended = reader.kind() == PieceRecord::kEnd;
         if (ended && reader.payload().size() == sizeof told)
             std::copy_n(reader.payload().data(), sizeof told, reinterpret_cast<std::byte*>(&told));
@@ -72,12 +73,12 @@ void writePart(const std::string& file, const PieceHead& head, const FrameStore&
     part.commit();
 }
 
-void readPart(const std::string& name, const std::function<void(const PieceHead&)>& onHead,
+void readPart(const std::string& name, const std::function<std::uint64_t(const PieceHead&)>& onHead,
               const std::function<void(const Rect&, std::span<const std::byte>)>& onBucket) {
     const OwnedFile file(name, O_RDONLY);
     PieceHead head;
     std::uint64_t buckets = 0;
-    forEachRecord(file, [&](const PieceReader& reader, std::uint64_t record) {
+    forEachRecord(file, kLongestHead, [&](const PieceReader& reader, std::uint64_t record) {
         const bool isHead = record == 1;
         if (isHead != (reader.kind() == PieceRecord::kHead))
             throw damaged(name, "a record where it does not belong");
@@ -94,8 +95,8 @@ void readPart(const std::string& name, const std::function<void(const PieceHead&
             throw damaged(name, fmt::format("is {}, no part of a picture", kindName(head.kind)));
     });
     if (buckets != head.range.count()) throw damaged(name, "the part has not all of its buckets");
-    onHead(head);
-    forEachRecord(file, [&](const PieceReader& reader, std::uint64_t record) {
+    const std::uint64_t mostBytes = std::max(kLongestHead, kAreaBytes + onHead(head));
+    forEachRecord(file, mostBytes, [&](const PieceReader& reader, std::uint64_t record) {
         if (record == 1) return;
         std::span<const std::byte> payload = reader.payload();
         const PieceArea area = takeArea(payload);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <span>
 #include <string>
@@ -26,9 +27,10 @@ void writePart(const std::string& file, const PieceHead& head, const FrameStore&
                std::span<const Rect> buckets);
 
 // Reads a part: its head, then each bucket's rectangle and sums. All is checked before the first
-// bucket is given. Errors: CallError(IO) when it can't be read; CallError(FILE) when it is no part,
-// cut short or damaged; those of the functions.
-void readPart(const std::string& file, const std::function<void(const PieceHead&)>& onHead,
+// bucket is given. onHead returns the most bytes that sums of a bucket may have. Errors:
+// CallError(IO) when it can't be read; CallError(FILE) when it is no part, cut short or damaged;
+// those of the functions.
+void readPart(const std::string& file, const std::function<std::uint64_t(const PieceHead&)>& onHead,
               const std::function<void(const Rect&, std::span<const std::byte>)>& onBucket);
 
 }  // namespace pm::plugin

@@ -24,8 +24,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// No head that was written here is nearly as long.
-constexpr std::uint64_t kLongestHead = std::uint64_t{1} << 20;
 // Photons that are read at a time, at least.
 constexpr std::uint64_t kFewestOfARound = 8192;
 

@@ -31,7 +31,7 @@ struct AreaBytes {
     std::uint32_t pass;
     std::int32_t x0, y0, x1, y1;
 };
-static_assert(sizeof(AreaBytes) == 20);
+static_assert(sizeof(AreaBytes) == kAreaBytes);
 
 std::uint64_t seedOf(std::uint32_t kind, std::uint64_t payloadBytes) {
     return (std::uint64_t{kind} << 32) ^ payloadBytes;
@@ -109,18 +109,19 @@ PieceReader::PieceReader(const OwnedFile& file) : m_file(file), m_size(file.size
     if (m_isPiece) m_whole = kMagic.size();
 }
 
-bool PieceReader::next() {
-    RecordHead head;
-    const std::uint64_t left = m_size - m_whole;
-    if (!m_isPiece || left < sizeof head) return false;
-    if (!m_file.readAt(m_whole, std::as_writable_bytes(std::span(&head, 1)))) return false;
+bool PieceReader::next(std::uint64_t mostBytes) {
+    const auto place = m_isPiece ? findRecord(m_file, m_whole, m_size) : std::nullopt;
+    if (!place) return false;
     // Before memory is taken for what may be the length of something broken.
-    if (head.reserved != 0 || head.payloadBytes > left - sizeof head) return false;
-    m_payload.resize(head.payloadBytes);
-    if (!m_file.readAt(m_whole + sizeof head, m_payload)) return false;
-    if (checksumOf(head.kind, m_payload) != head.checksum) return false;
-    m_kind = static_cast<PieceRecord>(head.kind);
-    m_whole += sizeof head + head.payloadBytes;
+    if (m_whole == kFirstRecordAt && place->payloadBytes > kLongestHead) return false;
+    const bool isTaken = place->payloadBytes <= mostBytes;
+    m_payload.resize(isTaken ? place->payloadBytes : 0);
+    const std::array<std::span<std::byte>, 1> payload = {std::span(m_payload)};
+    const BetweenChunks goOn = [] {};
+    if (isTaken ? !readRecord(m_file, *place, payload, goOn) : !isWhole(m_file, *place, goOn))
+        return false;
+    m_kind = place->kind;
+    m_whole = place->end();
     return true;
 }
 

@@ -33,6 +33,9 @@ void appendRecord(PieceRecord kind, std::span<const std::byte> payload,
 // The magic and a head with this text.
 std::vector<std::byte> beginningOfPiece(const std::string& head);
 
+// No head that is written here is nearly as long.
+inline constexpr std::uint64_t kLongestHead = std::uint64_t{1} << 20;
+
 // Reads a piece from its beginning. Errors: CallError(IO) when it can't be read; broken pieces are
 // no error but a state.
 class PieceReader {
@@ -42,9 +45,10 @@ class PieceReader {
 
     // Whether it begins as pieces do. An empty file doesn't.
     bool isPiece() const { return m_isPiece; }
-    // Reads the next record into kind() and payload(). False at the end and where the file is
-    // broken.
-    bool next();
+    // Reads the next record into kind() and payload(); of one with more bytes than these only the
+    // checksum is looked at, and payload() is empty, as a file may claim any size, and have it
+    // where it has holes. False at the end and where the file is broken.
+    bool next(std::uint64_t mostBytes = kLongestHead);
     PieceRecord kind() const { return m_kind; }
     std::span<const std::byte> payload() const { return m_payload; }
     // Up to here all records are whole; where that is not the file's size, what follows is not.
@@ -90,6 +94,7 @@ bool readRecord(const OwnedFile& file, const RecordPlace& place,
 bool isWhole(const OwnedFile& file, const RecordPlace& place, const BetweenChunks& between);
 
 // The beginning of a kSums or kPass payload; passes of a kSums record are 0.
+inline constexpr std::uint64_t kAreaBytes = 20;
 struct PieceArea {
     std::uint32_t pass = 0;
     Rect rect;

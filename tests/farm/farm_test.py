@@ -8,6 +8,7 @@ usage: farm_test.py PM_HOST [TEST...]
 import json
 import os
 import pathlib
+import shlex
 import shutil
 import signal
 import subprocess
@@ -68,6 +69,45 @@ class Farms(unittest.TestCase):
         other = self.farm("commands", "--runs", "3", "-o", "farm.png", "--seed", "5")
         self.assertEqual(other.start().wait(), 2)
         self.assertIn("--seed: not given there, 5 here", other.said())
+
+    ODD = "a{}b v{1} {=$_=9=} {#}{%} 'q\" #2 %d %j \\ $HOME `id` ï<é>"
+
+    def odd_scene(self):
+        """A scene whose name and folder look like patterns of all kinds."""
+        folder = self.folder / self.ODD
+        folder.mkdir()
+        for file in SCENE.parent.iterdir():
+            shutil.copy(file, folder)
+        return (folder / SCENE.name).rename(folder / "part #2 {} %04d.obj")
+
+    @needs_parallel
+    def test_names_are_no_patterns(self):
+        scene = self.odd_scene()
+        small = ("--size", "16x16", "--bucket-size", "8", "--passes", "1", "--photons", "500", "-q")
+        self.host(str(scene), *small, "-o", "local.exr")
+        job = self.folder / ("job " + self.ODD)
+        name = scene.stem + ".exr"  # in the working folder
+        self.host("farm", str(scene), *small, "--engine", "parallel", "--job", str(job), "--runs", "2")
+        self.assertTrue((self.folder / name).read_bytes() == (self.folder / "local.exr").read_bytes())
+        self.assertEqual(len(list((job / "parts").iterdir())), 2)
+        self.assertEqual([a.code for a in Job(job).attempts()], [0] * 3)
+        broken = self.host("farm", str(scene), *small, "--engine", "parallel", "--job", "a\nb", code=2)
+        self.assertIn("line break", broken.stderr)
+
+    def test_sbatch_gets_the_path_of_its_log(self):
+        """As its page tells: %% for %, but where there is a backslash nothing is filled in, and it is dropped."""
+        fake = self.folder / "bin"
+        fake.mkdir()
+        for program in ("sinfo", "srun"):
+            (fake / program).write_text("#!/bin/sh\n")
+            (fake / program).chmod(0o755)
+        self.variables["PATH"] = f"{fake}:{self.variables['PATH']}"
+        for job, written in (("%j %A#", "%%j %%A#"), ("%j\\a", "%j\\\\a"), ("plain", "plain")):
+            done = self.host("farm", str(SCENE), *OPTIONS, "--engine", "slurm", "--job", job, "--runs", "2",
+                             "--dry-run", "-o", "dry.exr")
+            wanted = f"--output={self.folder}/{written}/logs/slurm.log"
+            lines = [shlex.split(line) for line in done.stdout.splitlines() if line.startswith("sbatch")]
+            self.assertTrue(lines and all(wanted in words for words in lines), done.stdout)
 
     @needs_parallel
     def test_each_run_may_trace_its_photons(self):

@@ -242,14 +242,6 @@ TEST(CommandLine, pieces) {
     EXPECT_TRUE(refusedMerge({"merge", "a", "-o", "b.pmpart"}).starts_with("2 -o: merge makes"));
 }
 
-TEST(CommandLine, framePatterns) {
-    EXPECT_EQ(withFrame("-o", "a.####.exr", 12), "a.0012.exr");
-    EXPECT_EQ(withFrame("-o", "a.%04d.exr", 12), "a.0012.exr");
-    EXPECT_EQ(withFrame("-o", "a.%d.exr", 12), "a.12.exr");
-    EXPECT_EQ(withFrame("-o", "100%.exr", 12), "100%.exr");
-    EXPECT_TRUE(errorOf([] { withFrame("-o", "a.##.exr", {}); }).starts_with("2 -o 'a.##.exr'"));
-}
-
 TEST(CommandLine, numbersHaveADotInAnyLocale) {
     const std::locale old = std::locale::global(std::locale(std::locale(), new CommaPoint));
     const Options options = parseCommandLine({"s.obj", "--fov", "60.5"});

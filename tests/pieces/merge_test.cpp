@@ -3,7 +3,10 @@
 // Parts that were put together have the bits of a picture rendered at once; what is missing,
 // damaged or of another picture is named.
 #include <array>
+#include <cstring>
+#include <filesystem>
 
+#include "plugin/storage/piece_file.h"
 #include "tests/pieces/piece_host.h"
 
 namespace pm::test {
@@ -54,6 +57,39 @@ class Merge : public PieceHost {
 
     PmrMerge m_merge = nullptr;
 };
+
+// A head that claims a frame, buckets or a length that no memory has, with the right checksums.
+TEST_F(Merge, HeadsThatClaimTooMuch) {
+    makePart("a", "1/2");
+    const std::string bytes = readFile(path("a"));
+    constexpr std::size_t kLengthAt = 16, kTextAt = 32;
+    std::uint64_t length = 0;
+    std::memcpy(&length, bytes.data() + kLengthAt, sizeof length);
+    const auto writeWith = [&](const char* side, std::uint64_t bucketCount) {
+        auto head = nlohmann::ordered_json::parse(bytes.substr(kTextAt, length));
+        for (auto& setting : head["settings"])
+            if (setting[0] == "width" || setting[0] == "height") setting[1] = side;
+        head["bucketCount"] = bucketCount;
+        const auto begin = plugin::beginningOfPiece(head.dump());
+        writeFile(path("b"),
+                  std::string(reinterpret_cast<const char*>(begin.data()), begin.size()) +
+                      bytes.substr(kTextAt + length));
+    };
+    writeWith("65536", 20);
+    expectRefusal("b", PMR_ERROR_FILE, "20 buckets for 65536 x 65536 pixels");
+    writeWith("40", 4'000'000'000);
+    expectRefusal("b", PMR_ERROR_FILE, "4000000000 buckets for 40 x 40 pixels");
+    writeWith("65536", 5000);
+    expectRefusal("b", PMR_ERROR_MEMORY, "its picture of 65536 x 65536 pixels takes");
+    // A head of a terabyte, in a file with holes.
+    const std::uint64_t claimed = std::uint64_t{1} << 40;
+    std::string hollow = bytes;
+    std::memcpy(hollow.data() + kLengthAt, &claimed, sizeof claimed);
+    writeFile(path("b"), hollow);
+    std::filesystem::resize_file(path("b"), claimed + 1000);
+    expectRefusal("b", PMR_ERROR_FILE, "damaged or cut short at byte 8");
+    EXPECT_EQ(PMR_OK, add("a")) << "the merge is as it was";
+}
 
 TEST_F(Merge, PartsInAnyOrderAreThePicture) {
     makePart("a", "1/3");

@@ -112,7 +112,7 @@ class HostProcess : public ::testing::Test {
     // A folder for textures that the last run made for itself alone; empty when none is there.
     std::string textureFolder() const {
         const std::string start = "pm_host." + std::to_string(m_lastChild) + ".";
-        for (const auto& entry : fs::directory_iterator(P_tmpdir)) {
+        for (const auto& entry : fs::directory_iterator(fs::temp_directory_path())) {
             const std::string name = entry.path().filename().string();
             if (name.starts_with(start)) return entry.path().string();
         }

@@ -77,6 +77,29 @@ TEST_F(Textures, TexelsAreInTheMemoryPlan) {
     EXPECT_EQ(readExr(path("a.exr")).find("R")->values, readExr(path("b.exr")).find("R")->values);
 }
 
+TEST_F(Textures, TemporaryFoldersAreWhereTmpdirSays) {
+    addTexture();
+    write("in_the_way", "");
+    fs::create_directory(path("own"));
+    const auto look = [&](const std::string& place) {
+        return run({"box.obj", "--explain", "-v"}, nullptr,
+                   {{"XDG_CACHE_HOME", path("in_the_way").string()}, {"TMPDIR", place}});
+    };
+    for (const char* unusable : {"missing", "in_the_way"}) {
+        const Outcome outcome = look(unusable);
+        EXPECT_EQ(outcome.exitCode, 4) << outcome.err;
+        EXPECT_NE(outcome.err.find(path(unusable).string() + ": no temporary folder can be made"),
+                  std::string::npos)
+            << outcome.err;
+        EXPECT_NE(outcome.err.find("$TMPDIR"), std::string::npos) << outcome.err;
+    }
+    for (const std::string& place : {path("own").string(), std::string("own")}) {
+        const Outcome outcome = look(place);
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        EXPECT_TRUE(fs::is_empty(path("own")));
+    }
+}
+
 TEST_F(Textures, WhereNothingCanBeKept) {
     addTexture();
     write("in_the_way", "");

@@ -38,8 +38,9 @@ std::vector<std::string> ParallelEngine::words(const std::vector<int>& tasks) co
     if (!m_options.sshLogins.empty()) words.emplace_back("--filter-hosts");
     for (const std::string& login : m_options.sshLogins)
         words.insert(words.end(), {"--sshlogin", login});
-    words.push_back("sh " + shellCommand({m_folder.runScript().string()}) + " {}");
-    words.emplace_back(":::");
+    // Of the command parallel replaces whatever looks like {} or {=...=}; not of what it puts
+    // there.
+    words.insert(words.end(), {"sh {1} {2}", ":::", m_folder.runScript().string(), ":::"});
     for (const int task : tasks) words.push_back(std::to_string(task));
     return words;
 }

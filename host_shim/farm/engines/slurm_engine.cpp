@@ -49,6 +49,15 @@ std::string oneLine(std::string text) {
     return text;
 }
 
+// A path that sbatch's --output takes as it is: it fills in %j and the like, but not where the text
+// has a backslash, of which it drops one each.
+std::string withoutPatterns(const std::string& path) {
+    const char special = path.find('\\') == std::string::npos ? '%' : '\\';
+    std::string text;
+    for (const char c : path) text.append(c == special ? 2 : 1, c);
+    return text;
+}
+
 std::vector<std::string> splitAt(const std::string& line, char separator) {
     std::vector<std::string> parts;
     std::istringstream stream(line);
@@ -139,15 +148,16 @@ std::vector<SlurmEngine::Slice> SlurmEngine::slicesOf(const std::vector<int>& ta
 }
 
 std::vector<std::string> SlurmEngine::batchWords(const Slice& slice, const Where& where) const {
-    std::vector<std::string> words{"sbatch",
-                                   "--parsable",
-                                   "--requeue",
-                                   "--exclusive",
-                                   "--open-mode=append",
-                                   "--job-name=pm " + m_folder.path().filename().string(),
-                                   "--output=" + (m_folder.path() / "logs" / "slurm.log").string(),
-                                   "--array=" + fmt::format("{}", fmt::join(slice.indices, ",")),
-                                   fmt::format("--export=ALL,PM_FARM_OFFSET={}", slice.offset)};
+    std::vector<std::string> words{
+        "sbatch",
+        "--parsable",
+        "--requeue",
+        "--exclusive",
+        "--open-mode=append",
+        "--job-name=pm " + m_folder.path().filename().string(),
+        "--output=" + withoutPatterns((m_folder.path() / "logs" / "slurm.log").string()),
+        "--array=" + fmt::format("{}", fmt::join(slice.indices, ",")),
+        fmt::format("--export=ALL,PM_FARM_OFFSET={}", slice.offset)};
     if (!where.after.empty())
         words.insert(words.end(),
                      {"--dependency=afterok:" + where.after, "--kill-on-invalid-dep=yes"});
