@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -29,5 +30,8 @@ using WarningSink = std::function<void(Warning code, const std::string& text)>;
 
 // Called now and then by what takes long; throws where it is to be given up. May be empty.
 using GoOn = std::function<void()>;
+
+// Told before so many bytes are taken beside what is known of; may throw. Empty: nobody asks.
+using MemoryNote = std::function<void(std::uint64_t bytes)>;
 
 }  // namespace pm::host
