@@ -271,12 +271,13 @@ std::string MemoryPlan::explain() const {
 void MemoryPlan::check() const {
     if (need.total() <= limit && hostPeak <= limit) return;
     std::string text = fmt::format("the render needs {}", figures(need));
-    if (hostPeak > 0) text += fmt::format(", and the host before it {:.2f} GiB", toGib(hostPeak));
-    if (byBuckets)
+    if (byBuckets && need.total() > limit)
         text += fmt::format(
             " even bucket by bucket, with the maps of all passes; with the whole "
             "frame {:.2f} GiB",
             toGib(whole.total()));
+    if (hostPeak > limit)
+        text += fmt::format("; the host needs {:.2f} GiB before it", toGib(hostPeak));
     text += fmt::format("; the memory limit is {:.2f} GiB, the smallest that works {:.3f} GiB",
                         toGib(limit), std::ceil(1000 * toGib(smallest)) / 1000);
     if (!whyWhole.empty())
