@@ -81,9 +81,9 @@ struct MaterialData {
     bool emits() const { return emission[0] > 0 || emission[1] > 0 || emission[2] > 0; }
     // All that there may be, in the order above.
     std::array<const Boxed<TextureUse>*, 10> textures() const {
-        return {&diffuseTexture,      &glossyTexture,       &glossyExponentTexture,
-                &roughnessTexture,    &transmissionTexture, &emissionTexture,
-                &opacityTexture,      &normalTexture,       &bumpTexture,
+        return {&diffuseTexture,     &glossyTexture,       &glossyExponentTexture,
+                &roughnessTexture,   &transmissionTexture, &emissionTexture,
+                &opacityTexture,     &normalTexture,       &bumpTexture,
                 &displacementTexture};
     }
 };

@@ -36,8 +36,7 @@ std::uint64_t beside(const MaterialData& material) {
     std::uint64_t bytes = block(material.name) + block(material.byName);
     for (const NamedValue& value : material.byName)
         bytes += block(value.name) + block(value.numbers) + block(value.text) + block(value.place);
-    for (const Boxed<TextureUse>* use : material.textures())
-        bytes += beside(*use);
+    for (const Boxed<TextureUse>* use : material.textures()) bytes += beside(*use);
     return bytes;
 }
 

@@ -201,8 +201,7 @@ void Session::buildScene(const ColourPipeline& colour, TemporaryFolder& folder,
                          std::optional<PluginScene>& scene) {
     const WarningSink sink = [this](Warning code, const std::string& text) { warn(code, text); };
     SceneData data;
-    const MemoryNote takes =
-        takeForReading(m_options.scene, sidecarInUse(m_options), *m_memory);
+    const MemoryNote takes = takeForReading(m_options.scene, sidecarInUse(m_options), *m_memory);
     phase("readSceneSeconds",
           [&] { data = readScene(m_options, sink, m_options.camera.eye, takes); });
     giveBackFreed();

@@ -105,7 +105,7 @@ class Session {
     Options m_options;
     Log& m_log;
     Statistics m_statistics;
-    Report m_report;  // gathers only where one is wanted
+    Report m_report;                     // gathers only where one is wanted
     std::optional<HostMemory> m_memory;  // of a scene that is read
     std::optional<Picture> m_reference;
     std::optional<DisplayPicture> m_displayReference;  // in place of it
