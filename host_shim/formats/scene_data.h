@@ -79,6 +79,13 @@ struct MaterialData {
     std::vector<NamedValue> byName;  // in place of what else is here
 
     bool emits() const { return emission[0] > 0 || emission[1] > 0 || emission[2] > 0; }
+    // All that there may be, in the order above.
+    std::array<const Boxed<TextureUse>*, 10> textures() const {
+        return {&diffuseTexture,     &glossyTexture,       &glossyExponentTexture,
+                &roughnessTexture,   &transmissionTexture, &emissionTexture,
+                &opacityTexture,     &normalTexture,       &bumpTexture,
+                &displacementTexture};
+    }
 };
 
 // How a cage is subdivided, from OpenSubdiv's t tags. Vertices and faces count inside the mesh.

@@ -17,11 +17,7 @@ std::vector<std::filesystem::path> filesOf(const SceneData& scene) {
     for (const MaterialFile& library : scene.materialFiles) files.emplace_back(library.file);
     for (const std::string& file : scene.files) files.emplace_back(file);
     for (const MaterialData& material : scene.materials) {
-        for (const auto* use :
-             {&material.diffuseTexture, &material.glossyTexture, &material.glossyExponentTexture,
-              &material.roughnessTexture, &material.transmissionTexture, &material.emissionTexture,
-              &material.opacityTexture, &material.normalTexture, &material.bumpTexture,
-              &material.displacementTexture}) {
+        for (const Boxed<TextureUse>* use : material.textures()) {
             if (*use) addFilesOf(**use, files);
         }
     }

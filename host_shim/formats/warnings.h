@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -28,5 +29,8 @@ enum class Warning : int {
 };
 
 using WarningSink = std::function<void(Warning code, const std::string& text)>;
+
+// Told before so many bytes are taken beside what is known of; may throw. Empty: nobody asks.
+using MemoryNote = std::function<void(std::uint64_t bytes)>;
 
 }  // namespace pm::host

@@ -12,7 +12,7 @@
 namespace pm::host {
 
 int guarded(Log& log, const std::function<int()>& work, std::string* errorText) {
-    constexpr int kOutOfMemory = 5;
+    constexpr int kOutOfMemory = static_cast<int>(ExitCode::kMemory);
     std::string text;
     int code = static_cast<int>(ExitCode::kInternal);
     try {

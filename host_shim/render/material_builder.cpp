@@ -128,6 +128,8 @@ PmrTexture MaterialBuilder::picture(const TextureUse& use, const std::string& sh
         baked = preparer().texture(requestOf(use, shown, kind));
         tell(shown, baked);
     } catch (const HostError& error) {
+        // Without it the memory limit would change the picture.
+        if (error.code() == ExitCode::kMemory) throw;
         m_warn(Warning::kTexture,
                fmt::format("{}: {}: {}; its number is used alone", use.place, of, error.what()));
         return nullptr;

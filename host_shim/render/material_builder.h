@@ -32,7 +32,8 @@ class MaterialBuilder {
     void prepare(const std::vector<const MaterialData*>& materials);
     // How many textures were found, made and opened; all 0 without any.
     TextureCounts textureCounts() const;
-    // A picture that can't be had is warned of and left out. Errors: those of the plugin.
+    // A picture that can't be had is warned of and left out. Errors: those of the plugin; HostError
+    // kMemory for one that takes more memory than it may.
     PmrMaterial build(const MaterialData& material);
     // The same of one picture; null where there is none. of: what it is of, for messages.
     PmrTexture texture(const Boxed<TextureUse>& use, TextureKind kind, const std::string& of);

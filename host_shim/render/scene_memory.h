@@ -3,9 +3,13 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <string>
 
 #include "host_shim/cli/options.h"
 #include "host_shim/formats/scene_data.h"
+#include "host_shim/formats/scene_reader.h"
+#include "plugin/include/pm_plugin.h"
 
 namespace pm::host {
 
@@ -15,9 +19,47 @@ inline constexpr std::uint32_t kTessellationRate = 8;  // of cages
 double memoryLimitGib(const Options& options);
 std::uint64_t memoryLimitBytes(const Options& options);
 
-// Of what a scene file says and what it makes of it, before either is there.
-// Errors: HostError, exit code 5, where --memory-limit is given and is less.
-void checkFileFits(const Options& options);                          // the text and what is read
-void checkSceneFits(const Options& options, const SceneData& data);  // its triangles
+// What pm_host takes before a render, step by step, by what files say and what is made of them: of
+// the same scene always the same, whatever the machine has just held. Threads: one at a time.
+class HostMemory {
+  public:
+    HostMemory(const Options& options, const PmrApi& api);
+
+    // A step is to come that takes so many bytes beside what is held. what: as "to read it takes".
+    // One that the limit doesn't allow is done all the same where it is not large, so that the
+    // render, which is refused, can tell the smallest limit. Errors: HostError kMemory where it is
+    // too large for that, or for the machine.
+    void take(std::uint64_t bytes, const std::string& what);
+    // From now on, beside the program, in place of what was held before.
+    void hold(std::uint64_t bytes) { m_held = bytes; }
+
+    // What the limit leaves beside that: so much steps may share that could do with less.
+    std::uint64_t left() const;
+    // The most that the process takes before the render, GiB.
+    double peakGib() const;
+    // The step that takes most, where the limit doesn't allow it; else empty.
+    std::string refused() const;
+
+  private:
+    std::uint64_t leftOf(std::uint64_t limit) const;
+    std::uint64_t room() const;  // for a step
+
+    std::string m_scene;
+    std::uint64_t m_limit{};    // bytes; 0: none is given
+    std::uint64_t m_machine{};  // that the machine has left, beside what the program holds
+    std::uint64_t m_held{};
+    std::uint64_t m_peak;
+    std::string m_largest;
+};
+
+// Notes what it takes to read the scene's own file and its sidecar, where there is one. The answer,
+// which memory must outlive, notes what else it takes.
+MemoryNote takeForReading(const std::filesystem::path& scene, const std::filesystem::path& sidecar,
+                          HostMemory& memory);
+// Notes that data is held, and what it takes to hand it over to the library.
+void takeForBuilding(const Options& options, const SceneData& data, HostMemory& memory);
+
+// Gives what was freed back to the system.
+void giveBackFreed();
 
 }  // namespace pm::host

@@ -8,7 +8,6 @@
 #include <thread>
 
 #include "host_shim/formats/warnings.h"
-#include "host_shim/render/scene_memory.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
@@ -50,9 +49,10 @@ std::shared_ptr<TextureCache> openTextureCache(const Options& options, Temporary
     return std::make_shared<TextureCache>(temporary.path(), textureCacheBytes(options));
 }
 
-TextureSettings textureSettings(const Options& options, const PmrApi& api) {
+TextureSettings textureSettings(const Options& options, HostMemory& memory) {
     const unsigned all = std::max(1u, std::thread::hardware_concurrency());
-    return {options.threads == 0 ? all : options.threads, api.memoryLeft(memoryLimitGib(options))};
+    return {options.threads == 0 ? all : options.threads, memory.left(),
+            [&memory](std::uint64_t bytes, const std::string& what) { memory.take(bytes, what); }};
 }
 
 }  // namespace pm::host

@@ -7,8 +7,8 @@
 #include "host_shim/cli/options.h"
 #include "host_shim/log/log.h"
 #include "host_shim/process/temporary_folder.h"
+#include "host_shim/render/scene_memory.h"
 #include "host_shim/textures/texture_preparation.h"
-#include "plugin/include/pm_plugin.h"
 
 namespace pm::host {
 
@@ -23,6 +23,7 @@ std::shared_ptr<TextureCache> openTextureCache(const Options& options, Temporary
                                                Log& log);
 
 // Threads and memory for preparing textures.
-TextureSettings textureSettings(const Options& options, const PmrApi& api);
+// memory: of the render to come, told what is taken; must outlive them.
+TextureSettings textureSettings(const Options& options, HostMemory& memory);
 
 }  // namespace pm::host

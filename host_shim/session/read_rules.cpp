@@ -72,8 +72,9 @@ void addSky(const SkyOptions& asked, SceneData& scene) {
 }  // namespace
 
 SceneData readScene(const Options& options, const WarningSink& warn,
-                    const std::optional<std::array<double, 3>>& eye) {
+                    const std::optional<std::array<double, 3>>& eye, const MemoryNote& takes) {
     ReadRules rules = readRules(options);
+    rules.takes = takes;
     const GoOn goOn = throwIfInterrupted;
     const SidecarLimits limits{goOn, memoryLimitBytes(options)};
     std::optional<Sidecar> sidecar;

@@ -21,10 +21,11 @@ ReadRules readRules(const Options& options);
 std::filesystem::path sidecarInUse(const Options& options);
 
 // Reads the scene of the command line, by the reader of its kind, and its sidecar; interrupts end
-// it. eye: the camera's place, where it is known. Errors: as SceneReader::read, readSidecarFile and
-// addSidecar; kUsage for a --camera that is not there; Interrupted.
+// it. eye: the camera's place, where it is known. takes: see ReadRules. Errors: as
+// SceneReader::read, readSidecarFile and addSidecar; kUsage for a --camera that is not there;
+// Interrupted.
 SceneData readScene(const Options& options, const WarningSink& warn,
-                    const std::optional<std::array<double, 3>>& eye);
+                    const std::optional<std::array<double, 3>>& eye, const MemoryNote& takes = {});
 
 // The camera that the scene describes and the command line means; null where there is none.
 // Errors: kUsage for a --camera that is not there.

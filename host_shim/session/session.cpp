@@ -198,12 +198,14 @@ void Session::noteFiles(const SceneData& data) {
 }
 
 // Reads the scene's file and builds what is rendered; what was read is free again at the end.
-void Session::buildScene(const ColourPipeline& colour, MaterialBuilder& materials,
+void Session::buildScene(const ColourPipeline& colour, TemporaryFolder& folder,
                          std::optional<PluginScene>& scene) {
     const WarningSink sink = [this](Warning code, const std::string& text) { warn(code, text); };
     SceneData data;
-    checkFileFits(m_options);
-    phase("readSceneSeconds", [&] { data = readScene(m_options, sink, m_options.camera.eye); });
+    const MemoryNote takes = takeForReading(m_options.scene, sidecarInUse(m_options), *m_memory);
+    phase("readSceneSeconds",
+          [&] { data = readScene(m_options, sink, m_options.camera.eye, takes); });
+    giveBackFreed();
     noteFiles(data);
     warnOfLampsWithoutArea(data, m_options.scene.string(), sink);
     addBackSides(data);
@@ -227,11 +229,27 @@ void Session::buildScene(const ColourPipeline& colour, MaterialBuilder& material
                               data.meshes.size(), data.faceCount, data.materials.size(),
                               data.materialFiles.size(), camera.eye[0], camera.eye[1],
                               camera.eye[2], camera.lookAt[0], camera.lookAt[1], camera.lookAt[2]));
-    checkSceneFits(m_options, data);
     TemporaryFolder ofSky;
     makeSky(camera.up[2] > std::abs(camera.up[1]), ofSky, data);
-    buildLit(data, camera, colour, materials, scene);
+    handOver(data, camera, colour, folder, scene);
     if (m_options.writeSidecar) writeSidecar(data);
+}
+
+// Gives what was read to the library. folder: for textures that can't be kept.
+void Session::handOver(SceneData& data, const CameraPose& camera, const ColourPipeline& colour,
+                       TemporaryFolder& folder, std::optional<PluginScene>& scene) {
+    const PluginContext& context = scene->context();
+    takeForBuilding(m_options, data, *m_memory);
+    // The builder keeps a reference to it.
+    const WarningSink sink = [this](Warning code, const std::string& text) { warn(code, text); };
+    MaterialBuilder materials(
+        context, colour,
+        [&] {
+            return TexturePreparer(colour, openTextureCache(m_options, folder, m_log),
+                                   textureSettings(m_options, *m_memory), throwIfInterrupted);
+        },
+        sink);
+    buildLit(data, camera, colour, materials, scene);
     const TextureCounts textures = materials.textureCounts();
     if (textures.found + textures.converted > 0)
         m_log.message(Level::kDebug,
@@ -240,24 +258,28 @@ void Session::buildScene(const ColourPipeline& colour, MaterialBuilder& material
 }
 
 int Session::renderScene(const ColourPipeline& colour, const PluginContext& context) {
-    std::optional<DisplayTransform> display;
-    if (wantsDisplay(m_options)) display = colour.displayTransform();
+    m_memory.emplace(m_options, context.api());
     TemporaryFolder folder;
-    // The builder keeps a reference to it.
-    const WarningSink sink = [this](Warning code, const std::string& text) { warn(code, text); };
-    MaterialBuilder materials(
-        context, colour,
-        [&] {
-            return TexturePreparer(colour, openTextureCache(m_options, folder, m_log),
-                                   textureSettings(m_options, context.api()), throwIfInterrupted);
-        },
-        sink);
     std::optional<PluginScene> scene;
     scene.emplace(context, m_log);
-    buildScene(colour, materials, scene);
-    if (!m_options.explain && !m_options.photonsOnly) expose(*scene, colour, display);
+    buildScene(colour, folder, scene);
+    giveBackFreed();
+    m_options.settings.push_back({"", "hostPeakGib", fmt::format("{:.6f}", m_memory->peakGib())});
+    try {
+        return renderBuilt(colour, *scene);
+    } catch (const HostError& error) {
+        const std::string step = m_memory->refused();
+        if (error.code() != ExitCode::kMemory || step.empty()) throw;
+        throw HostError(ExitCode::kMemory, fmt::format("{}; {}", step, error.what()));
+    }
+}
+
+int Session::renderBuilt(const ColourPipeline& colour, const PluginScene& scene) {
+    std::optional<DisplayTransform> display;
+    if (wantsDisplay(m_options)) display = colour.displayTransform();
+    if (!m_options.explain && !m_options.photonsOnly) expose(scene, colour, display);
     Progress progress(m_options.progress, m_options.quiet, m_log);
-    RenderRun run(*scene, m_options, colourIdentity(colour), m_log, progress,
+    RenderRun run(scene, m_options, colourIdentity(colour), m_log, progress,
                   timesBuckets(m_options) ? &m_report.bucketTimes() : nullptr);
     std::optional<TiledOutput> tiles;
     if (run.deliversBuckets()) {

@@ -12,7 +12,9 @@
 #include "host_shim/colour/exposure.h"
 #include "host_shim/log/log.h"
 #include "host_shim/pictures/picture.h"
+#include "host_shim/process/temporary_folder.h"
 #include "host_shim/render/render_run.h"
+#include "host_shim/render/scene_memory.h"
 #include "host_shim/render/tiled_output.h"
 #include "host_shim/report/report_pictures.h"
 #include "host_shim/session/report.h"
@@ -42,13 +44,16 @@ class Session {
     void readDisplayReference();
     // Puts the reference's name before what check throws.
     void namingReference(const std::function<void()>& check) const;
-    void buildScene(const ColourPipeline& colour, MaterialBuilder& materials,
+    void buildScene(const ColourPipeline& colour, TemporaryFolder& folder,
                     std::optional<PluginScene>& scene);
+    void handOver(SceneData& data, const CameraPose& camera, const ColourPipeline& colour,
+                  TemporaryFolder& folder, std::optional<PluginScene>& scene);
     void noteFiles(const SceneData& data);
     // SCENE.pm.json (session_sidecar.cpp). Errors: kUsage where it may not be written.
     void checkSidecar() const;
     void writeSidecar(const SceneData& data);
     int renderScene(const ColourPipeline& colour, const PluginContext& context);
+    int renderBuilt(const ColourPipeline& colour, const PluginScene& scene);
     int merge();
     void checkBeforeMerging();
     void warnOfVendors(const std::vector<std::string>& vendors);
@@ -100,7 +105,8 @@ class Session {
     Options m_options;
     Log& m_log;
     Statistics m_statistics;
-    Report m_report;  // gathers only where one is wanted
+    Report m_report;                     // gathers only where one is wanted
+    std::optional<HostMemory> m_memory;  // of a scene that is read
     std::optional<Picture> m_reference;
     std::optional<DisplayPicture> m_displayReference;  // in place of it
     std::optional<Picture> m_pilot;      // of the scene as it is rendered; see pilot()

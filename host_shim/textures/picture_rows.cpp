@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "host_shim/textures/picture_kind.h"
+#include "host_shim/textures/whole_picture.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
@@ -26,11 +27,6 @@ constexpr std::array kLuminance{0.2126f, 0.7152f, 0.0722f};
 std::string withoutBreaks(std::string text) {
     std::ranges::replace(text, '\n', ' ');
     return text;
-}
-
-bool readsByRows(const std::string& format) {
-    return format == "openexr" || format == "png" || format == "jpeg" || format == "hdr" ||
-           format == "tiff";
 }
 
 std::uint64_t product(std::int64_t a, std::int64_t b, std::int64_t c) {
@@ -137,13 +133,8 @@ std::uint64_t PictureRows::memoryBytes() const {
     const std::int64_t rows =
         m_spec.tile_height > 0 ? std::max(m_spec.tile_height, kBandRows) : kBandRows;
     const auto bytes = static_cast<std::int64_t>(m_spec.pixel_bytes(true));
-    std::uint64_t need = product(m_spec.width, rows, std::max<std::int64_t>(bytes, 16) * 2);
-    if (!readsByRows(m_format)) need += product(m_spec.width, m_spec.height, bytes);
-    if (m_format == "tiff" && m_spec.tile_width == 0) {
-        const int strip = m_spec.get_int_attribute("tiff:RowsPerStrip", m_spec.height);
-        need += product(m_spec.width, std::min(strip, m_spec.height), bytes);
-    }
-    return need;
+    const std::uint64_t need = product(m_spec.width, rows, std::max<std::int64_t>(bytes, 16) * 2);
+    return need + bytesHeldWhole(m_format, m_file, m_spec);
 }
 
 std::uint64_t PictureRows::fileBytes() const {

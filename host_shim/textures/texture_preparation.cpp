@@ -9,6 +9,7 @@
 #include <charconv>
 #include <chrono>
 #include <new>
+#include <optional>
 #include <thread>
 
 #include "host_shim/colour/asked_work.h"
@@ -39,6 +40,8 @@ struct Original {
     std::string content;  // hash of its bytes
     bool isFloatFile{};
     PictureStatement statement;
+    std::uint64_t bytes{};  // that making a texture of it takes
+    std::string size;       // "W x H"
 };
 
 Record toRecord(const Original& original, const FileStamp& stamp, const fs::path& file) {
@@ -47,6 +50,8 @@ Record toRecord(const Original& original, const FileStamp& stamp, const fs::path
     record.set("source", fs::absolute(file).string());
     record.set("stamp", stamp.text());
     record.setNumber("float", original.isFloatFile ? 1 : 0);
+    record.setNumber("bytes", original.bytes);
+    record.set("size", original.size);
     record.setNumber("xyz", original.statement.isXyz ? 1 : 0);
     record.set("profile", original.statement.profile);
     for (std::size_t i = 0; i < original.statement.spaces.size(); ++i)
@@ -61,6 +66,8 @@ Original toOriginal(const Record& record) {
     Original original;
     original.content = record.get("content");
     original.isFloatFile = record.number("float") != 0;
+    original.bytes = record.number("bytes");
+    original.size = record.get("size");
     original.statement.isXyz = record.number("xyz") != 0;
     original.statement.profile = record.get("profile");
     for (std::size_t i = 0; !record.get(fmt::format("space{}", i)).empty(); ++i)
@@ -140,12 +147,12 @@ struct TexturePreparer::Work {
 
 // What the threads have in common; outlives this preparer where one is left behind.
 struct TexturePreparer::Shared {
-    Shared(std::vector<Work> given, std::shared_ptr<TextureCache> from, std::uint64_t bytes)
-        : works(std::move(given)), cache(std::move(from)), budget(bytes) {}
+    Shared(std::vector<Work> given, std::shared_ptr<TextureCache> from)
+        : works(std::move(given)), cache(std::move(from)) {}
 
     std::vector<Work> works;
     std::shared_ptr<TextureCache> cache;
-    MemoryBudget budget;
+    std::optional<MemoryBudget> budget;  // of those that are made
     std::atomic<bool> stops{false};
 
     // step: done for each work that has not failed, by several threads.
@@ -162,7 +169,7 @@ struct TexturePreparer::Shared {
                     return;
                 } catch (const std::bad_alloc&) {
                     work.result.error = std::make_exception_ptr(HostError(
-                        ExitCode::kBadInput,
+                        ExitCode::kMemory,
                         fmt::format("texture {}: out of memory", work.request.file.string())));
                 } catch (...) {
                     work.result.error = std::current_exception();
@@ -191,14 +198,16 @@ void TexturePreparer::Work::findOriginal(TextureCache& cache, const std::functio
         const std::string at = hashText(fmt::format("{}\n{}\n{}\n{}", kBakeVersion, stamp->text(),
                                                     static_cast<int>(request.kind),
                                                     static_cast<int>(request.channel)));
-        if (const auto record = cache.original(at); record && !record->get("content").empty()) {
+        if (const auto record = cache.original(at); record && !record->get("size").empty()) {
             original = toOriginal(*record);
             return;
         }
         wasOpened = true;
         waitUntilStampTells(*stamp);
-        const PictureRows rows(request.file, request.kind, request.channel);
-        original = {hashFile(request.file, goOn), rows.isFloatFile(), rows.statement()};
+        PictureRows rows(request.file, request.kind, request.channel);
+        original = {hashFile(request.file, goOn), rows.isFloatFile(), rows.statement(),
+                    TextureBake(rows, request.kind, {}).memoryBytes(),
+                    fmt::format("{} x {}", rows.width(), rows.height())};
         // One that is being written to is taken as it is now, and not remembered.
         constexpr int kMostTries = 3;
         const bool isSteady = stampOf(request.file) == stamp;
@@ -213,17 +222,7 @@ TextureFacts TexturePreparer::Work::bake(TextureCache& cache, const std::string&
     auto rows = std::make_unique<PictureRows>(request.file, request.kind, request.channel);
     auto baking = std::make_unique<TextureBake>(*rows, request.kind, conversion);
     const std::uint64_t need = baking->memoryBytes();
-    if (need > budget.total()) {
-        constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
-        throw HostError(
-            ExitCode::kBadInput,
-            fmt::format("texture {} of {} x {} texels needs {:.2f} GiB to be read; {:.2f} GiB are "
-                        "left (--memory-limit)",
-                        request.file.string(), rows->width(), rows->height(),
-                        static_cast<double>(need) / kGib,
-                        static_cast<double>(budget.total()) / kGib));
-    }
-    const auto share = budget.take(need, goOn);
+    const auto share = budget.take(std::min(need, budget.total()), goOn);
     TextureFacts facts;
     if (baking->needsNoConversion()) {
         if (baking->inspect(goOn, facts)) {
@@ -284,6 +283,23 @@ void TexturePreparer::decideSpaces(std::vector<Work>& works) const {
     }
 }
 
+// What those share that are made at once: as much as the largest takes, at least.
+std::uint64_t TexturePreparer::memoryFor(const std::vector<Work>& works) const {
+    const auto bytesOf = [](const Work& work) {
+        return work.result.error ? 0 : work.original.bytes;
+    };
+    const Work& largest = *std::ranges::max_element(works, {}, bytesOf);
+    const std::uint64_t bytes = bytesOf(largest);
+    const std::string what = fmt::format("texture {} of {} texels takes",
+                                         largest.request.file.string(), largest.original.size);
+    if (m_settings.takes)
+        m_settings.takes(bytes, what);
+    else if (bytes > m_settings.memoryBytes)
+        throw HostError(ExitCode::kMemory, fmt::format("{} {} bytes; {} are left", what, bytes,
+                                                       m_settings.memoryBytes));
+    return std::max(bytes, m_settings.memoryBytes);
+}
+
 void TexturePreparer::prepare(const std::vector<TextureRequest>& requests) {
     std::vector<Work> works;
     for (const TextureRequest& request : requests) {
@@ -297,7 +313,7 @@ void TexturePreparer::prepare(const std::vector<TextureRequest>& requests) {
         works.push_back(std::move(work));
     }
     if (works.empty()) return;
-    const auto shared = std::make_shared<Shared>(std::move(works), m_cache, m_settings.memoryBytes);
+    const auto shared = std::make_shared<Shared>(std::move(works), m_cache);
     const std::uint32_t threads = std::max(1u, m_settings.threads);
     for (Work& work : shared->works) work.threads = shared->works.size() < threads ? 2 : 1;
     const auto each = [&](auto step) {
@@ -318,8 +334,9 @@ void TexturePreparer::prepare(const std::vector<TextureRequest>& requests) {
         work.findOriginal(*all.cache, goOn);
     });
     decideSpaces(shared->works);
+    shared->budget.emplace(memoryFor(shared->works));
     each([](Shared& all, Work& work, const std::function<void()>& goOn) {
-        work.makeTexture(*all.cache, all.budget, goOn);
+        work.makeTexture(*all.cache, *all.budget, goOn);
     });
     bool hasNew = false;
     for (Work& work : shared->works) {

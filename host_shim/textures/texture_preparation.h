@@ -34,7 +34,10 @@ struct BakedTexture {
 // Where textures are kept, and what making them may take.
 struct TextureSettings {
     std::uint32_t threads{1};
-    std::uint64_t memoryBytes{};  // that may be held while they are made
+    std::uint64_t memoryBytes{};  // that those share that are made at once
+    // Told before the largest is made, also where it is in the cache; decides then, by throwing,
+    // in place of memoryBytes. what: as "texture FILE of W x H texels takes".
+    std::function<void(std::uint64_t bytes, const std::string& what)> takes{};
 };
 
 // How many files were opened for it.
@@ -53,11 +56,11 @@ class TexturePreparer {
                     const TextureSettings& settings, std::function<void()> goOn = {});
 
     // Prepares all that are not there yet. What fails is thrown by texture(). Threads: one at a
-    // time.
+    // time. Errors: HostError kMemory where one takes more memory than it may.
     void prepare(const std::vector<TextureRequest>& requests);
     // One of them; prepares it now where that has not been done. Errors: HostError kFile when the
     // picture is missing or the texture can't be written; kBadInput when it is broken, no picture,
-    // too large for the memory, or its colour space is unknown. The text names the file.
+    // or its colour space is unknown; those of prepare(). The text names the file.
     const BakedTexture& texture(const TextureRequest& request);
     const TextureCounts& counts() const { return m_counts; }
 
@@ -65,6 +68,7 @@ class TexturePreparer {
     struct Work;
     struct Shared;
     void decideSpaces(std::vector<Work>& works) const;
+    std::uint64_t memoryFor(const std::vector<Work>& works) const;
 
     const ColourPipeline& m_colour;
     std::shared_ptr<TextureCache> m_cache;

@@ -13,6 +13,7 @@ enum class ExitCode : int {
     kUsage = 2,     // an option is wrong
     kBadInput = 3,  // the scene, a config, a reference or another input is bad
     kFile = 4,      // a file can't be read or written
+    kMemory = 5,    // more would be needed than there is, or than may be taken
 };
 
 // The one exception of the host. The text is one line that says what was given, what is allowed and

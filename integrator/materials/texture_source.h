@@ -74,6 +74,9 @@ class TextureSource {
     // Texels across and down of texture `index` over the unit square of uv, at the finest level.
     virtual std::array<std::uint32_t, 2> texels(std::int32_t index) const = 0;
 
+    // Bytes that are always held, beside texels.
+    virtual std::uint64_t memoryBytes() const { return 0; }
+
     // Failed look-ups so far.
     virtual std::uint64_t failureCount() const = 0;
 };

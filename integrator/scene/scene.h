@@ -197,6 +197,7 @@ class Scene {
     const std::vector<Notice>& notices() const { return m_notices; }
     const std::string& isa() const { return m_tracer.isa(); }
     std::uint64_t memoryBytes() const;
+    std::uint64_t describedBytes() const;
     // Of the triangles that limit surfaces are cut into where rays meet them: what may be held at
     // once, and what would be held if all were. The picture is the same. Threads: any.
     void setGroupBudget(std::uint64_t bytes) const {

@@ -39,6 +39,7 @@ constexpr std::uint64_t kTimeBytes = 16;
 
 // Code and libraries of pm_host as measured with next to no scene; a host that is larger knows so.
 constexpr std::uint64_t kProgramBytes = std::uint64_t{150} << 20;
+constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
 
 // Caches of textures and of triangles that are cut on demand: what doesn't fit is read or cut
 // again.
@@ -245,6 +246,8 @@ MemoryPlan planMemory(const Scene& scene, const Plan& plan, const SettingValues&
     MemoryPlan memory = planWith(scene, plan, values, grid, wantedOf(whole, limit));
     if (memory.need.total() > limit) memory = planWith(scene, plan, values, grid, leastOf(whole));
     growCaches(whole, memory);
+    memory.hostPeak = static_cast<std::uint64_t>(values.number(Setting::kHostPeak) * kGib);
+    memory.smallest = std::max(memory.smallest, memory.hostPeak);
     return memory;
 }
 
@@ -255,7 +258,7 @@ std::string MemoryPlan::explain() const {
             ", bucket by bucket with the maps of all passes; the whole frame would need {:.2f} GiB",
             toGib(whole.total()));
     text += fmt::format(", the limit is {:.2f} GiB", toGib(limit));
-    if (need.total() > limit) text += ": the render would be refused";
+    if (need.total() > limit || hostPeak > limit) text += ": the render would be refused";
     text += "\n";
     if (pages > 0)
         text += fmt::format(
@@ -266,13 +269,15 @@ std::string MemoryPlan::explain() const {
 }
 
 void MemoryPlan::check() const {
-    if (need.total() <= limit) return;
+    if (need.total() <= limit && hostPeak <= limit) return;
     std::string text = fmt::format("the render needs {}", figures(need));
-    if (byBuckets)
+    if (byBuckets && need.total() > limit)
         text += fmt::format(
             " even bucket by bucket, with the maps of all passes; with the whole "
             "frame {:.2f} GiB",
             toGib(whole.total()));
+    if (hostPeak > limit)
+        text += fmt::format("; the host needs {:.2f} GiB before it", toGib(hostPeak));
     text += fmt::format("; the memory limit is {:.2f} GiB, the smallest that works {:.3f} GiB",
                         toGib(limit), std::ceil(1000 * toGib(smallest)) / 1000);
     if (!whyWhole.empty())

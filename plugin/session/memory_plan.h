@@ -33,6 +33,7 @@ struct MemoryPlan {
     MemoryNeed whole;               // with the whole frame
     std::uint32_t bucketsHeld = 0;  // by buckets: in work or waiting for the host, at most
     std::uint64_t smallest = 0;     // the smallest limit by which it can be done
+    std::uint64_t hostPeak = 0;     // what the process took before, by the setting
     std::uint64_t pages = 0;  // bytes that pages of photon maps take at once; 0: maps are in memory
     std::uint64_t pagedBytes = 0;  // of all pages of the maps that there are at once
     float roomForSites = 1.0f;     // with pages: see IrradianceSites

@@ -143,6 +143,11 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
      "Folder of the scratch files of photon maps that are kept in pages; they have no name there "
      "and are gone with the process. Empty: that of the environment variable TMPDIR, else /tmp.",
      "A disk of its own for them is as fast as it reads."},
+    {Setting::kHostPeak, "hostPeakGib", SettingType::kNumber, "GiB", "0", 0, 1048576, 1, "", false,
+     "The most memory that the process takes before the render, to read and to hand over the scene "
+     "and its textures, as the host knows it. A render is refused where it is above the memory "
+     "limit, and the smallest limit that is told is no less.",
+     "None."},
 }};
 
 static_assert(isInOrderOfIds(kSettings));

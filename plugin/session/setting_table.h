@@ -47,6 +47,7 @@ enum class Setting : std::size_t {
     kHostNote,
     kPhotonPages,
     kScratchFolder,
+    kHostPeak,
     kCount
 };
 inline constexpr std::size_t kSettingCount = static_cast<std::size_t>(Setting::kCount);

@@ -40,6 +40,7 @@ class SceneTextures final : public TextureSource {
     std::array<float, 2> extremes(std::int32_t index, const CancelCheck& cancel) const override;
     std::string name(std::int32_t index) const override;
     std::array<std::uint32_t, 2> texels(std::int32_t index) const override;
+    std::uint64_t memoryBytes() const override;
     std::uint64_t failureCount() const override;
 
   private:

@@ -2,11 +2,12 @@
 # SPDX-FileCopyrightText: The pm authors
 """Scenes of very many of one thing, for tests of --memory-limit.
 
-usage: memory_scenes.py lights|triangles|materials|instances|textures FOLDER COUNT
+usage: memory_scenes.py lights|triangles|materials|instances|textures|held_whole FOLDER COUNT
 """
 import json
 import pathlib
 import struct
+import subprocess
 import sys
 import zlib
 
@@ -17,7 +18,7 @@ LAMP = "o lamp\nusemtl lamp\nv -1 4 -1\nv 1 4 -1\nv 1 4 1\nv -1 4 1\nf -4 -3 -2 
 LAMP_MTL = "newmtl lamp\nKd 0 0 0\nKe 5 5 5\n"
 
 
-def write_png(path, width, height, rows, depth=8, kind=2):
+def write_png(path, width, height, rows, depth=8, kind=2, interlace=0):
     """rows: one byte string a row."""
 
     def chunk(name, data):
@@ -26,7 +27,7 @@ def write_png(path, width, height, rows, depth=8, kind=2):
     packed = zlib.compressobj(1)
     data = b"".join(packed.compress(b"\0" + row) for row in rows) + packed.flush()
     path.write_bytes(b"\x89PNG\r\n\x1a\n"
-                     + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, depth, kind, 0, 0, 0))
+                     + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, depth, kind, 0, 0, interlace))
                      + chunk(b"IDAT", data) + chunk(b"IEND", b""))  # fmt: skip
 
 
@@ -92,13 +93,39 @@ def textures(folder, count):
         write_png(folder / f"t{i}.png", side, side, (row[y % 7 :] + row[: y % 7] for y in range(side)))
 
 
-# Each with how many, and how many where it is to be quick.
+def write_interlaced(path, side):
+    """A grey PNG in the seven passes of Adam7, which no reader can give row by row."""
+
+    bands = [bytes((x // 16 + band) % 256 for x in range(side)) for band in range(side // 16)]
+
+    def rows():
+        for x0, y0, dx, dy in ((0, 0, 8, 8), (4, 0, 8, 8), (0, 4, 4, 8), (2, 0, 4, 4),
+                               (0, 2, 2, 4), (1, 0, 2, 2), (0, 1, 1, 2)):  # fmt: skip
+            for y in range(y0, side, dy):
+                yield bands[y // 16][x0::dx]
+
+    write_png(path, side, side, rows(), kind=0, interlace=1)
+
+
+def held_whole(folder, side):
+    """A progressive JPEG and an interlaced PNG of so many texels a side, a power of 2."""
+    quad = "v -2 {z} 2\nv 2 {z} 2\nv 2 {z} -2\nv -2 {z} -2\nusemtl {m}\nf -4/1 -3/2 -2/3 -1/4\n"
+    write_scene(folder, "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n" + quad.format(z=0, m="png") + quad.format(z=-1, m="jpg") + LAMP,
+                "newmtl png\nmap_Kd a.png\nnewmtl jpg\nmap_Kd a.jpg\n" + LAMP_MTL)
+    write_interlaced(folder / "a.png", side)
+    subprocess.run(["oiiotool", "a.png", "--ch", "0,0,0", "--attrib:type=int", "jpeg:progressive", "1", "-o", "a.jpg"],
+                   cwd=folder, check=True)
+
+
+# Each with how many, and how many where it is to be quick; 0: it is left out there.
 MADE = (
-    (lights, 200_000, 4000),
-    (triangles, 100_000, 20_000),
+    (lights, 200_000, 20_000),
+    (triangles, 100_000, 0),
     (materials, 100_000, 5000),
-    (instances, 100_000, 5000),
-    (textures, 500, 20),
+    (instances, 100_000, 10_000),
+    (textures, 500, 0),
+    (textures, 5000, 0),
+    (held_whole, 8192, 0),
 )
 
 if __name__ == "__main__":

@@ -17,8 +17,9 @@ import tempfile
 from memory_runs import MIB, Runs
 from memory_scenes import write_png
 
-# Heights, of which each is kept as a float of 4 bytes: 144 MiB. Each tile is met by what is cut.
-WIDTH, HEIGHT = 8192, 4608
+# Heights of each quarter of the ground, of which each is kept as a float of 4 bytes: 144 MiB together, while a
+# picture alone can be made a texture in less than the render takes. Each tile is met by what is cut.
+WIDTH, HEIGHT = 4096, 2304
 FACES = 64  # of the ground, along each side
 
 
@@ -30,17 +31,20 @@ def height_rows():
 
 
 def write_ground(folder):
-    write_png(folder / "heights.png", WIDTH, HEIGHT, height_rows(), kind=0)
-    (folder / "ground.mtl").write_text(
-        "newmtl ground\nKd 0.5 0.5 0.4\ndisp -bm 2 heights.png\nnewmtl lamp\nKd 0 0 0\nKe 40 40 40\n",
-        encoding="utf-8")  # fmt: skip
-    lines = ["mtllib ground.mtl", "o ground", "usemtl ground"]
+    mtl = "newmtl lamp\nKd 0 0 0\nKe 40 40 40\n"
+    for quarter in range(4):
+        write_png(folder / f"heights{quarter}.png", WIDTH, HEIGHT, height_rows(), kind=0)
+        mtl += f"newmtl ground{quarter}\nKd 0.5 0.5 0.4\ndisp -bm 2 heights{quarter}.png\n"
+    (folder / "ground.mtl").write_text(mtl, encoding="utf-8")
+    lines = ["mtllib ground.mtl", "o ground"]
     for y in range(FACES + 1):
         for x in range(FACES + 1):
-            lines += [f"v {x - FACES / 2} 0 {FACES / 2 - y}", f"vt {x / FACES} {y / FACES}"]
+            lines += [f"v {x - FACES / 2} 0 {FACES / 2 - y}", f"vt {2 * x / FACES} {2 * y / FACES}"]
     at = [[y * (FACES + 1) + x + 1 for x in range(FACES + 1)] for y in range(FACES + 1)]
-    for y in range(FACES):
-        for x in range(FACES):
+    half = FACES // 2
+    for quarter in range(4):
+        lines.append(f"usemtl ground{quarter}")
+        for y, x in ((y, x) for y in range(FACES) for x in range(FACES) if 2 * (y // half) + x // half == quarter):
             corners = at[y][x], at[y][x + 1], at[y + 1][x + 1], at[y + 1][x]
             lines.append("f " + " ".join(f"{c}/{c}" for c in corners))
     lines += ["t interpolateboundary 1/0/0 1", "o lamp", "usemtl lamp"]

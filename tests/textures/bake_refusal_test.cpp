@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
+#include "host_shim/textures/whole_picture.h"
 #include "tests/textures/texture_support.h"
 
 namespace pm::host::test {
@@ -62,9 +63,44 @@ TEST_F(BakeRefusal, WhatDoesNotFit) {
     writeNoise("a.bmp");
     const TextureRequest request{file("a.bmp")};
     TexturePreparer small(m_colour, cache(), {1, 1000});
-    EXPECT_TRUE(refusesWith(refusal([&] { small.texture(request); }), 3,
-                            {"a.bmp", "64 x 64", "--memory-limit"}));
+    EXPECT_TRUE(refusesWith(refusal([&] { small.texture(request); }), 5,
+                            {"a.bmp", "64 x 64", "1000 are left"}));
     EXPECT_EQ(refused(request), "nothing thrown");
+}
+
+// Their readers hold all of a picture, of JPEG as coefficients of 2 bytes.
+TEST_F(BakeRefusal, WhatCannotBeReadRowByRowCountsWhole) {
+    const auto held = [&](const char* format, const std::filesystem::path& path) {
+        const auto input = OIIO::ImageInput::open(path.string());
+        return input ? bytesHeldWhole(format, path, input->spec()) : 1;
+    };
+    const auto write = [&](const char* name, bool isProgressive, const char* sampling) {
+        OIIO::ImageSpec spec(100, 60, 3, OIIO::TypeDesc::UINT8);
+        spec.attribute("jpeg:progressive", isProgressive ? 1 : 0);
+        spec.attribute("jpeg:subsampling", sampling);
+        writePicture(file(name), spec, std::vector<float>(100 * 60 * 3, 0.5f));
+    };
+    write("rows.jpg", false, "4:4:4");
+    EXPECT_EQ(held("jpeg", file("rows.jpg")), 0u);
+    write("full.jpg", true, "4:4:4");
+    EXPECT_EQ(held("jpeg", file("full.jpg")), 13u * 8 * 3 * 128);
+    write("half.jpg", true, "4:2:0");
+    EXPECT_EQ(held("jpeg", file("half.jpg")), 7u * 4 * 6 * 128);
+    // A scan for each component, as the standard allows without being progressive.
+    std::string bytes = readBytes(file("rows.jpg"));
+    const std::size_t scan = bytes.find("\xff\xda");
+    ASSERT_NE(scan, std::string::npos);
+    bytes[scan + 4] = 1;
+    writeBytes(file("scans.jpg"), bytes);
+    EXPECT_EQ(bytesHeldWhole("jpeg", file("scans.jpg"), {}), 13u * 8 * 3 * 128);
+    writeNoise("a.png");
+    EXPECT_EQ(held("png", file("a.png")), 0u);
+    bytes = readBytes(file("a.png"));
+    bytes[28] = 1;
+    writeBytes(file("adam7.png"), bytes);
+    const OIIO::ImageSpec spec(64, 64, 3, OIIO::TypeDesc::UINT8);
+    EXPECT_EQ(bytesHeldWhole("png", file("adam7.png"), spec), 64u * 64 * 3);
+    EXPECT_EQ(bytesHeldWhole("bmp", file("a.bmp"), spec), 64u * 64 * 3);
 }
 
 TEST_F(BakeRefusal, DisplayWindowsBeyondAllMeasure) {

@@ -27,6 +27,7 @@ struct LibrarySource {
     std::optional<DialectChoice> asked;    // for all of them; none: by their headers,
     std::optional<DialectChoice> ofScene;  // and by that of the scene where they have none
     std::vector<std::string> alsoWanted;   // names of materials that no face uses
+    MemoryNote takes;
 };
 
 // Reads the libraries of a scene and answers with one material for each name of

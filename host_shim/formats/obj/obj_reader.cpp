@@ -193,7 +193,7 @@ SceneData readObj(std::string_view text, const std::string& fileName, const fs::
     ask();
     SceneData scene;
     MaterialLibrary library = readLibraries(
-        text, objText, {fileName, folder, {}, {}, rules.materials}, rules, warn, goOn);
+        text, objText, {fileName, folder, {}, {}, rules.materials, rules.takes}, rules, warn, goOn);
     scene.materials = std::move(library.materials);
     scene.materialFiles = std::move(library.files);
     scene.bounds = boundsOfFaces(parsed.attributes, parsed.shapes);
