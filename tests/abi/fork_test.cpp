@@ -133,6 +133,9 @@ TEST(Fork, NothingElseIsTakenFromTheParent) {
 
 // A handle of the child's own, and what it makes of the parent's where nothing was at work.
 TEST(Fork, ChildRendersByItself) {
+#ifdef __SANITIZE_THREAD__
+    GTEST_SKIP() << "ThreadSanitizer ends a forked child that starts threads";
+#endif
     const BoxHost host;
     const PmrRectangle all = {0, 0, kWidth, kHeight};
     const std::vector<float> expected = renderBox(host, {});
