@@ -127,6 +127,8 @@ PmrTexture MaterialBuilder::picture(const TextureUse& use, const std::string& sh
     try {
         baked = preparer().texture(requestOf(use, shown, kind));
         tell(shown, baked);
+    } catch (const NotKept&) {
+        throw;
     } catch (const HostError& error) {
         // Without it the memory limit would change the picture.
         if (error.code() == ExitCode::kMemory) throw;

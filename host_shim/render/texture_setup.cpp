@@ -27,6 +27,16 @@ std::uint64_t textureCacheBytes(const Options& options) {
     return static_cast<std::uint64_t>(options.textureCacheGib.value_or(kUsualCacheGib) * kGib);
 }
 
+std::shared_ptr<TextureCache> openRunsCache(const Options& options, const std::string& why,
+                                            TemporaryFolder& temporary, Log& log) {
+    const std::string text = why + "; textures are made for this run only";
+    if (options.textureCache.empty())
+        log.info(text);
+    else
+        log.warning(static_cast<int>(Warning::kTexture), text);
+    return std::make_shared<TextureCache>(temporary.path(), textureCacheBytes(options));
+}
+
 std::shared_ptr<TextureCache> openTextureCache(const Options& options, TemporaryFolder& temporary,
                                                Log& log) {
     const std::filesystem::path folder = textureCacheFolder(options);
@@ -41,12 +51,7 @@ std::shared_ptr<TextureCache> openTextureCache(const Options& options, Temporary
             why = error.what();
         }
     }
-    const std::string text = why + "; textures are made for this run only";
-    if (options.textureCache.empty())
-        log.info(text);
-    else
-        log.warning(static_cast<int>(Warning::kTexture), text);
-    return std::make_shared<TextureCache>(temporary.path(), textureCacheBytes(options));
+    return openRunsCache(options, why, temporary, log);
 }
 
 TextureSettings textureSettings(const Options& options, HostMemory& memory) {

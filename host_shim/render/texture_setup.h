@@ -22,6 +22,11 @@ std::uint64_t textureCacheBytes(const Options& options);
 std::shared_ptr<TextureCache> openTextureCache(const Options& options, TemporaryFolder& temporary,
                                                Log& log);
 
+// One in the temporary folder, for this run; why: the other can't be used, which is told. Errors:
+// HostError kFile.
+std::shared_ptr<TextureCache> openRunsCache(const Options& options, const std::string& why,
+                                            TemporaryFolder& temporary, Log& log);
+
 // Threads and memory for preparing textures.
 // memory: of the render to come, told what is taken; must outlive them.
 TextureSettings textureSettings(const Options& options, HostMemory& memory);

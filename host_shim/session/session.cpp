@@ -245,8 +245,12 @@ void Session::handOver(SceneData& data, const CameraPose& camera, const ColourPi
     MaterialBuilder materials(
         context, colour,
         [&] {
-            return TexturePreparer(colour, openTextureCache(m_options, folder, m_log),
-                                   textureSettings(m_options, *m_memory), throwIfInterrupted);
+            TextureSettings settings = textureSettings(m_options, *m_memory);
+            settings.otherCache = [&](const std::string& why) {
+                return openRunsCache(m_options, why, folder, m_log);
+            };
+            return TexturePreparer(colour, openTextureCache(m_options, folder, m_log), settings,
+                                   throwIfInterrupted);
         },
         sink);
     buildLit(data, camera, colour, materials, scene);

@@ -70,7 +70,7 @@ class TextureCache {
     std::size_t clear();
     // Reads all textures, and all originals that are still where they were; what is not as it was
     // recorded is removed. Returns a line for each. goOn: called now and then; may throw.
-    std::vector<std::string> verify(const std::function<void()>& goOn);
+    std::vector<std::string> verify(const std::function<void()>& goOn = {});
 
   private:
     bool isWhole(const std::string& name, Record& record) const;

@@ -11,6 +11,7 @@
 #include <new>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "host_shim/colour/asked_work.h"
 #include "host_shim/textures/memory_budget.h"
@@ -136,7 +137,7 @@ struct TexturePreparer::Work {
     Original original;
     SpaceConversion conversion;
     Result result;
-    bool wasOpened{}, wasFound{};
+    bool wasOpened{}, wasFound{}, wasNotKept{};
     int threads = 1;  // that it may keep busy
 
     void findOriginal(TextureCache& cache, const std::function<void()>& goOn);
@@ -167,6 +168,9 @@ struct TexturePreparer::Shared {
                     step(work);
                 } catch (const Stopped&) {
                     return;
+                } catch (const NotKept&) {
+                    work.wasNotKept = true;
+                    work.result.error = std::current_exception();
                 } catch (const std::bad_alloc&) {
                     work.result.error = std::make_exception_ptr(HostError(
                         ExitCode::kMemory,
@@ -216,6 +220,29 @@ void TexturePreparer::Work::findOriginal(TextureCache& cache, const std::functio
     }
 }
 
+// bake: writes the texture, and returns its record. Errors: NotKept where it is the cache that
+// fails; those of bake.
+template <typename Bake>
+void keep(TextureCache& cache, const std::string& name, const Bake& bake) {
+    bool isOfCache = true;
+    try {
+        FinishedFile finished(cache.nameForNew());
+        cache.noteUnderway(finished.temporaryPath());
+        CheckedFile file(finished, cache.textureFile(name));
+        std::optional<Record> record;
+        try {
+            record = bake(file, finished.temporaryPath());
+        } catch (const HostError&) {
+            isOfCache = file.finish() != 0;
+            throw;
+        }
+        cache.commit(name, finished, std::move(*record));
+    } catch (const HostError& error) {
+        if (isOfCache) throw NotKept(error.code(), error.what());
+        throw;
+    }
+}
+
 TextureFacts TexturePreparer::Work::bake(TextureCache& cache, const std::string& name,
                                          MemoryBudget& budget, const std::function<void()>& goOn) {
     wasOpened = true;
@@ -233,12 +260,10 @@ TextureFacts TexturePreparer::Work::bake(TextureCache& cache, const std::string&
         rows = std::make_unique<PictureRows>(request.file, request.kind, request.channel);
         baking = std::make_unique<TextureBake>(*rows, request.kind, conversion);
     }
-    const fs::path path = cache.textureFile(name);
-    FinishedFile finished(cache.nameForNew());
-    cache.noteUnderway(finished.temporaryPath());
-    CheckedFile file(finished, path);
-    facts = baking->bake(file, finished.temporaryPath(), path, threads, goOn);
-    cache.commit(name, finished, toRecord(facts, request.file));
+    keep(cache, name, [&](CheckedFile& file, const fs::path& temporary) {
+        facts = baking->bake(file, temporary, cache.textureFile(name), threads, goOn);
+        return toRecord(facts, request.file);
+    });
     result.texture.file = cache.textureFile(name);
     return facts;
 }
@@ -300,6 +325,47 @@ std::uint64_t TexturePreparer::memoryFor(const std::vector<Work>& works) const {
     return std::max(bytes, m_settings.memoryBytes);
 }
 
+void TexturePreparer::each(
+    const std::shared_ptr<Shared>& shared,
+    const std::function<void(Shared&, Work&, const std::function<void()>&)>& step) {
+    const std::uint32_t threads = std::max(1u, m_settings.threads);
+    try {
+        callAsking(m_goOn, [shared, threads, step] {
+            const std::function<void()> goOn = [shared] {
+                if (shared->stops) throw Stopped();
+            };
+            shared->doAll(threads, [&](Work& work) { step(*shared, work, goOn); });
+        });
+    } catch (...) {
+        shared->stops = true;
+        m_cache->abandon();
+        throw;
+    }
+}
+
+// Without its texture a material would look otherwise for the sake of a disk, so what can't be kept
+// in one cache is made once more in another.
+void TexturePreparer::makeTextures(const std::shared_ptr<Shared>& shared) {
+    each(shared, [](Shared& all, Work& work, const std::function<void()>& goOn) {
+        work.makeTexture(*all.cache, *all.budget, goOn);
+    });
+    const auto failed = std::ranges::find_if(shared->works, &Work::wasNotKept);
+    if (failed == shared->works.end() || !m_settings.otherCache || m_fullCache) return;
+    std::string why;
+    try {
+        std::rethrow_exception(failed->result.error);
+    } catch (const NotKept& error) {
+        why = error.what();
+    }
+    m_fullCache = std::exchange(m_cache, m_settings.otherCache(why));
+    shared->cache = m_cache;
+    for (Work& work : shared->works)
+        if (work.wasNotKept) work.result.error = nullptr;
+    each(shared, [](Shared& all, Work& work, const std::function<void()>& goOn) {
+        if (std::exchange(work.wasNotKept, false)) work.makeTexture(*all.cache, *all.budget, goOn);
+    });
+}
+
 void TexturePreparer::prepare(const std::vector<TextureRequest>& requests) {
     std::vector<Work> works;
     for (const TextureRequest& request : requests) {
@@ -316,28 +382,12 @@ void TexturePreparer::prepare(const std::vector<TextureRequest>& requests) {
     const auto shared = std::make_shared<Shared>(std::move(works), m_cache);
     const std::uint32_t threads = std::max(1u, m_settings.threads);
     for (Work& work : shared->works) work.threads = shared->works.size() < threads ? 2 : 1;
-    const auto each = [&](auto step) {
-        try {
-            callAsking(m_goOn, [shared, threads, step] {
-                const std::function<void()> goOn = [shared] {
-                    if (shared->stops) throw Stopped();
-                };
-                shared->doAll(threads, [&](Work& work) { step(*shared, work, goOn); });
-            });
-        } catch (...) {
-            shared->stops = true;
-            m_cache->abandon();
-            throw;
-        }
-    };
-    each([](Shared& all, Work& work, const std::function<void()>& goOn) {
+    each(shared, [](Shared& all, Work& work, const std::function<void()>& goOn) {
         work.findOriginal(*all.cache, goOn);
     });
     decideSpaces(shared->works);
     shared->budget.emplace(memoryFor(shared->works));
-    each([](Shared& all, Work& work, const std::function<void()>& goOn) {
-        work.makeTexture(*all.cache, *all.budget, goOn);
-    });
+    makeTextures(shared);
     bool hasNew = false;
     for (Work& work : shared->works) {
         m_counts.originalsOpened += work.wasOpened ? 1 : 0;

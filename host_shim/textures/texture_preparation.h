@@ -14,6 +14,7 @@
 #include "host_shim/colour/colour_pipeline.h"
 #include "host_shim/textures/texture_cache.h"
 #include "host_shim/textures/texture_facts.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host {
 
@@ -31,6 +32,12 @@ struct BakedTexture {
     std::string profile;  // an embedded ICC profile that nobody obeyed; empty: none
 };
 
+// A texture could be made, but not be kept: the disk is full, say.
+class NotKept : public HostError {
+  public:
+    using HostError::HostError;
+};
+
 // Where textures are kept, and what making them may take.
 struct TextureSettings {
     std::uint32_t threads{1};
@@ -38,6 +45,9 @@ struct TextureSettings {
     // Told before the largest is made, also where it is in the cache; decides then, by throwing,
     // in place of memoryBytes. what: as "texture FILE of W x H texels takes".
     std::function<void(std::uint64_t bytes, const std::string& what)> takes{};
+    // Asked once, where a texture can't be kept in the cache: another one for those. why: for
+    // people. Empty: texture() throws NotKept.
+    std::function<std::shared_ptr<TextureCache>(const std::string& why)> otherCache{};
 };
 
 // How many files were opened for it.
@@ -56,11 +66,11 @@ class TexturePreparer {
                     const TextureSettings& settings, std::function<void()> goOn = {});
 
     // Prepares all that are not there yet. What fails is thrown by texture(). Threads: one at a
-    // time. Errors: HostError kMemory where one takes more memory than it may.
+    // time. Errors: HostError kMemory where one takes more memory than it may; those of otherCache.
     void prepare(const std::vector<TextureRequest>& requests);
     // One of them; prepares it now where that has not been done. Errors: HostError kFile when the
-    // picture is missing or the texture can't be written; kBadInput when it is broken, no picture,
-    // or its colour space is unknown; those of prepare(). The text names the file.
+    // picture is missing, NotKept when the texture can't be; kBadInput when it is broken, no
+    // picture, or its colour space is unknown; those of prepare(). The text names the file.
     const BakedTexture& texture(const TextureRequest& request);
     const TextureCounts& counts() const { return m_counts; }
 
@@ -69,9 +79,12 @@ class TexturePreparer {
     struct Shared;
     void decideSpaces(std::vector<Work>& works) const;
     std::uint64_t memoryFor(const std::vector<Work>& works) const;
+    void each(const std::shared_ptr<Shared>& shared,
+              const std::function<void(Shared&, Work&, const std::function<void()>&)>& step);
+    void makeTextures(const std::shared_ptr<Shared>& shared);
 
     const ColourPipeline& m_colour;
-    std::shared_ptr<TextureCache> m_cache;
+    std::shared_ptr<TextureCache> m_cache, m_fullCache;
     TextureSettings m_settings;
     std::function<void()> m_goOn;
     struct Result {

@@ -141,7 +141,7 @@ TEST(FarmPlans, OtherTextsAreRefused) {
     const auto read = [](const std::string& text) {
         return refusal([&] { FarmPlan::fromJson(text, "plan.json"); });
     };
-    EXPECT_TRUE(refusesWith(read(""), 3, {"plan.json", "pm-farm/1"}));
+    EXPECT_TRUE(refusesWith(read(""), 3, {"plan.json", "no JSON"}));
     EXPECT_TRUE(refusesWith(read("{\"schema\": \"pm-farm/2\"}"), 3, {"pm-farm/1"}));
     EXPECT_TRUE(refusesWith(read("{\"schema\": \"pm-farm/1\"}"), 3, {"can't be understood"}));
     FarmPlan broken = somePlan();

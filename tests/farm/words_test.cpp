@@ -70,10 +70,7 @@ TEST(FarmCommand, RefusesWhatAFarmCantDo) {
                                 parsed({"farm", "a.obj", "--engine", "slurm"});
                             }),
                             2, {"--job"}));
-    EXPECT_TRUE(refusesWith(refusal([] {
-                                parsed({"farm", "a.obj", "--engine", "slurm", "--job", "a#"});
-                            }),
-                            2, {"#"}));
+    EXPECT_NO_THROW(parsed({"farm", "a.obj", "--engine", "slurm", "--job", "a#"}));
 }
 
 bool has(const Words& words, const std::string& word) {

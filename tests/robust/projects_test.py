@@ -169,6 +169,23 @@ class SomebodysOwn(Project):
         self.assertEqual(list(pathlib.Path(tempfile.gettempdir()).glob(f"pm_host.{os.getpid()}*")), [])
 
 
+class FullDisks(Project):
+    def test_a_cache_on_a_full_disk_gives_the_right_picture(self):
+        if subprocess.run(["unshare", "-rm", "mount", "-t", "tmpfs", "tmpfs", "/mnt"], capture_output=True).returncode != 0:
+            self.skipTest("no file system can be mounted here")
+        self.render("--texture-cache", self.folder / "roomy")
+        (self.folder / "small").mkdir()
+        for temporary, code in ((self.folder, 0), (self.folder / "small", 4)):
+            done = subprocess.run(
+                ["unshare", "-rm", "sh", "-c", 'mount -t tmpfs -o size=20k tmpfs "$1" && shift && exec "$@"', "sh",
+                 str(self.folder / "small"), HOST, "textured.obj", *OPTIONS, "-o", str(self.folder / "b.exr"),
+                 "--texture-cache", str(self.folder / "small" / "c")],
+                cwd=self.project, env={**os.environ, "TMPDIR": str(temporary)}, capture_output=True, text=True)  # fmt: skip
+            self.assertEqual(done.returncode, code, done.stderr)
+            self.assertIn("No space left on device", done.stderr)
+        self.assertEqual((self.folder / "a.exr").read_bytes(), (self.folder / "b.exr").read_bytes())
+
+
 class PmsOwn(Project):
     """Folders that pm made, in which somebody laid files; and folders of before there were markers."""
 
