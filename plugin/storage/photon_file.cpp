@@ -148,10 +148,9 @@ PhotonFileReader::PhotonFileReader(const std::string& file, Wanted wanted)
     std::error_code error;
     if (!fs::exists(file, error) && !error)
         throw unusable(file, "there is no such photon map; a render of photons only makes one");
-    // Nobody is waited for who might write into a pipe.
-    m_file = OwnedFile(file, O_RDONLY | O_NONBLOCK);
-    if (!fs::is_regular_file(file, error))
+    if (fs::exists(file, error) && !fs::is_regular_file(file, error))
         throw unusable(file, "is no photon map, nor a file at all");
+    m_file = OwnedFile(file, O_RDONLY);
     m_size = m_file.size();
     readHead();
     readEntries();
