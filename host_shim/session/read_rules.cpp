@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdlib>
 
 #include "host_shim/formats/all/scene_readers.h"
@@ -76,7 +77,10 @@ SceneData readScene(const Options& options, const WarningSink& warn,
     ReadRules rules = readRules(options);
     rules.takes = takes;
     const GoOn goOn = throwIfInterrupted;
-    const SidecarLimits limits{goOn, memoryLimitBytes(options)};
+    // So much is read just to tell the smallest limit that works; what a smaller one allows has been
+    // asked by the file's size.
+    constexpr std::uint64_t kToTell = std::uint64_t{1} << 30;
+    const SidecarLimits limits{goOn, std::max(memoryLimitBytes(options), kToTell)};
     std::optional<Sidecar> sidecar;
     if (const fs::path file = sidecarInUse(options); !file.empty()) {
         SceneFiles files(options.scene.parent_path(), rules.files);
