@@ -21,7 +21,7 @@ struct ReadRules {
     std::string mtlDialect;  // of all MTL files, as --mtl-dialect names it; empty: by their headers
     SceneFileRules files;
     std::vector<std::string> materials;  // names that are wanted beside those that faces use
-    MemoryNote takes{};                    // beside what the scene's own file takes by its size
+    MemoryNote takes{};                  // beside what the scene's own file takes by its size
 };
 
 // What a reader is given.
