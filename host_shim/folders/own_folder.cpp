@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <vector>
 
 #include "host_shim/pictures/finished_file.h"
 #include "host_shim/values/host_error.h"

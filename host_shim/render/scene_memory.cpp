@@ -115,7 +115,7 @@ std::uint64_t memoryLimitBytes(const Options& options) {
 
 HostMemory::HostMemory(const Options& options, const PmrApi& api)
     : m_scene(options.scene.string()),
-      m_limit(static_cast<std::uint64_t>(memoryLimitGib(options) * kGib)),
+      m_limit(memoryLimitBytes(options)),
       m_machine(api.memoryLeft(0)),
       m_peak(kProgramBytes) {}
 

@@ -118,14 +118,14 @@ fs::path usualCacheFolder() {
 }
 
 TextureCache::TextureCache(const fs::path& folder, std::uint64_t limitBytes)
-    : m_own(folder, kCacheKind), m_folder(m_own.path()), m_limitBytes(limitBytes) {
+    : m_own(folder, kCacheKind), m_limitBytes(limitBytes) {
     std::error_code failed;
     for (const char* part : {"textures", "index", "leases"})
-        fs::create_directories(m_folder / part, failed);
-    const fs::path probe = makeTemporaryBeside(m_folder / "textures" / "x.tx");
+        fs::create_directories(m_own.path() / part, failed);
+    const fs::path probe = makeTemporaryBeside(m_own.path() / "textures" / "x.tx");
     if (probe.empty()) return;
     removeFile(probe);
-    m_leaseFile = makeTemporaryBeside(m_folder / "leases" / "x.lease");
+    m_leaseFile = makeTemporaryBeside(m_own.path() / "leases" / "x.lease");
     if (m_leaseFile.empty()) return;
     m_lease = ::open(m_leaseFile.c_str(), O_WRONLY | O_APPEND | O_CLOEXEC | O_NOFOLLOW);
     // Where files can't be locked, others go by the time of the last use alone.
@@ -139,22 +139,22 @@ TextureCache::~TextureCache() {
 }
 
 fs::path TextureCache::textureFile(const std::string& name) const {
-    return m_folder / "textures" / (name + ".tx");
+    return folder() / "textures" / (name + ".tx");
 }
 
 fs::path TextureCache::recordFile(const std::string& name) const {
-    return m_folder / "textures" / (name + ".rec");
+    return folder() / "textures" / (name + ".rec");
 }
 
 std::optional<Record> TextureCache::original(const std::string& key) const {
-    const fs::path file = m_folder / "index" / (key + ".rec");
+    const fs::path file = folder() / "index" / (key + ".rec");
     auto record = Record::read(file);
     if (record && now() - lastModified(file) > kSecondsOfADay) touch(file);
     return record;
 }
 
 void TextureCache::putOriginal(const std::string& key, const Record& record) const {
-    if (isWritable()) record.write(m_folder / "index" / (key + ".rec"));
+    if (isWritable()) record.write(folder() / "index" / (key + ".rec"));
 }
 
 // Whoever changed the file changed its stamp; then all its bytes are looked at.
@@ -196,7 +196,7 @@ void TextureCache::lease(const std::string& name) {
 }
 
 fs::path TextureCache::nameForNew() const {
-    return m_folder / "textures" / (uniqueName() + ".tx");
+    return folder() / "textures" / (uniqueName() + ".tx");
 }
 
 void TextureCache::noteUnderway(const fs::path& temporary) {
@@ -232,7 +232,7 @@ void TextureCache::commit(const std::string& name, FinishedFile& texture, Record
 // A lease that can be locked belongs to nobody any more.
 std::vector<std::string> TextureCache::leasedNames() const {
     std::vector<std::string> names;
-    for (const fs::path& file : filesOf(m_folder / "leases")) {
+    for (const fs::path& file : filesOf(folder() / "leases")) {
         const int lease = ::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NOFOLLOW);
         if (lease < 0) continue;
         const bool isLeft = file != m_leaseFile && ::flock(lease, LOCK_EX | LOCK_NB) == 0 &&
@@ -250,7 +250,7 @@ std::vector<std::string> TextureCache::leasedNames() const {
 
 std::vector<TextureCache::Entry> TextureCache::list() const {
     std::vector<Entry> entries;
-    for (const fs::path& file : filesOf(m_folder / "textures")) {
+    for (const fs::path& file : filesOf(folder() / "textures")) {
         if (file.extension() != ".tx" || isTemporary(file) || !m_own.owns(file)) continue;
         Entry entry;
         entry.name = file.stem().string();
@@ -275,11 +275,11 @@ void TextureCache::removeTexture(const std::string& name) const {
 void TextureCache::removeLeftovers() const {
     const std::int64_t time = now();
     for (const char* part : {"textures", "index"})
-        for (const fs::path& file : filesOf(m_folder / part))
+        for (const fs::path& file : filesOf(folder() / part))
             if (isTemporary(file) && time - lastModified(file) > kOldTemporary) m_own.remove(file);
-    for (const fs::path& file : filesOf(m_folder / "index"))
+    for (const fs::path& file : filesOf(folder() / "index"))
         if (time - lastModified(file) > kOldIndex) m_own.remove(file);
-    for (const fs::path& file : filesOf(m_folder / "textures"))
+    for (const fs::path& file : filesOf(folder() / "textures"))
         if (file.extension() == ".rec" && time - lastModified(file) > kOldIndex &&
             !fs::exists(textureFile(file.stem().string())))
             m_own.remove(file);
@@ -308,13 +308,13 @@ std::size_t TextureCache::clear() {
     const std::vector<std::string> leased = leasedNames();
     const std::unordered_set<std::string> used(leased.begin(), leased.end());
     std::size_t count = 0;
-    for (const fs::path& file : filesOf(m_folder / "textures")) {
+    for (const fs::path& file : filesOf(folder() / "textures")) {
         if (!m_own.owns(file) || used.contains(file.stem().string())) continue;
         if (isTemporary(file) && now() - lastModified(file) < kOldTemporary) continue;
         count += file.extension() == ".tx" ? 1 : 0;
         m_own.remove(file);
     }
-    for (const fs::path& file : filesOf(m_folder / "index"))
+    for (const fs::path& file : filesOf(folder() / "index"))
         if (file.extension() == ".rec") m_own.remove(file);
     return count;
 }
@@ -327,7 +327,7 @@ std::vector<std::string> TextureCache::verify(const std::function<void()>& goOn)
         faults.push_back(fmt::format("{}: damaged, removed", entry.file.string()));
         removeTexture(entry.name);
     }
-    for (const fs::path& file : filesOf(m_folder / "index")) {
+    for (const fs::path& file : filesOf(folder() / "index")) {
         if (!m_own.owns(file) || isTemporary(file)) continue;
         const auto record = Record::read(file);
         if (!record) {

@@ -38,7 +38,7 @@ class TextureCache {
     TextureCache(const TextureCache&) = delete;
     TextureCache& operator=(const TextureCache&) = delete;
 
-    const std::filesystem::path& folder() const { return m_folder; }
+    const std::filesystem::path& folder() const { return m_own.path(); }
     bool isWritable() const { return m_lease >= 0; }
 
     // key: a hash of the stamp and what else decides.
@@ -81,7 +81,6 @@ class TextureCache {
     std::filesystem::path recordFile(const std::string& name) const;
 
     OwnFolder m_own;
-    std::filesystem::path m_folder;
     std::uint64_t m_limitBytes;
     std::mutex m_mutex;
     int m_lease{-1};  // descriptor of the lease's file

@@ -35,8 +35,6 @@ void checkBuild(const std::string& file, const PieceHead& head) {
                       "the part is of another picture; it differs in: " + text);
 }
 
-}  // namespace
-
 // A head may claim any size: before memory is taken for that.
 void checkSize(const std::string& file, const PieceHead& head, const RenderSettings& render) {
     constexpr std::uint64_t kMostOfBucket = 1024 * 1024;  // pixels, by the setting bucketSize
@@ -57,6 +55,8 @@ void checkSize(const std::string& file, const PieceHead& head, const RenderSetti
                         "are left",
                         render.window.width(), render.window.height(), toGib(bytes), toGib(left)));
 }
+
+}  // namespace
 
 Merge::Picture::Picture(PieceHead partHead, std::string fileName)
     : head(std::move(partHead)), firstFile(std::move(fileName)) {

@@ -15,7 +15,6 @@ namespace {
 // What we write ourselves takes about four times as much, lists of numbers of three letters eight.
 constexpr std::uint64_t kOfTextByte = 8;
 constexpr std::uint64_t kAlways = std::uint64_t{4} << 20;
-constexpr int kOutOfMemory = 5;
 constexpr double kMib = 1024.0 * 1024.0;
 
 }  // namespace
@@ -35,7 +34,7 @@ JsonBudget JsonBudget::ofLimit(std::string file, std::uint64_t memoryLimit) {
 
 void JsonBudget::refuse() const {
     throw HostError(
-        m_isMemoryLimit ? static_cast<ExitCode>(kOutOfMemory) : ExitCode::kBadInput,
+        m_isMemoryLimit ? ExitCode::kMemory : ExitCode::kBadInput,
         fmt::format("{}: what it says takes more than {:.1f} MiB of memory, {}", m_file,
                     static_cast<double>(m_most) / kMib,
                     m_isMemoryLimit ? "the limit (--memory-limit)" : "the most for its size"));
