@@ -35,6 +35,7 @@ using Clock = std::chrono::steady_clock;
 constexpr auto kGlance = std::chrono::milliseconds(50);
 constexpr auto kBetweenLooks = std::chrono::milliseconds(500);  // for products
 constexpr auto kBetweenQuestions = std::chrono::seconds(2);     // to the engine
+constexpr auto kToEnd = std::chrono::seconds(2);                // of a task whose part is there
 constexpr auto kBetweenPages = std::chrono::seconds(10);
 
 class Farm {
@@ -66,8 +67,9 @@ class Farm {
             writePage();
             throw;
         }
-        // Who has been started twice has nothing left to do. Not earlier: those whose parts have
-        // just come are about to end by themselves.
+        // Who has been started twice has nothing left to do; those whose parts have just come are
+        // about to end by themselves.
+        waitForEnds();
         if (!m_engine->unfinished().empty()) m_engine->cancel();
         writePage();
         return code;
@@ -77,6 +79,11 @@ class Farm {
     static void print(const std::string& text) {
         std::fwrite(text.data(), 1, text.size(), stdout);
         std::fflush(stdout);
+    }
+    void waitForEnds() {
+        const auto until = Clock::now() + kToEnd;
+        while (!m_engine->unfinished().empty() && Clock::now() < until && interruptSignal() == 0)
+            std::this_thread::sleep_for(kGlance);
     }
     void makePlan(const std::vector<Options>& frames) {
         const FarmOptions& farm = *m_options.farm;
