@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "host_shim/process/interrupt.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
@@ -93,6 +94,7 @@ std::string PluginContext::lastError() const {
 
 void PluginContext::check(PmrStatus status, const std::string& what) const {
     if (status == PMR_OK) return;
+    if (status == PMR_ERROR_CANCELLED) throwIfInterrupted();
     std::string text = lastError();
     if (text.empty()) text = m_api.statusText(status);
     throw HostError(static_cast<ExitCode>(exitCodeOf(status)), fmt::format("{}: {}", what, text));

@@ -122,6 +122,7 @@ void RenderRun::readPixels(const PmrRectangle& rectangle, const char* layer, flo
 
 bool RenderRun::deliversBuckets() const {
     std::int32_t delivery = PMR_DELIVERY_FRAME;
+    const InterruptWatch watch = planWatch();
     m_context.check(api().renderDelivery(m_handle, &delivery), "render");
     return delivery == PMR_DELIVERY_BUCKETS;
 }
@@ -143,7 +144,12 @@ void RenderRun::checkSettings(PmrStatus status, const std::string& what) const {
     m_context.check(status, what);
 }
 
+InterruptWatch RenderRun::planWatch() const {
+    return InterruptWatch([this] { api().cancelBuilds(m_context.handle(), 1); });
+}
+
 std::string RenderRun::explain() const {
+    const InterruptWatch watch = planWatch();
     PmrStatus status = PMR_OK;
     std::string text = pluginText([&](char* buffer, uint64_t capacity, uint64_t* needed) {
         return status = api().explainRender(m_handle, buffer, capacity, needed);
@@ -160,7 +166,10 @@ std::string RenderRun::statistics() const {
 
 PmrStatus RenderRun::run() {
     constexpr double kPollSeconds = 0.05;
-    const PmrStatus started = api().startRender(m_handle);
+    const PmrStatus started = [this] {
+        const InterruptWatch watch = planWatch();
+        return api().startRender(m_handle);
+    }();
     const bool tooLarge = started == PMR_ERROR_MEMORY && !m_whyFrame.empty();
     checkSettings(started, tooLarge ? m_whyFrame : "render");
     while (!m_finished) {

@@ -31,6 +31,8 @@ class Context {
     // Whether meshes and scenes that are being built are to be given up. Threads: any.
     void cancelBuilds(bool on) { m_cancelBuilds = on; }
     CancelCheck buildCheck() const { return CancelCheck(m_cancelBuilds); }
+    // What buildCheck() looks at.
+    const std::atomic<bool>& buildsAreCancelled() const { return m_cancelBuilds; }
 
     // Passes a message to the host, on the calling thread. Threads: any.
     void sendMessage(std::int32_t level, std::int32_t code, const std::string& text) const;

@@ -230,12 +230,15 @@ void SceneObject::commit() {
     const auto textures = std::make_shared<SceneTextures>(*m_textures);
     SceneDescription description = describe(*textures);
     description.textures = textures;
+    const std::shared_ptr<const std::atomic<bool>> cancelPlans(m_context,
+                                                               &m_context->buildsAreCancelled());
     m_committed = runLeavable(m_context->buildCheck(), "building the scene",
-                              [description = std::move(description), textures,
+                              [description = std::move(description), textures, cancelPlans,
                                system = m_context->textures(), threads = m_context->threads(),
                                isa = m_context->isa()](const CancelCheck& cancel) mutable {
                                   RenderScene made;
                                   made.textures = textures;
+                                  made.cancelPlans = cancelPlans;
                                   made.textureSystem = system;
                                   build(std::move(description), threads, isa, cancel, made);
                                   return std::make_shared<const RenderScene>(std::move(made));

@@ -648,11 +648,13 @@ typedef struct PmrApi {
      * after releaseMerge. */
     PmrStatus(PMR_CALL* renderDelivery)(PmrRender render, int32_t* delivery);
 
-    /* With 1, createMesh, createCage, createTexture and commitScene of this context, whether they
-     * run now or are called later, return PMR_ERROR_CANCELLED soon and make nothing, until it is
-     * called with 0; a scene then stays open and may be committed again. What a library has in work
-     * by then may go on for a while on a thread of its own; the next such call of the process waits
-     * for it, and so does its exit(). Any thread, any time, any number. Came after renderDelivery.
+    /* With 1, createMesh, createCage, createTexture and commitScene of this context, and what plans
+     * a render of its scenes (explainRender, renderDelivery, startRender), whether they run now or
+     * are called later, return PMR_ERROR_CANCELLED soon and make nothing, until it is called with
+     * 0; a scene then stays open and may be committed again, a render may be started. What a
+     * library has in work by then may go on for a while on a thread of its own; the next such call
+     * of the process waits for it, and so does its exit(). Any thread, any time, any number. Came
+     * after renderDelivery.
      */
     PmrStatus(PMR_CALL* cancelBuilds)(PmrContext context, int32_t on);
 

@@ -68,7 +68,9 @@ void Render::checkDelivery(const SettingValues& values) const {
 Plan Render::makePlan() const {
     const SettingValues values = settings();
     WorkerArena arena(static_cast<int>(values.integer(Setting::kThreads)));
-    return arena.execute([&] { return pm::makePlan(*m_scene->scene, values.toRenderSettings()); });
+    return arena.execute([&] {
+        return pm::makePlan(*m_scene->scene, values.toRenderSettings(), *m_scene->cancelPlans);
+    });
 }
 
 MemoryPlan Render::memoryPlan(const Plan& plan) const {
@@ -105,8 +107,7 @@ void Render::start() {
     checkDelivery(m_settings);
     // Before the plan divides memory it traces some photons.
     m_scene->scene->setGroupBudget(kFirstGroups);
-    auto made = std::make_shared<RenderWork>(m_scene->scene, m_scene->identity, m_settings,
-                                             m_scene->textures->texelBytes());
+    auto made = std::make_shared<RenderWork>(*m_scene, m_settings);
     RenderPages* const pages = made->pages();
     made->divideMemory(std::make_unique<RenderCaches>(m_scene, made->memory(),
                                                       pages ? &pages->paging() : nullptr));

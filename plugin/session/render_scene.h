@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <atomic>
 #include <memory>
 
 #include "integrator/scene/scene.h"
@@ -19,6 +20,9 @@ struct RenderScene {
     std::shared_ptr<const SceneTextures> textures;
     std::shared_ptr<TextureSystem> textureSystem;  // that all textures are of
     double buildSeconds = 0;
+    // Whether what renders plan is to be given up; never null.
+    std::shared_ptr<const std::atomic<bool>> cancelPlans =
+        std::make_shared<const std::atomic<bool>>(false);
 };
 
 }  // namespace pm::plugin

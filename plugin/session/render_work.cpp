@@ -47,26 +47,25 @@ ProgressClock::Ends endsOf(const StopRule& rule, bool isAdaptive) {
 
 }  // namespace
 
-RenderWork::RenderWork(std::shared_ptr<const Scene> scene, const Identity& sceneIdentity,
-                       const SettingValues& values, std::uint64_t texelBytes)
+RenderWork::RenderWork(const RenderScene& scene, const SettingValues& values)
     : m_processorStart(processorSeconds()),
-      m_scene(std::move(scene)),
+      m_scene(scene.scene),
       m_settings(values.toRenderSettings()),
       m_stopRule(values),
       m_arena(static_cast<int>(values.integer(Setting::kThreads))),
-      m_plan(m_arena.execute([this] { return makePlan(*m_scene, m_settings); })),
+      m_plan(m_arena.execute([&] { return makePlan(*m_scene, m_settings, *scene.cancelPlans); })),
       m_grid(bucketsOf(values)),
-      m_memory(planMemory(*m_scene, m_plan, values, m_grid, texelBytes)),
+      m_memory(planMemory(*m_scene, m_plan, values, m_grid, scene.textures->texelBytes())),
       m_layout(channelLayout(m_settings)),
       m_pages(m_memory.pages > 0 ? std::make_unique<RenderPages>(values, m_memory) : nullptr),
-      m_photons(values, sceneIdentity, *m_scene, m_plan),
+      m_photons(values, scene.identity, *m_scene, m_plan),
       m_clock(endsOf(m_stopRule, m_settings.isAdaptive()), m_plan.tracePhotons) {
     m_memory.check();
     if (m_photons.isOnly()) {
         makeRenderer();
         return;
     }
-    orderBuckets(sceneIdentity, values);
+    orderBuckets(scene.identity, values);
     makeRenderer();
     makePlaces();
 }

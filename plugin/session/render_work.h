@@ -28,6 +28,7 @@
 #include "plugin/session/render_pages.h"
 #include "plugin/session/render_photons.h"
 #include "plugin/session/render_pieces.h"
+#include "plugin/session/render_scene.h"
 #include "plugin/session/setting_values.h"
 #include "plugin/session/stop_rule.h"
 #include "plugin/session/warning_log.h"
@@ -62,9 +63,9 @@ struct Cancel {
 class RenderWork {
   public:
     // Plans, checks the memory limit before anything is allocated, then makes frame and renderer.
-    // Errors: MEMORY with all figures; those of FrameRenderer and RenderPieces.
-    RenderWork(std::shared_ptr<const Scene> scene, const Identity& sceneIdentity,
-               const SettingValues& values, std::uint64_t texelBytes);
+    // Errors: MEMORY with all figures; those of FrameRenderer and RenderPieces;
+    // CallError(CANCELLED) soon after scene.cancelPlans is set.
+    RenderWork(const RenderScene& scene, const SettingValues& values);
 
     // Before run: who is told of each bucket that is done.
     void divideMemory(std::unique_ptr<RenderCaches> caches) { m_caches = std::move(caches); }

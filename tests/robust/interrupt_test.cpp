@@ -163,10 +163,10 @@ TEST_F(Interrupt, whileALargeSidecarIsTaken) {
               list(R"({"type": "point", "position": [0, 0, 0], "intensity": 1})") + "}");
     const std::vector<std::string> arguments{"box.obj", "--explain", "--stats", "s.json"};
     const int interrupted =
-        terminateAt(2, {0.08, 0.12, 0.16, 0.2}, arguments, [&](const Outcome& outcome) {
+        terminateAt(3, {0.1, 0.3, 0.5, 0.7}, arguments, [&](const Outcome& outcome) {
             EXPECT_NE(outcome.err.find("pm_host: terminated"), std::string::npos) << outcome.err;
         });
-    EXPECT_GE(interrupted, 2);
+    EXPECT_GE(interrupted, 3);
 }
 
 // The libraries that read and bake a large picture can't be told to stop; nobody waits for them.

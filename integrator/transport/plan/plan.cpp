@@ -160,14 +160,15 @@ void limitPhotons(const RenderSettings& settings, Plan& plan) {
 // In bright rooms few photons go on after they landed once: so many that all land about
 // 2 kMostLandings times. A photon's chain has about 2 sqrt(4 n) stored landings where all land n
 // times.
-void planLandings(const Scene& scene, const RenderSettings& settings, Plan& plan) {
+void planLandings(const Scene& scene, const RenderSettings& settings,
+                  const std::atomic<bool>& cancelled, Plan& plan) {
     plan.landingsOfPhoton = kExpectedLandings;
     plan.causticLandingsOfPhoton = kCausticParts;
     plan.refocusedOfPhoton = kCausticParts * kExpectedRefocused;
     plan.receivedOfPhoton = kCausticParts;
     plan.descendedOfPhoton = kCausticParts * static_cast<double>(kAutoDescent) * kExpectedLandings +
                              plan.refocusedOfPhoton;
-    const LandingPilot pilot = LandingPilot::of(scene, settings);
+    const LandingPilot pilot = LandingPilot::of(scene, settings, cancelled);
     if (!(pilot.landings > kMostLandings)) return;
     const double oneIn = 2 * std::sqrt(4 * pilot.landings) / (2 * kMostLandings);
     plan.oneInChains = std::bit_floor(static_cast<std::uint32_t>(std::max(1.0, oneIn)));
@@ -246,12 +247,14 @@ std::string whyNothingGoesOn(const Scene& scene) {
 
 // Why light casts no caustics; empty where it may. nothingGoesOn: whyNothingGoesOn().
 std::string whyNoCaustics(const Scene& scene, const RenderSettings& settings,
-                          const SceneTraits& traits, const std::string& nothingGoesOn, Plan& plan) {
+                          const SceneTraits& traits, const std::string& nothingGoesOn,
+                          const std::atomic<bool>& cancelled, Plan& plan) {
     if (!traits.specular)
         return traits.glossy ? "no lobe but diffuse ones and such as are too broad to cast "
                                "caustics carries more than a millionth"
                              : "every surface is diffuse";
-    if (!nothingGoesOn.empty() || findsCaustics(scene, settings.seed)) return nothingGoesOn;
+    if (!nothingGoesOn.empty() || findsCaustics(scene, settings.seed, cancelled))
+        return nothingGoesOn;
     plan.notices.push_back({NoticeCode::kNoCausticPhotons,
                             "0 photons reached a diffuse surface by way of another, so there is no "
                             "caustic light"});
@@ -261,13 +264,13 @@ std::string whyNoCaustics(const Scene& scene, const RenderSettings& settings,
 }
 
 void planMaps(const Scene& scene, const RenderSettings& settings, const SceneTraits& traits,
-              bool everything, Plan& plan) {
+              bool everything, const std::atomic<bool>& cancelled, Plan& plan) {
     const std::string nothingGoesOn = everything ? "" : whyNothingGoesOn(scene);
     const std::string noGlobalMap = traits.diffuse || everything || !nothingGoesOn.empty()
                                         ? nothingGoesOn
                                         : "no surface reflects diffusely";
     const std::string noCausticMap =
-        everything ? "" : whyNoCaustics(scene, settings, traits, nothingGoesOn, plan);
+        everything ? "" : whyNoCaustics(scene, settings, traits, nothingGoesOn, cancelled, plan);
     plan.globalMap = noGlobalMap.empty();
     plan.causticMap = noCausticMap.empty();
     plan.tracePhotons = plan.globalMap || plan.causticMap;
@@ -290,7 +293,8 @@ void planMaps(const Scene& scene, const RenderSettings& settings, const SceneTra
 
 }  // namespace
 
-Plan makePlan(const Scene& scene, const RenderSettings& settings) {
+Plan makePlan(const Scene& scene, const RenderSettings& settings,
+              const std::atomic<bool>& cancelled) {
     Plan plan;
     const SceneTraits traits = findTraits(scene);
     const bool isPath = settings.integrator == IntegratorKind::kPath;
@@ -319,11 +323,15 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings) {
         return plan;
     }
     planDirectLight(scene, traits, plan);
-    planLandings(scene, settings, plan);
-    planMaps(scene, settings, traits, everything, plan);
-    expectLandings(scene, settings, plan);
+    planLandings(scene, settings, cancelled, plan);
+    planMaps(scene, settings, traits, everything, cancelled, plan);
+    expectLandings(scene, settings, cancelled, plan);
     estimateCosts(scene, settings, plan);
     return plan;
+}
+
+Plan makePlan(const Scene& scene, const RenderSettings& settings) {
+    return makePlan(scene, settings, std::atomic<bool>(false));
 }
 
 std::uint64_t Plan::globalPilotPhotons() const {

@@ -19,14 +19,13 @@ constexpr std::uint64_t kUnaimed = 1 << 12, kFirstAimed = 1 << 9;
 
 }  // namespace
 
-bool findsCaustics(const Scene& scene, std::uint64_t seed) {
-    const std::atomic<bool> neverCancelled{false};
+bool findsCaustics(const Scene& scene, std::uint64_t seed, const std::atomic<bool>& cancelled) {
     const LightSampler lights = LightSampler::forPhotons(scene);
     PhotonTraceRequest request{PhotonKind::kCausticPilot, kUnaimed, seed, kPilotOfReach};
     request.received = true;
     // Where they land it may be rare, far from where the camera looks: that they go on is enough.
     const auto goOn = [&] {
-        const PhotonTraceResult traced = tracePhotons(scene, lights, request, neverCancelled, {});
+        const PhotonTraceResult traced = tracePhotons(scene, lights, request, cancelled, {});
         return traced.balance.stored > 0 ||
                (request.keepRecords && traced.balance.rays > traced.records.size());
     };

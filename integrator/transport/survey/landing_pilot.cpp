@@ -24,9 +24,9 @@ constexpr double kAimedMeet = 0.6;
 // A pass's number that the other pilot of global photons doesn't have.
 constexpr std::uint32_t kGlobalPass = 2;
 
-PhotonTraceResult trace(const Scene& scene, const PhotonTraceRequest& request) {
-    const std::atomic<bool> neverCancelled{false};
-    return tracePhotons(scene, LightSampler::forPhotons(scene), request, neverCancelled, {});
+PhotonTraceResult trace(const Scene& scene, const PhotonTraceRequest& request,
+                        const std::atomic<bool>& cancelled) {
+    return tracePhotons(scene, LightSampler::forPhotons(scene), request, cancelled, {});
 }
 
 PhotonTraceRequest globalRequest(const RenderSettings& settings) {
@@ -39,10 +39,11 @@ double ratio(std::uint64_t part, std::uint64_t whole) {
 
 }  // namespace
 
-LandingPilot LandingPilot::of(const Scene& scene, const RenderSettings& settings) {
+LandingPilot LandingPilot::of(const Scene& scene, const RenderSettings& settings,
+                              const std::atomic<bool>& cancelled) {
     PhotonTraceRequest request = globalRequest(settings);
     request.oneInChains = 1;
-    const PhotonTraceResult traced = trace(scene, request);
+    const PhotonTraceResult traced = trace(scene, request, cancelled);
     if (!(traced.balance.fluxEmitted > 0)) return {};
     double landed = 0;
     for (const Photon& photon : traced.photons) landed += channelSum(photon.flux);
@@ -50,12 +51,13 @@ LandingPilot LandingPilot::of(const Scene& scene, const RenderSettings& settings
             ratio(traced.balance.stored, traced.balance.emitted)};
 }
 
-void expectLandings(const Scene& scene, const RenderSettings& settings, Plan& plan) {
+void expectLandings(const Scene& scene, const RenderSettings& settings,
+                    const std::atomic<bool>& cancelled, Plan& plan) {
     if (plan.globalMap) {
         PhotonTraceRequest request = globalRequest(settings);
         request.withoutCaustics = plan.descent > 0.0f;
         request.oneInChains = plan.oneInChains;
-        const PhotonBalance balance = trace(scene, request).balance;
+        const PhotonBalance balance = trace(scene, request, cancelled).balance;
         if (balance.emitted > 0) plan.landingsOfPhoton = ratio(balance.stored, balance.emitted);
     }
     if (!plan.causticMap) return;
@@ -64,7 +66,7 @@ void expectLandings(const Scene& scene, const RenderSettings& settings, Plan& pl
     request.descent = plan.descent;
     request.received = plan.receivedMap;
     request.oneInChains = plan.oneInChains;
-    const PhotonTraceResult traced = trace(scene, request);
+    const PhotonTraceResult traced = trace(scene, request, cancelled);
     if (traced.metCaster < kFewestAtCasters) return;
     const auto refocused = static_cast<std::uint64_t>(std::ranges::count_if(
         traced.descended, [](const Photon& photon) { return photon.normal.isMarked(); }));

@@ -18,12 +18,14 @@ struct LandingPilot {
     double storedInChains = 0;  // landings of a photon that LongChains would store
 
     // In parallel in the calling TBB arena; at most a fraction of a second. Finds nothing where no
-    // lamp shines.
-    static LandingPilot of(const Scene& scene, const RenderSettings& settings);
+    // lamp shines. Throws Error(kCancelled) soon after `cancelled` is set.
+    static LandingPilot of(const Scene& scene, const RenderSettings& settings,
+                           const std::atomic<bool>& cancelled);
 };
 
 // Expects of the plan's photons what as many as a pilot has do; of caustic ones those count that
-// meet what they are aimed at.
-void expectLandings(const Scene& scene, const RenderSettings& settings, Plan& plan);
+// meet what they are aimed at. Throws Error(kCancelled) soon after `cancelled` is set.
+void expectLandings(const Scene& scene, const RenderSettings& settings,
+                    const std::atomic<bool>& cancelled, Plan& plan);
 
 }  // namespace pm
