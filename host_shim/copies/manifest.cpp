@@ -144,6 +144,7 @@ std::string Manifest::toJson() const {
 Manifest Manifest::fromJson(std::string_view text, const std::string& where,
                             std::uint64_t memoryLimit) {
     JsonBudget budget(where, text.size(), memoryLimit);
+    if (memoryLimit > 0) budget.take(text.size());
     const Json json = parseJson(text, budget, throwIfInterrupted);
     if (!json.is_object() || json.value("schema", Json()) != kSchema)
         throw HostError(ExitCode::kBadInput,

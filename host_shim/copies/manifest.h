@@ -39,8 +39,8 @@ struct Manifest {
     // Of toJson(), white space left out.
     static std::string beginning();
     std::string toJson() const;
-    // memoryLimit: what --memory-limit says, in bytes; 0: nothing. where: for messages. Errors:
-    // kBadInput for anything else than toJson() gives; those of JsonBudget; Interrupted.
+    // memoryLimit: what --memory-limit leaves, in bytes; 0: nothing was said. where: for messages.
+    // Errors: kBadInput for anything else than toJson() gives; those of JsonBudget; Interrupted.
     static Manifest fromJson(std::string_view text, const std::string& where,
                              std::uint64_t memoryLimit = 0);
 };

@@ -76,7 +76,7 @@ class Fetching {
           m_download(log),
           m_folder(folderOf(options, temporary, log), limitOf(options), log),
           m_text(m_download.text(m_url, kMostManifestBytes)),
-          m_manifest(Manifest::fromJson(m_text, m_url, memoryLimitBytes(options))) {}
+          m_manifest(Manifest::fromJson(m_text, m_url, memoryForText(options))) {}
 
     PackInUse run() {
         PackInUse pack(m_folder, m_text);

@@ -21,8 +21,6 @@ constexpr std::uint64_t kMib = std::uint64_t{1} << 20;
 constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
 // Of the program and its libraries before anything is rendered; 127 are measured.
 constexpr std::uint64_t kProgramBytes = 134 * kMib;
-// A step of up to this is done to tell the smallest limit.
-constexpr std::uint64_t kTellingBytes = 1024 * kMib;
 
 // Of a triangle of a cage: vertices, normals, their numbers, and the ray tracer's tree; measured.
 constexpr std::uint64_t kBytesOfTriangle = 150;
@@ -111,6 +109,12 @@ double memoryLimitGib(const Options& options) {
 std::uint64_t memoryLimitBytes(const Options& options) {
     constexpr double kMost = 9e18;
     return static_cast<std::uint64_t>(std::min(memoryLimitGib(options) * kGib, kMost));
+}
+
+std::uint64_t memoryForText(const Options& options) {
+    constexpr std::uint64_t kAlways = 4 * kMib;
+    const std::uint64_t limit = memoryLimitBytes(options);
+    return limit == 0 ? 0 : std::max(limit, kProgramBytes + kAlways) - kProgramBytes;
 }
 
 HostMemory::HostMemory(const Options& options, const PmrApi& api)

@@ -18,6 +18,11 @@ inline constexpr std::uint32_t kTessellationRate = 8;  // of cages
 // What --memory-limit says; 0: nothing, and the library goes by the machine.
 double memoryLimitGib(const Options& options);
 std::uint64_t memoryLimitBytes(const Options& options);
+// What that leaves beside the program for what a text says, but for a few MiB that it always may
+// have; 0: nothing was said.
+std::uint64_t memoryForText(const Options& options);
+// A step of up to this is done, though a limit allow less, to tell the smallest that works.
+inline constexpr std::uint64_t kTellingBytes = std::uint64_t{256} << 20;
 
 // What pm_host takes before a render, step by step, by what files say and what is made of them: of
 // the same scene always the same, whatever the machine has just held. Threads: one at a time.

@@ -77,10 +77,8 @@ SceneData readScene(const Options& options, const WarningSink& warn,
     ReadRules rules = readRules(options);
     rules.takes = takes;
     const GoOn goOn = throwIfInterrupted;
-    // So much is read just to tell the smallest limit that works; what a smaller one allows has
-    // been asked by the file's size.
-    constexpr std::uint64_t kToTell = std::uint64_t{1} << 30;
-    const SidecarLimits limits{goOn, std::max(memoryLimitBytes(options), kToTell)};
+    const std::uint64_t room = memoryForText(options);
+    const SidecarLimits limits{goOn, room == 0 ? 0 : std::max(room, kTellingBytes)};
     std::optional<Sidecar> sidecar;
     if (const fs::path file = sidecarInUse(options); !file.empty()) {
         SceneFiles files(options.scene.parent_path(), rules.files);

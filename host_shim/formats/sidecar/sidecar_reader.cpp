@@ -146,11 +146,12 @@ std::uint64_t bytesOf(const SidecarMaterial& material) {
 // Takes the parts of a sidecar as they come.
 class SidecarParts {
   public:
-    SidecarParts(const std::string& file, SceneFiles& files, const SidecarLimits& limits)
+    SidecarParts(const std::string& file, std::uint64_t textBytes, SceneFiles& files,
+                 const SidecarLimits& limits)
         : m_files(files),
           m_goOn(limits.goOn),
           m_limit(limits.memoryBytes),
-          m_held(JsonBudget::ofLimit(file, limits.memoryBytes)) {
+          m_held(file, 2 * textBytes + kFewEntries, limits.memoryBytes) {
         m_sidecar.file = file;
     }
 
@@ -228,6 +229,9 @@ class SidecarParts {
         }
     }
 
+    // Lists that grow are there twice. Bytes: of a file of very short entries.
+    static constexpr std::uint64_t kFewEntries = std::uint64_t{32} << 20;
+
     SceneFiles& m_files;
     const GoOn& m_goOn;
     std::uint64_t m_limit;
@@ -262,7 +266,7 @@ std::vector<std::string> Sidecar::materialNames() const {
 
 Sidecar readSidecar(std::string_view text, const std::string& file, SceneFiles& files,
                     const SidecarLimits& limits) {
-    return SidecarParts(file, files, limits).read(text);
+    return SidecarParts(file, text.size(), files, limits).read(text);
 }
 
 Sidecar readSidecarFile(const fs::path& file, SceneFiles& files, const SidecarLimits& limits) {
