@@ -22,7 +22,7 @@ std::uint64_t memoryLimitBytes(const Options& options);
 // have; 0: nothing was said.
 std::uint64_t memoryForText(const Options& options);
 // A step of up to this is done, though a limit allow less, to tell the smallest that works.
-inline constexpr std::uint64_t kTellingBytes = std::uint64_t{256} << 20;
+inline constexpr std::uint64_t kTellingBytes = std::uint64_t{512} << 20;
 
 // What pm_host takes before a render, step by step, by what files say and what is made of them: of
 // the same scene always the same, whatever the machine has just held. Threads: one at a time.

@@ -39,7 +39,14 @@ constexpr std::uint64_t kTimeBytes = 16;
 
 // Code and libraries of pm_host as measured with next to no scene; a host that is larger knows so.
 constexpr std::uint64_t kProgramBytes = std::uint64_t{150} << 20;
+// Of a thread that cuts triangles on demand, beside those: patches, points, the tree as it is built.
+constexpr std::uint64_t kCuttingBytes = std::uint64_t{6} << 20;
 constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
+
+// groups: bytes of triangles that are cut on demand.
+std::uint64_t programBytes(std::uint64_t groups, std::uint64_t threads) {
+    return kProgramBytes + (groups > 0 ? threads * kCuttingBytes : 0);
+}
 
 // Caches of textures and of triangles that are cut on demand: what doesn't fit is read or cut
 // again.
@@ -148,7 +155,7 @@ void planByBuckets(const Plan& plan, const RenderSettings& settings, std::uint64
     if (plan.tracePhotons)
         memory.need.maps = plan.memoryBytes(
             settings.passes, pointBytes(plan, settings, grid, order, memory.bucketsHeld));
-    memory.need.process = kProgramBytes;
+    memory.need.process = programBytes(memory.need.groups, threads);
     memory.need.buckets = threads * kAtomPixels *
                               static_cast<std::uint64_t>(channelLayout(settings).count + 4) *
                               sizeof(float) +
@@ -180,7 +187,7 @@ MemoryPlan planInMemory(const Scene& scene, const Plan& plan, const SettingValue
                     threads * bucketSize * bucketSize *
                             static_cast<std::uint64_t>(layout.count + 1) * sizeof(float) +
                         grid.cellCount() * (sizeof(BucketInfo) * 2 + kTimeBytes),
-                    kProgramBytes + hostBytes(values),
+                    programBytes(caches.groups, threads) + hostBytes(values),
                     caches.textures,
                     caches.groups};
     // Without pixels there is no frame, whatever the delivery.
@@ -190,7 +197,7 @@ MemoryPlan planInMemory(const Scene& scene, const Plan& plan, const SettingValue
                         0,
                         plan.landingsPerPass() * kTracedBytesPerPhoton,
                         0,
-                        kProgramBytes,
+                        programBytes(caches.groups, threads),
                         memory.whole.textures,
                         memory.whole.groups};
     memory.need = memory.whole;

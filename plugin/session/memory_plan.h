@@ -52,8 +52,6 @@ struct MemoryPlan {
 // Bytes below which a cache is of no use: some pages or groups for each of many threads.
 inline constexpr std::uint64_t kLeastGroups = std::uint64_t{8} << 20,
                                kLeastPages = std::uint64_t{8} << 20;
-// Of triangles that are cut while the plan is made.
-inline constexpr std::uint64_t kFirstGroups = std::uint64_t{16} << 20;
 
 // The most passes whose maps are held at once.
 inline constexpr std::uint32_t kMostPassesByBuckets = 8;

@@ -106,7 +106,7 @@ void Render::start() {
     m_startTime = std::chrono::steady_clock::now();
     checkDelivery(m_settings);
     // Before the plan divides memory it traces some photons.
-    m_scene->scene->setGroupBudget(kFirstGroups);
+    m_scene->scene->setGroupBudget(kLeastGroups);
     auto made = std::make_shared<RenderWork>(*m_scene, m_settings);
     RenderPages* const pages = made->pages();
     made->divideMemory(std::make_unique<RenderCaches>(m_scene, made->memory(),
