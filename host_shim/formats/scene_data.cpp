@@ -94,6 +94,12 @@ Transform SceneData::toWorld(const InstanceData& instance) const {
                               : translation(centre);
 }
 
+std::string withoutPicture(float missing) {
+    if (missing == 0) return "it gives no light";
+    return missing == 1 ? "its number is used alone"
+                        : fmt::format("{:.3g} is taken in its place", missing);
+}
+
 bool SceneData::hasLight() const {
     if (sky && sky->strength > 0) return true;
     if (environment && isLit(environment->radiance)) return true;

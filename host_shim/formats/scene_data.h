@@ -35,7 +35,11 @@ struct TextureUse {
     float base{0.0f};
     float gain{1.0f};
     float strength{1.0f};  // of a normal map; of heights: scene units of a height of 1
+    float missing{1.0f};   // what stands for it where it can't be read, times the number beside it
 };
+
+// "; " and this is told of a picture that can't be read: what stands for it.
+std::string withoutPicture(float missing);
 
 // A parameter of a material by its name, as docs/parameters.md lists them: numbers, or a text.
 struct NamedValue {

@@ -121,21 +121,60 @@ PmrTextureDesc MaterialBuilder::lookedUpAs(const TextureUse& use) {
     return desc;
 }
 
-PmrTexture MaterialBuilder::picture(const TextureUse& use, const std::string& shown,
-                                    TextureKind kind, const std::string& of) {
-    BakedTexture baked;
+// None, with a warning, where it can't be read.
+std::optional<BakedTexture> MaterialBuilder::readable(const TextureUse& use,
+                                                      const std::string& shown, TextureKind kind,
+                                                      const std::string& of) {
     try {
-        baked = preparer().texture(requestOf(use, shown, kind));
-        tell(shown, baked);
+        return preparer().texture(requestOf(use, shown, kind));
     } catch (const NotKept&) {
         throw;
     } catch (const HostError& error) {
         // Without it the memory limit would change the picture.
         if (error.code() == ExitCode::kMemory) throw;
-        m_warn(Warning::kTexture,
-               fmt::format("{}: {}: {}; its number is used alone", use.place, of, error.what()));
-        return nullptr;
+        m_warn(Warning::kTexture, fmt::format("{}: {}: {}; {}", use.place, of, error.what(),
+                                              withoutPicture(use.missing)));
+        return std::nullopt;
     }
+}
+
+void MaterialBuilder::putOutLamps(SceneData& data) {
+    std::set<std::uint32_t> used;
+    for (const InstanceData& instance : data.instances)
+        for (const std::uint32_t material : data.materialsOf(instance)) used.insert(material);
+    for (const std::uint32_t index : used) {
+        MaterialData& material = data.materials[index];
+        const Boxed<TextureUse>& use = material.emissionTexture;
+        if (!use || !material.emits()) continue;
+        const std::string of = "material " + material.name;
+        bool isReadable = use->tiles.empty() && readable(*use, use->file, TextureKind::kColour, of);
+        for (const TileUse& tile : use->tiles)
+            if (readable(*use, tile.file, TextureKind::kColour, of)) isReadable = true;
+        if (isReadable) continue;
+        material.emission = {};
+        material.emissionTexture.reset();
+    }
+}
+
+PmrTexture MaterialBuilder::wantedTexture(const TextureUse& use, TextureKind kind) {
+    try {
+        return make(use, preparer().texture(requestOf(use, use.file, kind)), use.file);
+    } catch (const NotKept&) {
+        throw;
+    } catch (const HostError& error) {
+        throw HostError(error.code(), fmt::format("{}: {}", use.place, error.what()));
+    }
+}
+
+PmrTexture MaterialBuilder::picture(const TextureUse& use, const std::string& shown,
+                                    TextureKind kind, const std::string& of) {
+    const auto baked = readable(use, shown, kind, of);
+    return baked ? make(use, *baked, shown) : nullptr;
+}
+
+PmrTexture MaterialBuilder::make(const TextureUse& use, const BakedTexture& baked,
+                                 const std::string& shown) {
+    tell(shown, baked);
     const std::string file = baked.file.string();
     PmrTextureDesc desc = lookedUpAs(use);
     desc.fileName = file.c_str();
@@ -196,10 +235,16 @@ PmrMaterial MaterialBuilder::build(const MaterialData& material) {
     desc.transparency = material.transparency;
     convertColours(material, desc);
     const std::string of = "material " + material.name;
-    desc.diffuseTexture = texture(material.diffuseTexture, TextureKind::kColour, of);
-    desc.glossyTexture = texture(material.glossyTexture, TextureKind::kColour, of);
+    const auto colourOf = [&](const Boxed<TextureUse>& use, float(&number)[3]) {
+        const PmrTexture made = texture(use, TextureKind::kColour, of);
+        if (use && made == nullptr)
+            for (float& channel : number) channel = std::min(1.0f, channel * use->missing);
+        return made;
+    };
+    desc.diffuseTexture = colourOf(material.diffuseTexture, desc.diffuse);
+    desc.glossyTexture = colourOf(material.glossyTexture, desc.glossy);
     desc.glossyExponentTexture = texture(material.glossyExponentTexture, TextureKind::kData, of);
-    desc.transmissionTexture = texture(material.transmissionTexture, TextureKind::kColour, of);
+    desc.transmissionTexture = colourOf(material.transmissionTexture, desc.transmission);
     desc.emissionTexture = texture(material.emissionTexture, TextureKind::kColour, of);
     desc.opacityTexture = texture(material.opacityTexture, TextureKind::kMask, of);
     PmrMaterial handle = nullptr;
@@ -234,8 +279,11 @@ void MaterialBuilder::setByName(const MaterialData& material, PmrMaterial handle
         return own.texture != nullptr;
     };
     if (material.roughness > 0) {
-        setNumber("roughness", material.roughness);
-        setTexture("roughnessTexture", material.roughnessTexture, TextureKind::kData);
+        const bool hasPicture =
+            setTexture("roughnessTexture", material.roughnessTexture, TextureKind::kData);
+        const bool isLost = material.roughnessTexture && !hasPicture;
+        setNumber("roughness",
+                  material.roughness * (isLost ? material.roughnessTexture->missing : 1));
     }
     if (setTexture("normalTexture", material.normalTexture, TextureKind::kVector))
         setNumber("normalScale", material.normalTexture->strength);

@@ -32,17 +32,25 @@ class MaterialBuilder {
     void prepare(const std::vector<const MaterialData*>& materials);
     // How many textures were found, made and opened; all 0 without any.
     TextureCounts textureCounts() const;
-    // A picture that can't be had is warned of and left out. Errors: those of the plugin; HostError
-    // kMemory for one that takes more memory than it may.
+    // What shines by a picture that can't be read gives no light: that is told and the lamp put
+    // out.
+    void putOutLamps(SceneData& data);
+    // A picture that can't be had is warned of; what stands for it is taken. Errors: those of the
+    // plugin; HostError kMemory for one that takes more memory than it may.
     PmrMaterial build(const MaterialData& material);
-    // The same of one picture; null where there is none. of: what it is of, for messages.
+    // One picture; null where there is none. of: what it is of, for messages.
     PmrTexture texture(const Boxed<TextureUse>& use, TextureKind kind, const std::string& of);
+    // One that must be there. Errors: HostError where it can't be read.
+    PmrTexture wantedTexture(const TextureUse& use, TextureKind kind);
     // One picture, or one that stands for all its tiles; null, with a warning, where none can be
     // read.
     PmrTexture picture(const TextureUse& use, const std::string& shown, TextureKind kind,
                        const std::string& of);
     PmrTexture tiles(const TextureUse& use, TextureKind kind, const std::string& of);
     PmrTexture make(const PmrTextureDesc& desc, const std::string& shown);
+    PmrTexture make(const TextureUse& use, const BakedTexture& baked, const std::string& shown);
+    std::optional<BakedTexture> readable(const TextureUse& use, const std::string& shown,
+                                         TextureKind kind, const std::string& of);
     static PmrTextureDesc lookedUpAs(const TextureUse& use);
 
   private:

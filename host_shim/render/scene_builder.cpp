@@ -250,7 +250,8 @@ void PluginScene::setEnvironment(const EnvironmentData& environment, const Colou
                                  MaterialBuilder& materials) {
     auto desc = PMR_INIT(PmrEnvironmentDesc);
     storeLight(environment.radiance, colour, desc.radiance);
-    desc.texture = materials.texture(environment.texture, TextureKind::kColour, "environment");
+    if (environment.texture)
+        desc.texture = materials.wantedTexture(*environment.texture, TextureKind::kColour);
     if (environment.transform) {
         desc.transforms = environment.transform->data();
         desc.transformCount = 1;

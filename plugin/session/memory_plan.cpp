@@ -39,7 +39,8 @@ constexpr std::uint64_t kTimeBytes = 16;
 
 // Code and libraries of pm_host as measured with next to no scene; a host that is larger knows so.
 constexpr std::uint64_t kProgramBytes = std::uint64_t{150} << 20;
-// Of a thread that cuts triangles on demand, beside those: patches, points, the tree as it is built.
+// Of a thread that cuts triangles on demand, beside those: patches, points, the tree as it is
+// built.
 constexpr std::uint64_t kCuttingBytes = std::uint64_t{6} << 20;
 constexpr double kGib = 1024.0 * 1024.0 * 1024.0;
 

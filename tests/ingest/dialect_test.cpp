@@ -99,8 +99,8 @@ TEST(MtlDialect, BlendersPlasticReflectsFourPercent) {
     EXPECT_TRUE(r.heard.list.empty());
     const Result textured = read(kBlender3, "Ns 250\nmap_Kd -mm 0.1 0.5 a.png\nKs 0.5 0.5 0.5\n");
     expectNear(textured.material.diffuse, {1, 1, 1});
-    EXPECT_EQ(textured.material.diffuseTexture->base, 0.1f);
-    EXPECT_EQ(textured.material.diffuseTexture->gain, 0.5f);
+    EXPECT_NEAR(textured.material.diffuseTexture->base, 0.1f * more, 1e-6f);
+    EXPECT_NEAR(textured.material.diffuseTexture->gain, 0.5f * more, 1e-6f);
     EXPECT_NEAR(
         read(kBlender3, "Ks 0.25 0.25 0.25\nNs 250\nKd 0.5 0.5 0.5\nillum 2\n").material.glossy[0],
         0.02, 1e-6);
@@ -251,13 +251,14 @@ TEST(MtlDialect, KeysForPhysicallyBasedMaterialsInAnyFile) {
     EXPECT_EQ(glass.roughness, 0.25f);
 }
 
-TEST(MtlDialect, PicturesOfRoughnessAndMetalAreTold) {
+TEST(MtlDialect, PicturesOfMetalAreToldAndThoseOfRoughnessTaken) {
     const Result r =
         read(kBlender3, "Kd 1 1 1\nKs 0.5 0.5 0.5\nillum 2\nmap_Ns rough.png\nrefl metal.png\n");
-    EXPECT_TRUE(r.heard.has(Warning::kMaterialPart, "a.mtl:5: material m: map_Ns is a picture of"));
+    ASSERT_TRUE(r.material.roughnessTexture);
+    EXPECT_EQ(r.material.roughnessTexture->file, "folder/rough.png");
     EXPECT_TRUE(r.heard.has(Warning::kMaterialPart, "a.mtl:6: material m: refl is a picture of"));
     EXPECT_FALSE(r.material.glossyExponentTexture);
-    EXPECT_EQ(r.material.roughness, 0.5f);
+    EXPECT_EQ(r.material.roughness, 1.0f);
 }
 
 TEST(MtlDialect, OlderBlendersHaveAnotherLargestExponent) {

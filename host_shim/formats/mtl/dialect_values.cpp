@@ -25,6 +25,7 @@ double mean(const Colour& colour) {
 class PrincipledSection {
     // What is smoother is a mirror's; 0 would mean that an exponent says it.
     static constexpr double kLeastRoughness = 0.01;
+    static constexpr double kUsualRoughness = 0.5;  // Blender's own default
 
   public:
     // isBlenders: by its own exporter.
@@ -42,6 +43,7 @@ class PrincipledSection {
         const double illum = m_section.number("illum").value_or(2);
         // Never written by Blender: somebody made glass or a mirror of it, and means what it says.
         if (illum == 4 || illum == 5 || illum == 7) return {};
+        if (picturesStandAlone(m_dialect) && m_isBlenders) dropReplacedNumbers();
         m_isMetalOn = illum == 3 || illum == 6 || illum == 8;
         if (illum != 0) m_section.numbers["illum"] = 2;
         setLayers();
@@ -81,30 +83,44 @@ class PrincipledSection {
             m_translation.sheenTint[i] = std::min(1.0, 0.5 + 0.5 * base[i] / luminance);
     }
 
-    // A picture of it, which the number then multiplies; of old exporters a picture of exponents
-    // stands for none.
-    bool keepsRoughnessMap() {
-        if (!m_section.hasMap("map_Pr")) return false;
-        m_section.numbers["Pr"] = 1;
-        return true;
+    // What is linked to a picture has a number all the same, which is written and means nothing.
+    void dropReplacedNumbers() {
+        for (const char* key : {"Kd", "Ks", "Ke"}) {
+            const std::string map = fmt::format("map_{}", key);
+            const auto given = m_section.colour(key);
+            if (!given || !m_section.hasMap(map)) continue;
+            if (*given == Colour{})
+                note(key, fmt::format("{} 0 0 0 beside {} says nothing in a file of Blender's: the "
+                                      "picture is taken alone (--mtl-dialect generic multiplies)",
+                                      key, map));
+            m_section.colours.erase(key);
+        }
     }
 
-    // A number that a picture stands for is not written.
-    double roughness() {
-        constexpr double kOfPictures = 0.5;  // Blender's own default
-        for (const char* map : {"map_Pr", "map_Ns"}) {
-            if (!m_section.hasMap(map)) continue;
-            drop(map);
-            note(map, fmt::format("{} is a picture of roughness here, which is not rendered yet; "
-                                  "{} is taken for all",
-                                  map, number("Pr", kOfPictures)));
-            return std::clamp(number("Pr", kOfPictures), 0.0, 1.0);
+    // A picture of it, by either key: what Blender calls one of exponents is its own of roughness.
+    bool keepsRoughnessMap() {
+        if (m_isBlenders && m_section.hasMap("map_Ns") && !m_section.hasMap("map_Pr")) {
+            m_section.maps["map_Pr"] = m_section.maps["map_Ns"];
+            if (m_section.lines.contains("map_Ns"))
+                m_section.lines["map_Pr"] = m_section.lines["map_Ns"];
         }
+        m_section.maps.erase("map_Ns");
+        return m_section.hasMap("map_Pr");
+    }
+
+    double roughness() const {
         if (const auto given = m_section.number("Pr")) return std::clamp(*given, 0.0, 1.0);
         const auto exponent = m_section.number("Ns");
-        if (!exponent) return kOfPictures;
+        if (!exponent) return kUsualRoughness;
         const double largest = m_dialect == MtlDialect::kBlender28 ? 900 : 1000;
         return 1 - std::sqrt(std::clamp(*exponent / largest, 0.0, 1.0));
+    }
+
+    // What the picture of roughness is multiplied by.
+    double ofRoughnessMap() const {
+        return picturesStandAlone(m_dialect) && m_isBlenders
+                   ? 1
+                   : std::clamp(number("Pr", 1), 0.0, 1.0);
     }
 
     double metallic() {
@@ -142,7 +158,7 @@ class PrincipledSection {
 
     void makeGlass() {
         const bool hasRoughnessMap = keepsRoughnessMap();
-        const double rough = hasRoughnessMap ? 1 : roughness();
+        const double rough = hasRoughnessMap ? ofRoughnessMap() : roughness();
         Colour tint = m_section.colour("Kd").value_or(Colour{1, 1, 1});
         // Since Blender 4 it is the colour of a way through two boundaries.
         if (m_dialect == MtlDialect::kBlender4)
@@ -161,26 +177,37 @@ class PrincipledSection {
         const double metal = metallic();
         constexpr double kWholly = 0.999;
         const bool hasRoughnessMap = keepsRoughnessMap();
-        const double rough = hasRoughnessMap ? 1 : roughness();
+        const double factor = hasRoughnessMap ? ofRoughnessMap() : roughness();
+        // The picture's own mean isn't known here.
+        const double rough = hasRoughnessMap ? factor * kUsualRoughness : factor;
         const Colour base = m_section.colour("Kd").value_or(Colour{1, 1, 1});
         const Colour specular = this->specular();
         for (const char* key : {"Pm", "Ns", "Tf"}) drop(key);
         if (!hasRoughnessMap) drop("Pr");
         // Of what is cut away light goes straight on, whatever the index.
         drop("Ni");
-        if (metal >= kWholly) return makeMetal(base, rough);
+        if (metal >= kWholly) return makeMetal(base, factor);
         Colour coat{};
         for (std::size_t i = 0; i < 3; ++i)
             coat[i] = std::min(1.0, metal * base[i] + (1 - metal) * specular[i]);
         const double below =
             m_dialect == MtlDialect::kBlender4 ? passedBy(specular, rough) : meanOfDiffuse(rough);
-        const double passes = below / passedBy(coat, rough);
+        // Of a picture the mean isn't known here.
+        constexpr double kUsualTexel = 0.5;
+        const bool hasPicture = m_section.hasMap("map_Kd");
+        Colour usualCoat = coat;
+        if (hasPicture)
+            for (std::size_t i = 0; i < 3; ++i)
+                usualCoat[i] = metal * kUsualTexel * base[i] + (1 - metal) * specular[i];
+        const double passes = below / passedBy(usualCoat, rough);
         Colour diffuse{};
+        // Texels may be as bright as the factor leaves room for.
+        if (hasPicture) m_translation.diffuseGain = passes;
         for (std::size_t i = 0; i < 3; ++i)
-            diffuse[i] = std::min(1.0, (1 - metal) * base[i] * passes);
+            diffuse[i] = std::min(1.0, (1 - metal) * base[i] * (hasPicture ? 1 : passes));
         m_section.colours["Kd"] = diffuse;
         m_section.colours["Ks"] = coat;
-        m_section.numbers["Pr"] = std::max(rough, kLeastRoughness);
+        m_section.numbers["Pr"] = std::max(factor, kLeastRoughness);
         if (metal >= 0.5 && m_section.hasMap("map_Kd"))
             m_section.maps["map_Ks"] = m_section.maps["map_Kd"];
     }
@@ -269,6 +296,10 @@ void translateRhino(MtlSection& section) {
 bool emitsFromBothSides(MtlDialect dialect) {
     return dialect == MtlDialect::kBlender28 || dialect == MtlDialect::kBlender3 ||
            dialect == MtlDialect::kBlender4;
+}
+
+bool picturesStandAlone(MtlDialect dialect) {
+    return dialect == MtlDialect::kBlender28 || dialect == MtlDialect::kBlender3;
 }
 
 Translation translateToGeneric(MtlDialect dialect, MtlSection& section) {

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "host_shim/formats/mtl/material_layers.h"
 #include "host_shim/formats/mtl/material_maps.h"
@@ -40,6 +41,7 @@ class MaterialReader {
         for (const auto& [key, text] : m_section.notUnderstood)
             note(Warning::kMaterialValue, key,
                  fmt::format("'{}' is not understood and left out", text));
+        rememberNumbers();
         const Translation translation = translateToGeneric(m_source.dialect, m_section);
         for (const DialectNote& told : translation.notes)
             note(Warning::kMaterialPart, told.key, told.text);
@@ -48,6 +50,7 @@ class MaterialReader {
         noteLeftOut(m_section, tell);
         noteIllum();
         readMaps();
+        brighten(m_material.diffuseTexture, translation.diffuseGain);
         limitStrengths(m_material, tell);
         readColours();
         decideKind();
@@ -83,6 +86,34 @@ class MaterialReader {
         m_warn(code, fmt::format("{}: material {}: {}", place(key), m_material.name, text));
     }
 
+    void rememberNumbers() {
+        const bool standAlone = picturesStandAlone(m_source.dialect);
+        for (const char* key : {"Kd", "Ks", "Pr"})
+            if (given(key) && !standAlone) m_numbersGiven.insert(key);
+        if (m_section.hasMap("map_Kd")) m_diffuseMap = m_section.maps.at("map_Kd");
+    }
+
+    // What stands for a picture that can't be read, times the number beside it: no light, and where
+    // no number is given what new materials have in the programs that leave it out.
+    float missing(const std::string& key) const {
+        constexpr float kUsualGrey = 0.8f, kUsual = 0.5f;
+        if (key == "map_Ke") return 0;
+        const bool isBase = m_section.maps.at(key) == m_diffuseMap;
+        const std::string number = isBase ? "Kd" : key.substr(std::string_view("map_").size());
+        if (m_numbersGiven.contains(number)) return 1;
+        if (isBase) return kUsualGrey;
+        return number == "Ks" || number == "Pr" ? kUsual : 1;
+    }
+
+    // The factor that its texels have beside the number, which is at most 1.
+    static void brighten(Boxed<TextureUse>& use, double factor) {
+        if (!use) return;
+        const auto gain = static_cast<float>(factor);
+        use->base *= gain;
+        use->gain *= gain;
+        use->missing *= gain;
+    }
+
     Boxed<TextureUse> map(const char* key, bool isData) {
         const auto found = m_section.maps.find(key);
         if (found == m_section.maps.end()) return std::nullopt;
@@ -95,12 +126,14 @@ class MaterialReader {
             return std::nullopt;
         }
         if (map.isMissing && !m_files.isTrusted()) {
+            m_without[key] = missing(key);
             note(Warning::kTexture, key,
-                 fmt::format("{}: {}; its number is used alone", key,
-                             m_files.whyNone(m_source.folder, map.line.name)));
+                 fmt::format("{}: {}; {}", key, m_files.whyNone(m_source.folder, map.line.name),
+                             withoutPicture(m_without[key])));
             return std::nullopt;
         }
         map.use.place = place(key);
+        map.use.missing = missing(key);
         return map.use;
     }
 
@@ -117,6 +150,12 @@ class MaterialReader {
         m_material.transmissionTexture = map("map_Tf", false);
     }
 
+    // What is left of the number beside a map that was lost.
+    float without(const std::string& mapKey) const {
+        const auto found = m_without.find(mapKey);
+        return found == m_without.end() ? 1 : found->second;
+    }
+
     void noteIllum() const {
         if (given("illum") && (illum() < 0 || illum() > 10)) {
             note(Warning::kMaterialValue, "illum",
@@ -129,14 +168,16 @@ class MaterialReader {
         const std::string mapKey = fmt::format("map_{}", key);
         const bool hasMap = m_section.hasMap(mapKey);
         const auto value = m_section.colour(key);
-        if (!value) return hasMap ? std::array<float, 3>{1, 1, 1} : std::array<float, 3>{};
-        const std::array<float, 3> rounded{static_cast<float>((*value)[0]),
-                                           static_cast<float>((*value)[1]),
-                                           static_cast<float>((*value)[2])};
+        if (!value && !hasMap) return {};
+        if (!value) return std::array{without(mapKey), without(mapKey), without(mapKey)};
+        std::array<float, 3> rounded{static_cast<float>((*value)[0]),
+                                     static_cast<float>((*value)[1]),
+                                     static_cast<float>((*value)[2])};
         if (hasMap && isBlack(rounded)) {
             note(Warning::kMaterialValue, key,
                  fmt::format("{} 0 0 0 multiplies {}, so the map has no effect", key, mapKey));
         }
+        for (float& channel : rounded) channel *= without(mapKey);
         return rounded;
     }
 
@@ -223,7 +264,8 @@ class MaterialReader {
     }
 
     void readRoughness() {
-        const double value = number("Pr", 0);
+        const double value =
+            number("Pr", m_section.hasMap("map_Pr") ? 1 : 0) * double{without("map_Pr")};
         m_material.roughness = static_cast<float>(std::clamp(value, 0.0, 1.0));
         if (static_cast<double>(m_material.roughness) != value && (value < 0 || value > 1))
             note(Warning::kMaterialValue, "Pr",
@@ -348,6 +390,10 @@ class MaterialReader {
     const WarningSink& m_warn;
     MaterialData m_material;
     float m_opacity{1.0f};
+    // Beside which a picture was meant to be; and that of the colour, whatever it became.
+    std::set<std::string> m_numbersGiven;
+    std::string m_diffuseMap;
+    std::map<std::string, float> m_without;  // keys of lost pictures -> missing()
 };
 
 }  // namespace

@@ -54,6 +54,9 @@ std::optional<DialectChoice> dialectOfHeader(std::string_view text, const std::s
 // Whether what has Ke shines from both sides there, not from the front alone.
 bool emitsFromBothSides(MtlDialect dialect);
 
+// Whether a number beside its picture says nothing: exporters write what the picture replaces.
+bool picturesStandAlone(MtlDialect dialect);
+
 // Something to tell about what was translated: the key whose line to show, and the text.
 struct DialectNote {
     std::string key;
@@ -64,6 +67,7 @@ struct Translation {
     std::vector<DialectNote> notes;
     std::array<double, 3> sheenTint{1, 1, 1};  // of Ps
     double sheenRoughness{0.3};
+    double diffuseGain{1};  // that the picture of Kd is multiplied by
 };
 
 // Turns what a section says in its dialect into what the keys mean in the generic one. Nothing is
