@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "host_shim/textures/picture_kind.h"
+#include "host_shim/textures/stated_colours.h"
 #include "host_shim/textures/whole_picture.h"
 #include "host_shim/values/host_error.h"
 
@@ -64,7 +65,7 @@ PictureRows::PictureRows(const std::filesystem::path& file, TextureKind kind, ch
     m_spec = parts[static_cast<std::size_t>(m_layout.part)];
     if (parts.size() > 1) m_input->seek_subimage(m_layout.part, 0);
     findWindows();
-    readStatement();
+    m_statement = statedColours(m_format, m_file, m_spec, m_layout);
 
     m_picks = m_layout.channels;
     const bool isStraight = m_spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
@@ -105,28 +106,6 @@ void PictureRows::findWindows() {
                            m_spec.full_width, m_spec.full_height, kLargestSide, kMostTexels));
     if (product(m_spec.tile_width, m_spec.tile_height, 1) > kLargestTile)
         refuse(fmt::format("has tiles of {} x {}", m_spec.tile_width, m_spec.tile_height));
-}
-
-// OpenImageIO's own guesses, "Linear" of every EXR and "sRGB" of every PNG, are no statements.
-void PictureRows::readStatement() {
-    const auto take = [&](const std::string& name) {
-        if (!name.empty() && name != "Linear" && name != "sRGB") m_statement.spaces.push_back(name);
-    };
-    take(m_spec.get_string_attribute("colorInteropID"));
-    take(m_spec.get_string_attribute("oiio:ColorSpace"));
-    // PNG's gAMA 1.
-    if (m_format == "png" && m_spec.get_string_attribute("oiio:ColorSpace") == "Linear")
-        m_statement.spaces.emplace_back("lin_rec709_scene");
-    m_statement.profile = m_spec.get_string_attribute("ICCProfile:profile_description");
-    m_statement.isXyz = m_layout.values == Values::kXyz;
-    if (m_format != "openexr") return;
-    const OIIO::ParamValue* found = m_spec.find_attribute("chromaticities");
-    if (found == nullptr || found->type().basetype != OIIO::TypeDesc::FLOAT ||
-        found->type().numelements() * found->type().aggregate != 8)
-        return;
-    std::array<float, 8> values{};
-    std::memcpy(values.data(), found->data(), sizeof values);
-    m_statement.chromaticities = values;
 }
 
 std::uint64_t PictureRows::memoryBytes() const {

@@ -62,7 +62,6 @@ class PictureRows {
     template <typename T>
     void pickRow(int dataRow, std::span<T> row) const;
     void findWindows();
-    void readStatement();
     [[noreturn]] void failReading(const std::string& text) const;
 
     std::filesystem::path m_file;

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Of what textures are made and how; another number makes all of them anew.
-constexpr int kBakeVersion = 2;
+constexpr int kBakeVersion = 3;
 
 struct Stopped {};
 
@@ -60,7 +60,24 @@ Record toRecord(const Original& original, const FileStamp& stamp, const fs::path
     if (original.statement.chromaticities)
         record.set("chromaticities",
                    fmt::format("{}", fmt::join(*original.statement.chromaticities, " ")));
+    if (original.statement.curve)
+        record.set("curve", fmt::format("{}", fmt::join(*original.statement.curve, " ")));
     return record;
+}
+
+// With a space after each but the last; none where there are fewer.
+template <typename Number, std::size_t Count>
+std::optional<std::array<Number, Count>> numbersOf(const std::string& text) {
+    std::array<Number, Count> numbers{};
+    const char* at = text.data();
+    const char* const textEnd = at + text.size();
+    for (Number& number : numbers) {
+        if (at >= textEnd) return std::nullopt;
+        const auto [end, error] = std::from_chars(at, textEnd, number);
+        if (error != std::errc()) return std::nullopt;
+        at = end + 1;
+    }
+    return numbers;
 }
 
 Original toOriginal(const Record& record) {
@@ -73,17 +90,8 @@ Original toOriginal(const Record& record) {
     original.statement.profile = record.get("profile");
     for (std::size_t i = 0; !record.get(fmt::format("space{}", i)).empty(); ++i)
         original.statement.spaces.push_back(record.get(fmt::format("space{}", i)));
-    const std::string figures = record.get("chromaticities");
-    std::array<float, 8> values{};
-    std::size_t count = 0;
-    for (const char* at = figures.data(); count < 8 && at < figures.data() + figures.size();) {
-        const auto [end, error] =
-            std::from_chars(at, figures.data() + figures.size(), values[count]);
-        if (error != std::errc()) break;
-        ++count;
-        at = end + 1;
-    }
-    if (count == 8) original.statement.chromaticities = values;
+    original.statement.chromaticities = numbersOf<float, 8>(record.get("chromaticities"));
+    original.statement.curve = numbersOf<double, 7>(record.get("curve"));
     return original;
 }
 
