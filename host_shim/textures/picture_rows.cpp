@@ -10,6 +10,7 @@
 
 #include "host_shim/textures/picture_kind.h"
 #include "host_shim/textures/stated_colours.h"
+#include "host_shim/textures/tiff_tags.h"
 #include "host_shim/textures/whole_picture.h"
 #include "host_shim/values/host_error.h"
 
@@ -65,6 +66,7 @@ PictureRows::PictureRows(const std::filesystem::path& file, TextureKind kind, ch
     m_spec = parts[static_cast<std::size_t>(m_layout.part)];
     if (parts.size() > 1) m_input->seek_subimage(m_layout.part, 0);
     findWindows();
+    noteOrientation();
     m_statement = statedColours(m_format, m_file, m_spec, m_layout);
 
     m_picks = m_layout.channels;
@@ -95,6 +97,9 @@ void PictureRows::findWindows() {
     const auto refuse = [&](const std::string& what) {
         throw HostError(ExitCode::kBadInput, fmt::format("texture {} {}", m_file.string(), what));
     };
+    // OpenImageIO reads such a file as 8 bits (2.4.7).
+    if (m_format == "tiff" && !hasTiffTag(m_file, kTiffBitsPerSample))
+        refuse("has no tag BitsPerSample, and so 1 bit a sample, which is not read; write the tag");
     if (m_spec.deep) refuse("is a deep picture, which no texture is");
     if (m_spec.width < 1 || m_spec.height < 1 || m_spec.nchannels < 1) refuse("has no pixels");
     if (m_spec.full_width < 1 || m_spec.full_height < 1) refuse("has an empty display window");
@@ -106,6 +111,15 @@ void PictureRows::findWindows() {
                            m_spec.full_width, m_spec.full_height, kLargestSide, kMostTexels));
     if (product(m_spec.tile_width, m_spec.tile_height, 1) > kLargestTile)
         refuse(fmt::format("has tiles of {} x {}", m_spec.tile_width, m_spec.tile_height));
+}
+
+// Texture coordinates were made for the picture as it is stored.
+void PictureRows::noteOrientation() {
+    const int orientation = m_spec.get_int_attribute("Orientation", 1);
+    if (orientation <= 1) return;
+    m_layout.note += fmt::format(
+        "{}is to be shown turned or mirrored (orientation {}); it is taken as it is stored",
+        m_layout.note.empty() ? "" : "; ", orientation);
 }
 
 std::uint64_t PictureRows::memoryBytes() const {

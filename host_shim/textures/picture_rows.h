@@ -62,6 +62,7 @@ class PictureRows {
     template <typename T>
     void pickRow(int dataRow, std::span<T> row) const;
     void findWindows();
+    void noteOrientation();
     [[noreturn]] void failReading(const std::string& text) const;
 
     std::filesystem::path m_file;

@@ -3,6 +3,7 @@
 // What the channels, windows, layers and statements of a picture mean for a texture.
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <limits>
 
 #include "tests/textures/texture_support.h"
@@ -269,6 +270,58 @@ TEST_F(PictureMeaning, ColourIsStraight) {
     OIIO::ImageSpec spec(1, 1, 4, TypeDesc::FLOAT);  // associated
     writePicture(file("leaf.tif"), spec, {0.5f, 0.25f, 0, 0.5f});
     expectTexel("leaf.tif", {1, 0.5f, 0});
+}
+
+TEST_F(PictureMeaning, TurnedOnesAreTakenAsStoredAndTold) {
+    for (const char* name : {"turned.jpg", "turned.tif"}) {
+        OIIO::ImageSpec spec(16, 8, 1, TypeDesc::UINT8);
+        std::vector<float> values(16 * 8, 0.0f);
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = i % 16 < 8 ? 1.0f : 0.0f;
+        spec.attribute("Orientation", 6);
+        writePicture(file(name), spec, values);
+        const BakedTexture texture = baked({file(name), TextureKind::kData});
+        EXPECT_EQ(texture.facts.width, 16) << name;
+        EXPECT_NEAR(readLevels(texture.file)[0].values[0], 1, 0.02) << name;
+        EXPECT_NE(texture.facts.note.find("(orientation 6)"), std::string::npos)
+            << name << ": " << texture.facts.note;
+        spec.attribute("Orientation", 1);
+        writePicture(file(name), spec, values);
+        EXPECT_EQ(baked({file(name), TextureKind::kData}).facts.note, "") << name;
+    }
+}
+
+// Rows of 16 texels, left half white, of 1 bit: by one directory of tags.
+void writeBits(const std::filesystem::path& path, bool isLittle, bool saysBits) {
+    const auto number = [&](std::uint32_t value, int bytes) {
+        std::string text;
+        for (int i = 0; i < bytes; ++i)
+            text += static_cast<char>(value >> (8 * (isLittle ? i : bytes - 1 - i)) & 255u);
+        return text;
+    };
+    std::vector<std::array<std::uint32_t, 2>> tags{
+        {256, 16}, {257, 4}, {258, 1}, {259, 1}, {262, 1}, {273, 0}, {277, 1}, {278, 4}, {279, 8}};
+    if (!saysBits) tags.erase(tags.begin() + 2);
+    const auto count = static_cast<std::uint32_t>(tags.size());
+    std::string text = (isLittle ? "II" : "MM") + number(42, 2) + number(8, 4) + number(count, 2);
+    for (const auto& [tag, value] : tags)
+        text += number(tag, 2) + number(4, 2) + number(1, 4) +
+                number(tag == 273 ? 14 + 12 * count : value, 4);
+    text += number(0, 4);
+    for (int row = 0; row < 4; ++row) text += std::string{'\xff', '\0'};
+    std::ofstream(path, std::ios::binary) << text;
+}
+
+TEST_F(PictureMeaning, OneBitIsReadWhereTheFileSaysSo) {
+    for (const bool isLittle : {false, true}) {
+        writeBits(file("bits.tif"), isLittle, true);
+        const auto values = texels({file("bits.tif"), TextureKind::kData});
+        ASSERT_EQ(values.size(), 64u);
+        EXPECT_EQ(values[0], 1.0f);
+        EXPECT_EQ(values[15], 0.0f);
+        writeBits(file("none.tif"), isLittle, false);
+        EXPECT_TRUE(refusesWith(refusal([&] { baked({file("none.tif")}); }), 3,
+                                {"none.tif", "BitsPerSample"}));
+    }
 }
 
 TEST_F(PictureMeaning, WhatAFileIsCalledSaysNothing) {
