@@ -41,6 +41,7 @@ class MaterialBuilder {
     // read.
     PmrTexture picture(const TextureUse& use, const std::string& shown, TextureKind kind,
                        const std::string& of);
+    void tellNormals(const TextureUse& use, const std::string& of);
     PmrTexture tiles(const TextureUse& use, TextureKind kind, const std::string& of);
     PmrTexture make(const PmrTextureDesc& desc, const std::string& shown);
     static PmrTextureDesc lookedUpAs(const TextureUse& use);

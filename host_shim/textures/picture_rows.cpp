@@ -267,6 +267,25 @@ void PictureRows::readStored(int rowCount, std::vector<std::byte>& bytes) {
         read(std::vector<float>());
 }
 
+void PictureRows::lookForNormal(const float* colour) {
+    constexpr float kTolerance = 0.1f;
+    const auto component = [&](int c) { return 2 * colour[c] - 1; };
+    const float x = component(0), y = component(1), z = component(2);
+    const bool isUnit = z > 0 && std::fabs(std::sqrt(x * x + y * y + z * z) - 1) < kTolerance;
+    ++m_normals.texels;
+    m_normals.units += isUnit ? 1 : 0;
+    m_normals.red += static_cast<double>(colour[0]);
+    m_normals.green += static_cast<double>(colour[1]);
+}
+
+bool PictureRows::isLikeNormals() const {
+    constexpr double kMost = 0.9, kMiddle = 0.5, kOff = 0.1;
+    const auto texels = static_cast<double>(m_normals.texels);
+    const auto isMiddle = [&](double sum) { return std::fabs(sum / texels - kMiddle) < kOff; };
+    return texels > 0 && static_cast<double>(m_normals.units) > kMost * texels &&
+           isMiddle(m_normals.red) && isMiddle(m_normals.green);
+}
+
 void PictureRows::readRows(int rowCount, std::vector<float>& values) {
     std::vector<float> picked;
     readPicked(rowCount, OIIO::TypeDesc::FLOAT, picked);
@@ -295,6 +314,7 @@ void PictureRows::readRows(int rowCount, std::vector<float>& values) {
         m_bad.notFinite += notFinite ? 1 : 0;
         m_bad.negative += negative && !notFinite ? 1 : 0;
         if (m_layout.values == Values::kLuminance) {
+            lookForNormal(texel);
             const bool isGrey = texel[0] == texel[1] && texel[1] == texel[2];
             values[i] = isGrey ? texel[0]
                                : kLuminance[0] * texel[0] + kLuminance[1] * texel[1] +

@@ -105,6 +105,7 @@ Record toRecord(const TextureFacts& facts, const fs::path& file) {
     record.setNumber("negative", facts.bad.negative);
     record.setNumber("notFinite", facts.bad.notFinite);
     record.set("note", facts.note);
+    record.setNumber("normals", facts.isLikeNormals ? 1 : 0);
     return record;
 }
 
@@ -120,6 +121,7 @@ TextureFacts toFacts(const Record& record) {
     }
     facts.bad = {record.number("negative"), record.number("notFinite")};
     facts.note = record.get("note");
+    facts.isLikeNormals = record.number("normals") != 0;
     return facts;
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <fstream>
+#include <functional>
 #include <limits>
 
 #include "tests/textures/texture_support.h"
@@ -12,6 +13,7 @@ namespace pm::host::test {
 namespace {
 
 using OIIO::TypeDesc;
+using Vector = std::array<float, 3>;
 
 class PictureMeaning : public TextureTest {
   protected:
@@ -270,6 +272,61 @@ TEST_F(PictureMeaning, ColourIsStraight) {
     OIIO::ImageSpec spec(1, 1, 4, TypeDesc::FLOAT);  // associated
     writePicture(file("leaf.tif"), spec, {0.5f, 0.25f, 0, 0.5f});
     expectTexel("leaf.tif", {1, 0.5f, 0});
+}
+
+// A flat normal map of each depth is .5 as a texture; the ends are those of the codes.
+TEST_F(PictureMeaning, FlatNormalMapsAreTheMiddle) {
+    const auto first = [&](const char* name, TypeDesc type, std::vector<float> values) {
+        writeTexture(file(name), 1, 1, 3, type, values);
+        return texels({file(name), TextureKind::kVector});
+    };
+    const float of8 = 128.0f / 255, of16 = 32768.0f / 65535;
+    EXPECT_EQ(first("8.png", TypeDesc::UINT8, {of8, of8, 1}), (std::vector{0.5f, 0.5f, 1.0f}));
+    EXPECT_EQ(first("8.tif", TypeDesc::UINT8, {of8, of8, 1}), (std::vector{0.5f, 0.5f, 1.0f}));
+    EXPECT_EQ(first("16.png", TypeDesc::UINT16, {of16, of16, 1}), (std::vector{0.5f, 0.5f, 1.0f}));
+    EXPECT_EQ(first("f.exr", TypeDesc::FLOAT, {0.5f, 0.5f, 1}), (std::vector{0.5f, 0.5f, 1.0f}));
+    EXPECT_EQ(first("h.exr", TypeDesc::HALF, {0.5f, 0.5f, 1}), (std::vector{0.5f, 0.5f, 1.0f}));
+    // 1 and 255 stand for -1 and 1.
+    const auto ends = first("ends.png", TypeDesc::UINT8, {1.0f / 255, 64.5f / 255, 1});
+    EXPECT_NEAR(ends[0], 0, 1e-6f);
+    EXPECT_EQ(ends[2], 1.0f);
+    // Other numbers stay as they are.
+    writeTexture(file("n.png"), 1, 1, 3, TypeDesc::UINT8, {of8, of8, of8});
+    EXPECT_EQ(texels({file("n.png"), TextureKind::kData}), std::vector{of8});
+}
+
+// A normal map that a number is to be made of is known by its texels; other pictures are not.
+TEST_F(PictureMeaning, NormalMapsAreKnown) {
+    const auto isLike = [&](const char* name, const std::function<Vector(float, float)>& colour) {
+        constexpr int kSide = 16;
+        std::vector<float> values;
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x) {
+                const auto at = [](int i) {
+                    return (static_cast<float>(i) + 0.5f) / kSide * 2 - 1;
+                };
+                const Vector c = colour(at(x), at(y));
+                values.insert(values.end(), c.begin(), c.end());
+            }
+        writeTexture(file(name), kSide, kSide, 3, TypeDesc::UINT8, values);
+        return baked({file(name), TextureKind::kData}).facts.isLikeNormals;
+    };
+    EXPECT_TRUE(isLike("flat.png", [](float, float) { return Vector{0.502f, 0.502f, 1}; }));
+    EXPECT_TRUE(isLike("bumps.png", [](float x, float y) {
+        const float z = std::sqrt(1 - 0.45f * (x * x + y * y));
+        return Vector{0.5f + 0.335f * x, 0.5f + 0.335f * y, 0.5f + 0.5f * z};
+    }));
+    EXPECT_FALSE(isLike("grey.png", [](float x, float) {
+        const float v = 0.5f + 0.5f * x;
+        return Vector{v, v, v};
+    }));
+    EXPECT_FALSE(isLike("sky.png", [](float, float y) {
+        return Vector{0.3f, 0.5f + 0.1f * y, 0.9f};
+    }));
+    EXPECT_FALSE(isLike("leaves.png", [](float x, float) {
+        return Vector{0.2f, 0.5f + 0.2f * x, 0.1f};
+    }));
+    EXPECT_FALSE(isLike("white.png", [](float, float) { return Vector{1, 1, 1}; }));
 }
 
 TEST_F(PictureMeaning, TurnedOnesAreTakenAsStoredAndTold) {
