@@ -19,8 +19,8 @@ using OIIO::TypeDesc;
 constexpr const char* kQuad =
     "mtllib s.mtl\nv -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nusemtl "
     "m\nf 1/1 2/2 3/3 4/4\n";
-const Arguments kFront{"--eye", "0,0,10", "--look-at", "0,0,0", "--fov", "11.4", "--size", "4x4",
-                       "--passes", "1"};
+const Arguments kFront{"--eye", "0,0,10", "--look-at", "0,0,0",    "--fov",
+                       "11.4",  "--size", "4x4",       "--passes", "1"};
 
 class TexturedScene : public HostTest {
   protected:
@@ -43,8 +43,7 @@ class TexturedScene : public HostTest {
     std::array<double, 3> normalSeen(const std::string& material, const Arguments& more = {}) {
         write("s.obj", kQuad);
         write("s.mtl", "newmtl m\nKd 1 1 1\n" + material + "\n");
-        const Picture seen =
-            renderExr("s", Arguments{"s.obj", "--aov", "N"} + kFront + more);
+        const Picture seen = renderExr("s", Arguments{"s.obj", "--aov", "N"} + kFront + more);
         std::array<double, 3> normal{};
         for (std::size_t i = 0; i < 3; ++i)
             for (const auto& channel : seen.channels)
@@ -78,9 +77,12 @@ TEST_F(TexturedScene, BumpMapsThatLookLikeNormalMapsAreTold) {
     picture("n.png", TypeDesc::UINT8, [](int) { return std::array{0.8f, 0.5f, 0.9f}; });
     EXPECT_EQ(normalSeen("map_Bump n.png"), (std::array<double, 3>{0, 0, 1}));
     EXPECT_EQ(m_warnings.find("--bump-is-normal"), std::string::npos) << "it leans on the average";
-    picture("flat.png", TypeDesc::UINT8, [](int row) {
-        return std::array{0.5f, row < 8 ? 0.8f : 0.2f, 0.9f};
-    }, 16);
+    picture(
+        "flat.png", TypeDesc::UINT8,
+        [](int row) {
+            return std::array{0.5f, row < 8 ? 0.8f : 0.2f, 0.9f};
+        },
+        16);
     normalSeen("map_Bump flat.png");
     EXPECT_NE(m_warnings.find("--bump-is-normal"), std::string::npos) << m_warnings;
     EXPECT_NE(m_warnings.find("flat.png"), std::string::npos) << m_warnings;
@@ -90,17 +92,20 @@ TEST_F(TexturedScene, BumpMapsThatLookLikeNormalMapsAreTold) {
 
 // Straight up there is nothing of the lowest row, straight down nothing of the uppermost one.
 TEST_F(TexturedScene, SkiesEndAtTheirPoles) {
-    write("s.obj", "v 0 90 0\nv 1 90 0\nv 0 90 1\nf 1 2 3\n");
+    write("s.obj", "v 90 0 0\nv 91 0 0\nv 90 0 1\nf 1 2 3\n");
     for (const int rows : {2, 32, 128}) {
-        picture("sky.exr", TypeDesc::FLOAT, [&](int row) {
-            const float v = 2 * row < rows ? 1.0f : 0.0f;
-            return std::array{v, v, v};
-        }, rows);
+        picture(
+            "sky.exr", TypeDesc::FLOAT,
+            [&](int row) {
+                const float v = 2 * row < rows ? 1.0f : 0.0f;
+                return std::array{v, v, v};
+            },
+            rows);
         const auto seen = [&](const char* at) {
-            return meansOf(renderExr("s", {"s.obj", "--environment", "sky.exr", "--eye", "0,0,0",
-                                           "--look-at", at, "--fov", "1", "--size", "4x4",
-                                           "--passes", "1"}),
-                           "")[0];
+            return meansOf(
+                renderExr("s", {"s.obj", "--environment", "sky.exr", "--eye", "0,0,0", "--look-at",
+                                at, "--fov", "1", "--size", "4x4", "--passes", "1"}),
+                "")[0];
         };
         EXPECT_NEAR(seen(".0001,-3,0"), 0, 1e-6) << rows;
         EXPECT_NEAR(seen(".0001,3,.0001"), 1, 1e-6) << rows;
