@@ -106,6 +106,8 @@ void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
             "which groups become Catmull-Clark limit surfaces (tagged)");
     addText(app, "--mtl-dialect", typed.mtlDialect, "NAME",
             "which program's MTL it is: " + allDialectNames() + " (by the headers of the files)");
+    app.add_flag("--bump-is-normal", options.bumpIsNormal,
+                 "take the pictures of map_Bump as normal maps, as in Blender's files they are");
     addList(app, "--search-path", typed.searchPaths, "DIR",
             "where libraries and textures are looked for that are not found beside the scene; may "
             "be repeated");
@@ -121,7 +123,7 @@ void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
     addText(app, "--turbidity", typed.turbidity, "T",
             "how hazy the sky of --sun is, 1.7 to 10 (3)");
     addText(app, "--environment-rotation", typed.environmentRotation, "DEG",
-            "turns --environment about the vertical (0)");
+            "turns --environment about y, anticlockwise from above; -90 is as Blender has it (0)");
     addText(app, "--environment-strength", typed.environmentStrength, "S",
             "factor of --environment or of --sun with its sky (1)");
     addList(app, "--aov", typed.layers, "NAME[,NAME]",

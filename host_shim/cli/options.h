@@ -100,6 +100,7 @@ struct Options {
     Subdivide subdivide{Subdivide::kTagged};
     ReadRules reading;
     bool noSidecar{};     // SCENE.pm.json is not read
+    bool bumpIsNormal{};  // bump maps are normal maps, where a material has no other
     bool writeSidecar{};  // and is written
     std::string layers;   // separated by commas
     ColourOptions colour;

@@ -13,6 +13,7 @@
 #include "host_shim/colour/display_transform.h"
 #include "host_shim/colour/picture_statement.h"
 #include "host_shim/colour/space_conversion.h"
+#include "host_shim/colour/transfer_curve.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
@@ -66,6 +67,8 @@ struct TextureSpace {
     // Row-major, linear RGB to CIE XYZ (D65), where the file names primaries that no space has;
     // name is then empty.
     std::optional<Matrix3> toXyz{};
+    // Where the file says how its codes stand for light: name and toXyz are that light's.
+    std::optional<TransferCurve> curve{};
 };
 
 // The colour management of one render: a config, a rendering space in it, and what converts

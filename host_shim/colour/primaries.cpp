@@ -94,17 +94,14 @@ Matrix3 acesToXyzD65() {
     return rgbToXyzD65(kAp0);
 }
 
-std::optional<KnownSpace> recognise(const Matrix3& matrix) {
-    // The configs' matrices are rounded to about 6 digits; the nearest two known spaces (Rec.709
-    // and Adobe RGB) differ by 0.2.
-    constexpr double kTolerance = 1e-4;
+std::optional<KnownSpace> recognise(const Matrix3& matrix, double tolerance) {
     for (const KnownSpace& space : knownSpaces()) {
         const Matrix3 known = rgbToXyzD65(space.chromaticities);
         double largest = 0.0;
         for (std::size_t i = 0; i < 9; ++i) {
             largest = std::fmax(largest, std::fabs(known[i] - matrix[i]));
         }
-        if (largest < kTolerance) return space;
+        if (largest < tolerance) return space;
     }
     return std::nullopt;
 }

@@ -22,8 +22,9 @@ struct KnownSpace {
     std::string interopId;
     Chromaticities chromaticities;
 };
-// The well-known linear space that has this matrix to XYZ (D65); none when there is none.
-std::optional<KnownSpace> recognise(const Matrix3& rgbToXyz);
+// The well-known linear space that has this matrix to XYZ (D65), but for a rounding of its entries;
+// none when there is none. The nearest two (Rec.709 and Adobe RGB) differ by 0.2.
+std::optional<KnownSpace> recognise(const Matrix3& rgbToXyz, double tolerance = 1e-4);
 // x,y of the columns, with D65's white; none when a column has no chromaticity.
 std::optional<Chromaticities> derivedChromaticities(const Matrix3& rgbToXyz);
 

@@ -2,6 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/colour/space_conversion.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "host_shim/colour/colour_config.h"
@@ -25,17 +28,31 @@ SpaceConversion::SpaceConversion() = default;
 SpaceConversion::SpaceConversion(std::shared_ptr<const Processor> processor)
     : m_processor(std::move(processor)) {}
 
+SpaceConversion SpaceConversion::ofCodes(const TransferCurve& curve) const {
+    SpaceConversion made = *this;
+    made.m_curve = curve;
+    return made;
+}
+
 bool SpaceConversion::isIdentity() const {
-    return m_processor == nullptr;
+    return m_processor == nullptr && !m_curve;
 }
 
 std::string SpaceConversion::cacheId() const {
-    return m_processor ? m_processor->cacheId : std::string("identity");
+    const std::string id = m_processor ? m_processor->cacheId : std::string("identity");
+    return m_curve ? fmt::format("curve {} {}", fmt::join(*m_curve, " "), id) : id;
+}
+
+void SpaceConversion::applyCurve(std::span<float> values, std::size_t channels) const {
+    for (std::size_t i = 0; i + 3 <= values.size(); i += channels)
+        for (std::size_t c = i; c < i + 3; ++c)
+            values[c] = static_cast<float>(lightOf(*m_curve, static_cast<double>(values[c])));
 }
 
 void SpaceConversion::apply(std::span<float> values, int channelsPerPixel) const {
-    if (!m_processor) return;
     const auto channels = static_cast<std::size_t>(channelsPerPixel);
+    if (m_curve) applyCurve(values, channels);
+    if (!m_processor) return;
     const std::size_t pixels = values.size() / channels;
     const auto stride = static_cast<std::ptrdiff_t>(channels * sizeof(float));
     for (std::size_t first = 0; first < pixels; first += kPixelsAtOnce) {

@@ -3,8 +3,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
+
+#include "host_shim/colour/transfer_curve.h"
 
 namespace pm::host {
 
@@ -18,6 +21,9 @@ class SpaceConversion {
     SpaceConversion();
     explicit SpaceConversion(std::shared_ptr<const Processor> processor);
 
+    // The same of codes, which the curve makes the light that this one converts.
+    SpaceConversion ofCodes(const TransferCurve& curve) const;
+
     bool isIdentity() const;
     // Identifies the conversion: equal strings convert equally. "identity" for the identity.
     std::string cacheId() const;
@@ -26,6 +32,9 @@ class SpaceConversion {
     void apply(std::span<float> values, int channelsPerPixel) const;
 
   private:
+    void applyCurve(std::span<float> values, std::size_t channels) const;
+
+    std::optional<TransferCurve> m_curve;  // comes first
     std::shared_ptr<const Processor> m_processor;
 };
 

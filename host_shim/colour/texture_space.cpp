@@ -9,6 +9,7 @@
 #include "host_shim/colour/built_in_config.h"
 #include "host_shim/colour/pipeline_state.h"
 #include "host_shim/colour/primaries.h"
+#include "host_shim/colour/transfer_curve.h"
 
 namespace pm::host {
 namespace {
@@ -63,6 +64,38 @@ TextureSpace spaceOfMatrix(const Matrix3& toXyz) {
     return {"", false, false, kByTheFile, toXyz};
 }
 
+// Of linear light, by its primaries. tolerance: see recognise().
+std::optional<TextureSpace> spaceOfLight(const ColourPipeline::State& state,
+                                         const PictureStatement& statement, double tolerance) {
+    if (!statement.chromaticities || !areUsable(*statement.chromaticities)) return std::nullopt;
+    Chromaticities figures{};
+    std::ranges::copy(*statement.chromaticities, figures.begin());
+    const Matrix3 toXyz = rgbToXyzD65(figures);
+    if (const auto known = recognise(toXyz, tolerance))
+        if (auto space = spaceOfName(state, known->interopId)) return space;
+    // Without a matrix there is no way from here to the rendering space.
+    return state.toXyz ? std::optional(spaceOfMatrix(toXyz)) : std::nullopt;
+}
+
+// Of codes, by curve and primaries; Rec.709's where no others are told.
+std::optional<TextureSpace> spaceOfCodes(const ColourPipeline::State& state,
+                                         const PictureStatement& statement) {
+    // Profiles round their matrices.
+    constexpr double kOfProfiles = 2e-3;
+    auto light = spaceOfLight(state, statement, kOfProfiles);
+    if (!light) light = resolveSpace(state, kLinearRec709, kByTheFile);
+    const bool isSrgb = areAlike(*statement.curve, kSrgbCurve);
+    const bool isRec709 =
+        !light->toXyz && light->name == resolveSpace(state, kLinearRec709, kByTheFile).name;
+    if (isSrgb && isRec709)
+        light = resolveSpace(state, kSrgbTexture, kByTheFile);
+    else
+        light->curve = isSrgb ? kSrgbCurve : *statement.curve;
+    // What can't be reached decides nothing.
+    const bool isFar = light->fromBuiltIn && !state.config.isBuiltIn && !state.toXyz;
+    return isFar ? std::nullopt : light;
+}
+
 std::optional<TextureSpace> ruledSpace(const ColourPipeline::State& state,
                                        const std::filesystem::path& file, bool byDefaultRule) {
     const auto& config = state.config.config;
@@ -81,18 +114,10 @@ std::optional<TextureSpace> statedSpace(const ColourPipeline::State& state, bool
     if (statement.isXyz) return spaceOfMatrix({1, 0, 0, 0, 1, 0, 0, 0, 1});
     for (const std::string& name : statement.spaces)
         if (auto space = spaceOfName(state, name)) return space;
-    if (!isFloatFile) {
-        if (!statement.profile.empty()) return spaceOfName(state, statement.profile);
-        return std::nullopt;
-    }
-    if (!statement.chromaticities || !areUsable(*statement.chromaticities)) return std::nullopt;
-    Chromaticities figures{};
-    std::ranges::copy(*statement.chromaticities, figures.begin());
-    const Matrix3 toXyz = rgbToXyzD65(figures);
-    if (const auto known = recognise(toXyz))
-        if (auto space = spaceOfName(state, known->interopId)) return space;
-    // Without a matrix there is no way from here to the rendering space.
-    return state.toXyz ? std::optional(spaceOfMatrix(toXyz)) : std::nullopt;
+    if (isFloatFile) return spaceOfLight(state, statement, 1e-4);
+    if (!statement.profile.empty())
+        if (auto space = spaceOfName(state, statement.profile)) return space;
+    return statement.curve ? spaceOfCodes(state, statement) : std::nullopt;
 }
 
 TextureSpace ColourPipeline::textureSpace(const std::filesystem::path& file, bool isFloatFile,
@@ -116,14 +141,18 @@ SpaceConversion ColourPipeline::textureToRendering(const TextureSpace& space) co
     const std::string what = space.decidedBy == "-colorspace" || space.decidedBy == "file rules"
                                  ? space.decidedBy
                                  : "--texture-space";
-    if (!space.toXyz) return convertToRendering(*m_state, space, what);
+    const auto finished = [&](const SpaceConversion& ofLight) {
+        return space.curve ? ofLight.ofCodes(*space.curve) : ofLight;
+    };
+    if (!space.toXyz) return finished(convertToRendering(*m_state, space, what));
     const auto fromXyz = m_state->toXyz ? inverted(*m_state->toXyz) : std::nullopt;
     if (!fromXyz)
         throw HostError(ExitCode::kBadInput,
                         fmt::format("{}: the file names its primaries, and the rendering space "
                                     "'{}' has no matrix to reach it by; name a space",
                                     what, m_state->renderingSpace));
-    return guarded(what, [&] { return matrixConversion(multiply(*fromXyz, *space.toXyz)); });
+    return finished(
+        guarded(what, [&] { return matrixConversion(multiply(*fromXyz, *space.toXyz)); }));
 }
 
 }  // namespace pm::host

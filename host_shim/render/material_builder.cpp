@@ -199,6 +199,25 @@ PmrTexture MaterialBuilder::tiles(const TextureUse& use, TextureKind kind, const
     return make(desc, use.file);
 }
 
+// Heights that are the picture of something else, once a material.
+void MaterialBuilder::tellNormals(const TextureUse& use, const std::string& of) {
+    std::vector<TextureRequest> requests;
+    addRequests(use, TextureKind::kData, requests);
+    for (const TextureRequest& request : requests) {
+        try {
+            if (!preparer().texture(request).facts.isLikeNormals) continue;
+        } catch (const HostError&) {
+            continue;  // a tile that is told already
+        }
+        m_warn(
+            Warning::kTexture,
+            fmt::format("{}: {}: {} looks like a normal map and is taken as heights; in MTL a "
+                        "normal map is called norm, and --bump-is-normal takes bump maps as such",
+                        use.place, of, request.file.string()));
+        return;
+    }
+}
+
 PmrTexture MaterialBuilder::make(const PmrTextureDesc& desc, const std::string& shown) {
     PmrTexture texture = nullptr;
     m_context.check(m_context.api().createTexture(m_context.handle(), &desc, &texture), shown);
@@ -287,8 +306,10 @@ void MaterialBuilder::setByName(const MaterialData& material, PmrMaterial handle
     }
     if (setTexture("normalTexture", material.normalTexture, TextureKind::kVector))
         setNumber("normalScale", material.normalTexture->strength);
-    if (setTexture("bumpTexture", material.bumpTexture, TextureKind::kData))
+    if (setTexture("bumpTexture", material.bumpTexture, TextureKind::kData)) {
         setNumber("bumpScale", material.bumpTexture->strength);
+        tellNormals(*material.bumpTexture, of);
+    }
     if (setTexture("displacementTexture", material.displacementTexture, TextureKind::kData))
         setNumber("displacementScale", material.displacementTexture->strength);
     if (material.coat > 0) {

@@ -46,6 +46,7 @@ class MaterialBuilder {
     // read.
     PmrTexture picture(const TextureUse& use, const std::string& shown, TextureKind kind,
                        const std::string& of);
+    void tellNormals(const TextureUse& use, const std::string& of);
     PmrTexture tiles(const TextureUse& use, TextureKind kind, const std::string& of);
     PmrTexture make(const PmrTextureDesc& desc, const std::string& shown);
     PmrTexture make(const TextureUse& use, const BakedTexture& baked, const std::string& shown);

@@ -70,6 +70,17 @@ void addSky(const SkyOptions& asked, SceneData& scene) {
     }
 }
 
+// A material that has both keeps both.
+void takeBumpAsNormal(std::vector<MaterialData>& materials) {
+    constexpr float kMost = 100.0f;
+    for (MaterialData& material : materials)
+        if (material.bumpTexture && !material.normalTexture) {
+            std::swap(material.bumpTexture, material.normalTexture);
+            float& strength = material.normalTexture->strength;
+            strength = std::clamp(strength, 0.0f, kMost);
+        }
+}
+
 }  // namespace
 
 SceneData readScene(const Options& options, const WarningSink& warn,
@@ -92,6 +103,7 @@ SceneData readScene(const Options& options, const WarningSink& warn,
     SceneData scene = sceneReaderFor(options.scene).read({options.scene, warn, goOn, place, rules});
     if (sidecar) addSidecar(*sidecar, scene, limits);
     addSky(options.sky, scene);
+    if (options.bumpIsNormal) takeBumpAsNormal(scene.materials);
     return scene;
 }
 

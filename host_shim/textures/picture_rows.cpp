@@ -9,6 +9,8 @@
 #include <cstring>
 
 #include "host_shim/textures/picture_kind.h"
+#include "host_shim/textures/stated_colours.h"
+#include "host_shim/textures/tiff_tags.h"
 #include "host_shim/textures/whole_picture.h"
 #include "host_shim/values/host_error.h"
 
@@ -64,7 +66,8 @@ PictureRows::PictureRows(const std::filesystem::path& file, TextureKind kind, ch
     m_spec = parts[static_cast<std::size_t>(m_layout.part)];
     if (parts.size() > 1) m_input->seek_subimage(m_layout.part, 0);
     findWindows();
-    readStatement();
+    noteOrientation();
+    m_statement = statedColours(m_format, m_file, m_spec, m_layout);
 
     m_picks = m_layout.channels;
     const bool isStraight = m_spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
@@ -94,6 +97,9 @@ void PictureRows::findWindows() {
     const auto refuse = [&](const std::string& what) {
         throw HostError(ExitCode::kBadInput, fmt::format("texture {} {}", m_file.string(), what));
     };
+    // OpenImageIO reads such a file as 8 bits (2.4.7).
+    if (m_format == "tiff" && !hasTiffTag(m_file, kTiffBitsPerSample))
+        refuse("has no tag BitsPerSample, and so 1 bit a sample, which is not read; write the tag");
     if (m_spec.deep) refuse("is a deep picture, which no texture is");
     if (m_spec.width < 1 || m_spec.height < 1 || m_spec.nchannels < 1) refuse("has no pixels");
     if (m_spec.full_width < 1 || m_spec.full_height < 1) refuse("has an empty display window");
@@ -107,26 +113,13 @@ void PictureRows::findWindows() {
         refuse(fmt::format("has tiles of {} x {}", m_spec.tile_width, m_spec.tile_height));
 }
 
-// OpenImageIO's own guesses, "Linear" of every EXR and "sRGB" of every PNG, are no statements.
-void PictureRows::readStatement() {
-    const auto take = [&](const std::string& name) {
-        if (!name.empty() && name != "Linear" && name != "sRGB") m_statement.spaces.push_back(name);
-    };
-    take(m_spec.get_string_attribute("colorInteropID"));
-    take(m_spec.get_string_attribute("oiio:ColorSpace"));
-    // PNG's gAMA 1.
-    if (m_format == "png" && m_spec.get_string_attribute("oiio:ColorSpace") == "Linear")
-        m_statement.spaces.emplace_back("lin_rec709_scene");
-    m_statement.profile = m_spec.get_string_attribute("ICCProfile:profile_description");
-    m_statement.isXyz = m_layout.values == Values::kXyz;
-    if (m_format != "openexr") return;
-    const OIIO::ParamValue* found = m_spec.find_attribute("chromaticities");
-    if (found == nullptr || found->type().basetype != OIIO::TypeDesc::FLOAT ||
-        found->type().numelements() * found->type().aggregate != 8)
-        return;
-    std::array<float, 8> values{};
-    std::memcpy(values.data(), found->data(), sizeof values);
-    m_statement.chromaticities = values;
+// Texture coordinates were made for the picture as it is stored.
+void PictureRows::noteOrientation() {
+    const int orientation = m_spec.get_int_attribute("Orientation", 1);
+    if (orientation <= 1) return;
+    m_layout.note += fmt::format(
+        "{}is to be shown turned or mirrored (orientation {}); it is taken as it is stored",
+        m_layout.note.empty() ? "" : "; ", orientation);
 }
 
 std::uint64_t PictureRows::memoryBytes() const {
@@ -274,6 +267,25 @@ void PictureRows::readStored(int rowCount, std::vector<std::byte>& bytes) {
         read(std::vector<float>());
 }
 
+void PictureRows::lookForNormal(const float* colour) {
+    constexpr float kTolerance = 0.1f;
+    const auto component = [&](int c) { return 2 * colour[c] - 1; };
+    const float x = component(0), y = component(1), z = component(2);
+    const bool isUnit = z > 0 && std::fabs(std::sqrt(x * x + y * y + z * z) - 1) < kTolerance;
+    ++m_normals.texels;
+    m_normals.units += isUnit ? 1 : 0;
+    m_normals.red += static_cast<double>(colour[0]);
+    m_normals.green += static_cast<double>(colour[1]);
+}
+
+bool PictureRows::isLikeNormals() const {
+    constexpr double kMost = 0.9, kMiddle = 0.5, kOff = 0.1;
+    const auto texels = static_cast<double>(m_normals.texels);
+    const auto isMiddle = [&](double sum) { return std::fabs(sum / texels - kMiddle) < kOff; };
+    return texels > 0 && static_cast<double>(m_normals.units) > kMost * texels &&
+           isMiddle(m_normals.red) && isMiddle(m_normals.green);
+}
+
 void PictureRows::readRows(int rowCount, std::vector<float>& values) {
     std::vector<float> picked;
     readPicked(rowCount, OIIO::TypeDesc::FLOAT, picked);
@@ -302,6 +314,7 @@ void PictureRows::readRows(int rowCount, std::vector<float>& values) {
         m_bad.notFinite += notFinite ? 1 : 0;
         m_bad.negative += negative && !notFinite ? 1 : 0;
         if (m_layout.values == Values::kLuminance) {
+            lookForNormal(texel);
             const bool isGrey = texel[0] == texel[1] && texel[1] == texel[2];
             values[i] = isGrey ? texel[0]
                                : kLuminance[0] * texel[0] + kLuminance[1] * texel[1] +

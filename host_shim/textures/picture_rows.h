@@ -53,6 +53,9 @@ class PictureRows {
     // The same as floats, bad texels replaced and counted.
     void readRows(int rowCount, std::vector<float>& values);
     const BadTexelCount& badTexels() const { return m_bad; }
+    // Of what readRows() made luminance of: as good as all texels are unit vectors out of the
+    // surface, and they are flat on the average.
+    bool isLikeNormals() const;
 
   private:
     template <typename T>
@@ -62,7 +65,8 @@ class PictureRows {
     template <typename T>
     void pickRow(int dataRow, std::span<T> row) const;
     void findWindows();
-    void readStatement();
+    void noteOrientation();
+    void lookForNormal(const float* colour);
     [[noreturn]] void failReading(const std::string& text) const;
 
     std::filesystem::path m_file;
@@ -80,6 +84,10 @@ class PictureRows {
     int m_bandRow{}, m_bandRows{};  // rows of the data window that are in memory
     std::vector<std::byte> m_band;
     BadTexelCount m_bad;
+    struct {
+        std::int64_t texels{}, units{};
+        double red{}, green{};  // sums
+    } m_normals;
 };
 
 }  // namespace pm::host

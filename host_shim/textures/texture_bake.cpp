@@ -26,6 +26,19 @@ int codesOf(const PictureRows& rows) {
     return rows.storedType() == OIIO::TypeDesc::UINT8 ? 256 : 65536;
 }
 
+// 0 of floats.
+float largestCode(OIIO::TypeDesc type) {
+    if (type == OIIO::TypeDesc::UINT8) return 255.0f;
+    return type == OIIO::TypeDesc::UINT16 ? 65535.0f : 0.0f;
+}
+
+// A channel of a normal map of integers, of which the code above the middle stands for 0, as the
+// floats of a texture have it: 0 is 0.5.
+float centredNormal(float channel, float largest) {
+    const float zero = 0.5f * (largest + 1.0f);
+    return 0.5f + 0.5f * (channel * largest - zero) / (largest - zero);
+}
+
 // What the conversion itself made infinite; a colour outside the rendering space's gamut may well
 // have a channel below 0.
 void replaceNotFinite(std::vector<float>& values, int channels, BadTexelCount& bad) {
@@ -44,16 +57,28 @@ void replaceNotFinite(std::vector<float>& values, int channels, BadTexelCount& b
 // Rows in, rows in the rendering space out.
 class RowConverter {
   public:
+    RowConverter(PictureRows& rows, TextureKind kind, const SpaceConversion& conversion)
+        : RowConverter(rows, kind == TextureKind::kColour, conversion) {
+        if (kind == TextureKind::kVector) m_normalCode = largestCode(rows.storedType());
+    }
+
+    const TexelConversion& conversion() const { return m_conversion; }
+
+    // The next rows. bad: added to.
+    void read(int rowCount, std::vector<float>& values, BadTexelCount& bad) {
+        convert(rowCount, values, bad);
+        if (m_normalCode > 0)
+            for (float& value : values) value = centredNormal(value, m_normalCode);
+    }
+
+  private:
     RowConverter(PictureRows& rows, bool isColour, const SpaceConversion& conversion)
         : m_rows(rows),
           m_codes(codesOf(rows)),
           m_conversion(isColour ? conversion : SpaceConversion(), m_codes, rows.channels()),
           m_isPlain(m_codes == 0 && (!isColour || conversion.isIdentity())) {}
 
-    const TexelConversion& conversion() const { return m_conversion; }
-
-    // The next rows. bad: added to.
-    void read(int rowCount, std::vector<float>& values, BadTexelCount& bad) {
+    void convert(int rowCount, std::vector<float>& values, BadTexelCount& bad) {
         const std::size_t texels =
             static_cast<std::size_t>(m_rows.width()) * static_cast<std::size_t>(rowCount);
         values.resize(texels * static_cast<std::size_t>(m_conversion.outChannels()));
@@ -74,9 +99,9 @@ class RowConverter {
             replaceNotFinite(values, m_conversion.outChannels(), bad);
     }
 
-  private:
     PictureRows& m_rows;
     int m_codes;
+    float m_normalCode = 0;  // of a normal map of integers: the largest
     TexelConversion m_conversion;
     bool m_isPlain;
     std::vector<std::uint8_t> m_codes8;
@@ -91,7 +116,10 @@ struct FreeHash {
 }  // namespace
 
 TextureBake::TextureBake(PictureRows& rows, TextureKind kind, const SpaceConversion& conversion)
-    : m_rows(rows), m_isColour(kind == TextureKind::kColour), m_conversion(conversion) {}
+    : m_rows(rows),
+      m_kind(kind),
+      m_isColour(kind == TextureKind::kColour),
+      m_conversion(conversion) {}
 
 std::uint64_t TextureBake::memoryBytes() const {
     constexpr std::uint64_t kFloatsPerTexel = 16;
@@ -133,9 +161,13 @@ bool TextureBake::inspect(const std::function<void()>& goOn, TextureFacts& facts
         if (isBad) return false;
     }
     const XXH128_hash_t digest = XXH3_128bits_digest(hash.get());
-    facts = {
-        m_rows.width(),      m_rows.height(), m_rows.channels(), {digest.low64, digest.high64}, {},
-        m_rows.layout().note};
+    facts = {m_rows.width(),
+             m_rows.height(),
+             m_rows.channels(),
+             {digest.low64, digest.high64},
+             {},
+             m_rows.layout().note,
+             false};
     return true;
 }
 
@@ -149,7 +181,7 @@ bool TextureBake::isHalf(float largest) const {
 TextureFacts TextureBake::bake(CheckedFile& file, const std::filesystem::path& path,
                                const std::filesystem::path& shownName, int threads,
                                const std::function<void()>& goOn) {
-    RowConverter converter(m_rows, m_isColour, m_conversion);
+    RowConverter converter(m_rows, m_kind, m_conversion);
     const int channels = converter.conversion().outChannels();
     const std::uint64_t texelBytes =
         static_cast<std::uint64_t>(m_rows.width()) * static_cast<std::uint64_t>(m_rows.height()) *
@@ -179,8 +211,8 @@ TextureFacts TextureBake::bake(CheckedFile& file, const std::filesystem::path& p
     writer.finish(goOn);
     bad.notFinite += m_rows.badTexels().notFinite;
     bad.negative += m_rows.badTexels().negative;
-    return {m_rows.width(),      m_rows.height(), channels, writer.texelHash(), bad,
-            m_rows.layout().note};
+    return {m_rows.width(),       m_rows.height(),       channels, writer.texelHash(), bad,
+            m_rows.layout().note, m_rows.isLikeNormals()};
 }
 
 }  // namespace pm::host

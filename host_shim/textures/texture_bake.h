@@ -43,6 +43,7 @@ class TextureBake {
     bool isHalf(float largest) const;
 
     PictureRows& m_rows;
+    TextureKind m_kind;
     bool m_isColour;
     SpaceConversion m_conversion;
 };

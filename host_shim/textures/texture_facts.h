@@ -29,6 +29,7 @@ struct TextureFacts {
     std::array<std::uint64_t, 2> texelHash{};  // as the library makes it of the file, never 0, 0
     BadTexelCount bad;                         // texels that were replaced by 0
     std::string note;                          // what was chosen of the picture; may be empty
+    bool isLikeNormals{};  // colours, of which a number was made, of a normal map
 };
 
 }  // namespace pm::host

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <charconv>
 #include <chrono>
 #include <new>
 #include <optional>
@@ -17,6 +16,7 @@
 #include "host_shim/textures/memory_budget.h"
 #include "host_shim/textures/picture_kind.h"
 #include "host_shim/textures/texture_bake.h"
+#include "host_shim/textures/texture_records.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Of what textures are made and how; another number makes all of them anew.
-constexpr int kBakeVersion = 2;
+constexpr int kBakeVersion = 3;
 
 struct Stopped {};
 
@@ -34,85 +34,6 @@ std::string asked(const TextureRequest& request) {
                        static_cast<int>(request.kind),
                        request.kind == TextureKind::kColour ? request.colorspace : "",
                        static_cast<int>(request.channel));
-}
-
-// What an original's header says, kept so that it need not be opened again.
-struct Original {
-    std::string content;  // hash of its bytes
-    bool isFloatFile{};
-    PictureStatement statement;
-    std::uint64_t bytes{};  // that making a texture of it takes
-    std::string size;       // "W x H"
-};
-
-Record toRecord(const Original& original, const FileStamp& stamp, const fs::path& file) {
-    Record record;
-    record.set("content", original.content);
-    record.set("source", fs::absolute(file).string());
-    record.set("stamp", stamp.text());
-    record.setNumber("float", original.isFloatFile ? 1 : 0);
-    record.setNumber("bytes", original.bytes);
-    record.set("size", original.size);
-    record.setNumber("xyz", original.statement.isXyz ? 1 : 0);
-    record.set("profile", original.statement.profile);
-    for (std::size_t i = 0; i < original.statement.spaces.size(); ++i)
-        record.set(fmt::format("space{}", i), original.statement.spaces[i]);
-    if (original.statement.chromaticities)
-        record.set("chromaticities",
-                   fmt::format("{}", fmt::join(*original.statement.chromaticities, " ")));
-    return record;
-}
-
-Original toOriginal(const Record& record) {
-    Original original;
-    original.content = record.get("content");
-    original.isFloatFile = record.number("float") != 0;
-    original.bytes = record.number("bytes");
-    original.size = record.get("size");
-    original.statement.isXyz = record.number("xyz") != 0;
-    original.statement.profile = record.get("profile");
-    for (std::size_t i = 0; !record.get(fmt::format("space{}", i)).empty(); ++i)
-        original.statement.spaces.push_back(record.get(fmt::format("space{}", i)));
-    const std::string figures = record.get("chromaticities");
-    std::array<float, 8> values{};
-    std::size_t count = 0;
-    for (const char* at = figures.data(); count < 8 && at < figures.data() + figures.size();) {
-        const auto [end, error] =
-            std::from_chars(at, figures.data() + figures.size(), values[count]);
-        if (error != std::errc()) break;
-        ++count;
-        at = end + 1;
-    }
-    if (count == 8) original.statement.chromaticities = values;
-    return original;
-}
-
-Record toRecord(const TextureFacts& facts, const fs::path& file) {
-    Record record;
-    record.set("source", fs::absolute(file).string());
-    record.setNumber("width", facts.width);
-    record.setNumber("height", facts.height);
-    record.setNumber("channels", facts.channels);
-    record.set("texels", fmt::format("{:016x}{:016x}", facts.texelHash[1], facts.texelHash[0]));
-    record.setNumber("negative", facts.bad.negative);
-    record.setNumber("notFinite", facts.bad.notFinite);
-    record.set("note", facts.note);
-    return record;
-}
-
-TextureFacts toFacts(const Record& record) {
-    TextureFacts facts;
-    facts.width = static_cast<std::int32_t>(record.number("width"));
-    facts.height = static_cast<std::int32_t>(record.number("height"));
-    facts.channels = static_cast<std::int32_t>(record.number("channels"));
-    const std::string texels = record.get("texels");
-    if (texels.size() == 32) {
-        std::from_chars(texels.data(), texels.data() + 16, facts.texelHash[1], 16);
-        std::from_chars(texels.data() + 16, texels.data() + 32, facts.texelHash[0], 16);
-    }
-    facts.bad = {record.number("negative"), record.number("notFinite")};
-    facts.note = record.get("note");
-    return facts;
 }
 
 // A file that is written to again within the same tick of the system's clock keeps its stamp, so

@@ -81,7 +81,16 @@ Vec2f Environment::toPicture(const Vec3f& local) const {
     return {static_cast<float>(across), static_cast<float>(up)};
 }
 
+// Beyond the middles of the first and the last row lie the poles, not the other one of them.
+float Environment::keptFromPoles(float up) const {
+    // What rounding moves a place by, in a look-up, at most.
+    constexpr float kRounding = 0x1p-21f;
+    const float half = 0.5f / static_cast<float>(m_textures->texels(m_texture)[1]) + kRounding;
+    return half < 0.5f ? std::clamp(up, half, 1.0f - half) : 0.5f;
+}
+
 Rgb Environment::texel(Vec2f uv) const {
+    uv.y = keptFromPoles(uv.y);
     const Texel t = asLight(m_hasBadTexels ? m_textures->lookUpOfLight(m_texture, uv)
                                            : m_textures->lookUp(m_texture, uv, {}));
     return m_scale * Rgb(t.r, t.g, t.b);

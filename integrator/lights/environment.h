@@ -35,9 +35,10 @@ struct SkyLooks {
 //
 // In the environment's own space the middle of the picture lies towards -z, its right half towards
 // +x, its upper edge towards +y; so a camera that isn't turned sees the middle of the picture as it
-// is. Directions are chosen in proportion to the picture's mean over cells of a table that is even
-// in the picture; within a cell evenly over the solid angle, a small share over all directions.
-// Threads: const functions from any, at once.
+// is. Its left and right edges meet, its upper and lower rows end at the poles, whatever the
+// texture says of what is outside. Directions are chosen in proportion to the picture's mean over
+// cells of a table that is even in the picture; within a cell evenly over the solid angle, a small
+// share over all directions. Threads: const functions from any, at once.
 class Environment {
   public:
     // textures: may be null without a texture; must outlive this. Looks at every texel, in parallel
@@ -70,6 +71,7 @@ class Environment {
     Vec2f toPicture(const Vec3f& local) const;
     Vec3f toLocal(const Vec3f& direction) const;
     Vec3f toWorld(const Vec3f& local) const;
+    float keptFromPoles(float up) const;
     Rgb texel(Vec2f uv) const;
     void fillTable(const CancelCheck& cancel);
     double meanOfCell(std::size_t column, std::size_t row, std::uint32_t steps) const;

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -40,6 +41,14 @@ struct BadTexels {
     bool any() const { return negative + notFinite > 0; }
 };
 
+// A channel of a normal map as a component in [-1, 1]. largestCode: 1 of floats, of which 0.5 is 0;
+// else that of the file's integers, of which the code above the middle is exactly 0: 128 of 255,
+// 32768 of 65535.
+inline float decodedNormal(float channel, float largestCode) {
+    const float zero = largestCode > 1.0f ? 0.5f * (largestCode + 1.0f) : 0.5f;
+    return std::clamp((channel * largestCode - zero) / (largestCode - zero), -1.0f, 1.0f);
+}
+
 // Where texture look-ups come from; the host side of the plugin implements it, so that the
 // integrator knows no picture files. Texels are in the rendering space, or data.
 class TextureSource {
@@ -50,6 +59,14 @@ class TextureSource {
     // value depends on the arguments only. Errors: a failed look-up returns 0 and counts; it never
     // throws.
     virtual Texel lookUp(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const = 0;
+
+    // The same of a normal map, as its components in [-1, 1]. A source that knows nothing of files
+    // says what floats mean.
+    virtual Vec3f normalAt(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const {
+        const Texel texel = lookUp(index, uv, footprint);
+        return {decodedNormal(texel.r, 1.0f), decodedNormal(texel.g, 1.0f),
+                decodedNormal(texel.b, 1.0f)};
+    }
 
     // The finest level at uv, of a light: every texel as asLight() has it before anything is
     // interpolated. Threads and errors as above.

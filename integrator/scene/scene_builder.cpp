@@ -6,7 +6,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
+#include "integrator/materials/layers.h"
 #include "integrator/materials/opacity.h"
 #include "integrator/scene/coincident_faces.h"
 #include "integrator/scene/limit_shapes.h"
@@ -36,6 +38,7 @@ void Scene::Builder::run() {
     m_scene.m_hasThinWalls = std::ranges::any_of(m_scene.m_description.materials,
                                                  [](const auto& m) { return m.thinWalled; });
     noteHiddenSheen();
+    noteLostAnisotropy();
     addToTracer();
     for (std::uint32_t i = 0; i < m_scene.m_shapes.size(); ++i) findLights(i);
     m_scene.lookAtTextures(m_cancel);
@@ -62,6 +65,24 @@ void Scene::Builder::noteHiddenSheen() {
             m_scene.m_notices.push_back(
                 {NoticeCode::kNotCovered,
                  fmt::format("material '{}' has a coat, so its sheen is left out", material.name)});
+}
+
+// Once a material, of however many instances.
+void Scene::Builder::noteLostAnisotropy() {
+    std::set<std::uint32_t> told;
+    for (const ShapeRecord& record : m_scene.m_shapes) {
+        // Only what has texture coordinates has tangents.
+        if (record.hasMaps) continue;
+        for (const std::uint32_t index : record.materials) {
+            const MaterialDescription& material = m_scene.m_description.materials[index];
+            if (isStretched(material) && told.insert(index).second)
+                m_scene.m_notices.push_back(
+                    {NoticeCode::kNotCovered,
+                     fmt::format("material '{}' is anisotropic along texture coordinates, which "
+                                 "some shape of it has not: that one shines alike all around",
+                                 material.name)});
+        }
+    }
 }
 
 void Scene::Builder::checkInstances() const {

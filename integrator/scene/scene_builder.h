@@ -37,6 +37,7 @@ class Scene::Builder {
     }
 
     void noteHiddenSheen();
+    void noteLostAnisotropy();
     void checkInstances() const;
     static void checkSlots(const InstanceDescription& instance);
 

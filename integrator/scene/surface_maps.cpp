@@ -124,9 +124,9 @@ void Scene::applyMaps(const ShapeRecord& record, std::uint32_t primitive,
 void Scene::turnByNormalMap(const MaterialDescription& material, const Vec3f& tangent,
                             float normalLength, const UvFootprint& footprint,
                             Surface& surface) const {
-    const Texel texel = m_materials.textures->lookUp(material.normalTexture, surface.uv, footprint);
-    const Vec3f mapped{decodedNormal(texel.r) * material.normalScale,
-                       decodedNormal(texel.g) * material.normalScale, decodedNormal(texel.b)};
+    const Vec3f found =
+        m_materials.textures->normalAt(material.normalTexture, surface.uv, footprint);
+    const Vec3f mapped{found.x * material.normalScale, found.y * material.normalScale, found.z};
     const TangentFrame frame =
         tangentFrame(tangent, surface.shadingNormal * normalLength, surface.isTextureMirrored);
     surface.shadingNormal =

@@ -2,17 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-
 #include "integrator/values/vec.h"
 
 namespace pm {
-
-// A channel of a normal map as a component: of 8 bits 0 is -1, 128 is exactly 0 and 255 is 1.
-inline float decodedNormal(float channel) {
-    return std::clamp((channel * 255.0f - 128.0f) / 127.0f, -1.0f, 1.0f);
-}
 
 // What a normal map's components stand along at a point: the tangent (where u grows), the bitangent
 // (where v grows) and the normal, as they are interpolated from the corners. They are neither made

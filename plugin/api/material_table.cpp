@@ -155,13 +155,15 @@ constexpr std::array kMaterialRows = {
                        .isLater = true},
                       {},
                       {memberPlace<&M::conductorK>()}},
-    MaterialParameter{{.name = "normalTexture",
-                       .help = "A normal map in tangent space, of meshes with texture coordinates: "
-                               "red along u, green along v; of 8 bits 128 is 0.",
-                       .type = Type::kTexture,
-                       .isLater = true},
-                      {},
-                      {texturePlace<&M::normalTexture>()}},
+    MaterialParameter{
+        {.name = "normalTexture",
+         .help = "A normal map in tangent space, of meshes with texture coordinates: "
+                 "red along u, green along v; 0 is 0.5 of floats, 128 of 8 bits, 32768 of 16 "
+                 "bits.",
+         .type = Type::kTexture,
+         .isLater = true},
+        {},
+        {texturePlace<&M::normalTexture>()}},
     MaterialParameter{{.name = "normalScale",
                        .help = "How strong it is: a factor of what it says along the surface.",
                        .maximum = 100,

@@ -75,6 +75,14 @@ Texel SceneTextures::lookUp(std::int32_t index, Vec2f uv, const UvFootprint& foo
     return texel;
 }
 
+Vec3f SceneTextures::normalAt(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const {
+    const Texel texel = lookUp(index, uv, footprint);
+    const TexturePicture* const picture = m_textures[static_cast<std::size_t>(index)]->at(uv);
+    const float largestCode = picture ? picture->largestCode : 1.0f;
+    return {decodedNormal(texel.r, largestCode), decodedNormal(texel.g, largestCode),
+            decodedNormal(texel.b, largestCode)};
+}
+
 Texel SceneTextures::lookUpOfLight(std::int32_t index, Vec2f uv) const {
     Texel texel;
     const Texture& texture = *m_textures[static_cast<std::size_t>(index)];

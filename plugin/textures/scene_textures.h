@@ -35,6 +35,8 @@ class SceneTextures final : public TextureSource {
     std::uint64_t texels() const;
 
     Texel lookUp(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const override;
+    // By what the codes of the file are.
+    Vec3f normalAt(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const override;
     Texel lookUpOfLight(std::int32_t index, Vec2f uv) const override;
     BadTexels badTexels(std::int32_t index, const CancelCheck& cancel) const override;
     std::array<float, 2> extremes(std::int32_t index, const CancelCheck& cancel) const override;

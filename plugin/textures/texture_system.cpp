@@ -188,10 +188,12 @@ TexturePicture TextureSystem::open(const TextureDescription& description) {
     OIIO::TextureSystem::TextureHandle* const handle = textures.get_texture_handle(name);
     picture.handle = handle;
     std::array<int, 2> size{};
+    int format = OIIO::TypeDesc::FLOAT;
     const bool good =
         handle != nullptr && textures.good(handle) &&
         textures.get_texture_info(name, 0, OIIO::ustring("channels"), OIIO::TypeInt,
                                   &picture.channelCount) &&
+        textures.get_texture_info(name, 0, OIIO::ustring("format"), OIIO::TypeInt, &format) &&
         textures.get_texture_info(name, 0, OIIO::ustring("resolution"),
                                   OIIO::TypeDesc(OIIO::TypeDesc::INT, 2), size.data());
     std::string reason = m_cache->geterror();
@@ -199,6 +201,8 @@ TexturePicture TextureSystem::open(const TextureDescription& description) {
     if (!good || picture.channelCount < 1)
         throw CallError(CallStatus::kIo, fmt::format("texture {}: {}", picture.fileName,
                                                      reason.empty() ? "can't be read" : reason));
+    if (format == OIIO::TypeDesc::UINT8) picture.largestCode = 255.0f;
+    if (format == OIIO::TypeDesc::UINT16) picture.largestCode = 65535.0f;
     picture.width = static_cast<std::uint32_t>(std::max(1, size[0]));
     picture.height = static_cast<std::uint32_t>(std::max(1, size[1]));
     return picture;

@@ -42,6 +42,7 @@ struct TexturePicture {
     void* handle = nullptr;  // OIIO::TextureSystem::TextureHandle, whose header is dear to compile
     std::uint32_t width = 1, height = 1;  // texels of the finest level
     int channelCount = 1;                 // as the file has, at most 4 are used
+    float largestCode = 1.0f;             // of the file's integers of 8 or 16 bits; else 1
     Wrap wrapS = Wrap::kRepeat, wrapT = Wrap::kRepeat;
     Vec2f uvScale{1.0f, 1.0f};
     Vec2f uvOffset{};

@@ -348,6 +348,8 @@ TEST(CommandLine, whatAScenesMaterialsAre) {
                                               "a b", "--untrusted", "--search-path", "c"})
                                 .reading;
     EXPECT_EQ(asked.mtlDialect, "blender4");
+    EXPECT_FALSE(parseCommandLine({"a.obj"}).bumpIsNormal);
+    EXPECT_TRUE(parseCommandLine({"a.obj", "--bump-is-normal"}).bumpIsNormal);
     EXPECT_FALSE(asked.files.isTrusted);
     EXPECT_EQ(asked.files.searchPaths, (std::vector<std::filesystem::path>{"a b", "c"}));
     EXPECT_EQ(refusal({"--mtl-dialect", "blender"}),

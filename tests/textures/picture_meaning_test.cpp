@@ -3,6 +3,8 @@
 // What the channels, windows, layers and statements of a picture mean for a texture.
 #include <array>
 #include <cmath>
+#include <fstream>
+#include <functional>
 #include <limits>
 
 #include "tests/textures/texture_support.h"
@@ -11,6 +13,7 @@ namespace pm::host::test {
 namespace {
 
 using OIIO::TypeDesc;
+using Vector = std::array<float, 3>;
 
 class PictureMeaning : public TextureTest {
   protected:
@@ -269,6 +272,113 @@ TEST_F(PictureMeaning, ColourIsStraight) {
     OIIO::ImageSpec spec(1, 1, 4, TypeDesc::FLOAT);  // associated
     writePicture(file("leaf.tif"), spec, {0.5f, 0.25f, 0, 0.5f});
     expectTexel("leaf.tif", {1, 0.5f, 0});
+}
+
+// A flat normal map of each depth is .5 as a texture; the ends are those of the codes.
+TEST_F(PictureMeaning, FlatNormalMapsAreTheMiddle) {
+    const auto first = [&](const char* name, TypeDesc type, std::vector<float> values) {
+        writeTexture(file(name), 1, 1, 3, type, values);
+        return texels({file(name), TextureKind::kVector});
+    };
+    const float of8 = 128.0f / 255, of16 = 32768.0f / 65535;
+    EXPECT_EQ(first("8.png", TypeDesc::UINT8, {of8, of8, 1}), (std::vector{0.5f, 0.5f, 1.0f}));
+    EXPECT_EQ(first("8.tif", TypeDesc::UINT8, {of8, of8, 1}), (std::vector{0.5f, 0.5f, 1.0f}));
+    EXPECT_EQ(first("16.png", TypeDesc::UINT16, {of16, of16, 1}), (std::vector{0.5f, 0.5f, 1.0f}));
+    EXPECT_EQ(first("f.exr", TypeDesc::FLOAT, {0.5f, 0.5f, 1}), (std::vector{0.5f, 0.5f, 1.0f}));
+    EXPECT_EQ(first("h.exr", TypeDesc::HALF, {0.5f, 0.5f, 1}), (std::vector{0.5f, 0.5f, 1.0f}));
+    // 1 and 255 stand for -1 and 1.
+    const auto ends = first("ends.png", TypeDesc::UINT8, {1.0f / 255, 64.5f / 255, 1});
+    EXPECT_NEAR(ends[0], 0, 1e-6f);
+    EXPECT_EQ(ends[2], 1.0f);
+    // Other numbers stay as they are.
+    writeTexture(file("n.png"), 1, 1, 3, TypeDesc::UINT8, {of8, of8, of8});
+    EXPECT_EQ(texels({file("n.png"), TextureKind::kData}), std::vector{of8});
+}
+
+// A normal map that a number is to be made of is known by its texels; other pictures are not.
+TEST_F(PictureMeaning, NormalMapsAreKnown) {
+    const auto isLike = [&](const char* name, const std::function<Vector(float, float)>& colour) {
+        constexpr int kSide = 16;
+        std::vector<float> values;
+        for (int y = 0; y < kSide; ++y)
+            for (int x = 0; x < kSide; ++x) {
+                const auto at = [](int i) {
+                    return (static_cast<float>(i) + 0.5f) / kSide * 2 - 1;
+                };
+                const Vector c = colour(at(x), at(y));
+                values.insert(values.end(), c.begin(), c.end());
+            }
+        writeTexture(file(name), kSide, kSide, 3, TypeDesc::UINT8, values);
+        return baked({file(name), TextureKind::kData}).facts.isLikeNormals;
+    };
+    EXPECT_TRUE(isLike("flat.png", [](float, float) { return Vector{0.502f, 0.502f, 1}; }));
+    EXPECT_TRUE(isLike("bumps.png", [](float x, float y) {
+        const float z = std::sqrt(1 - 0.45f * (x * x + y * y));
+        return Vector{0.5f + 0.335f * x, 0.5f + 0.335f * y, 0.5f + 0.5f * z};
+    }));
+    EXPECT_FALSE(isLike("grey.png", [](float x, float) {
+        const float v = 0.5f + 0.5f * x;
+        return Vector{v, v, v};
+    }));
+    EXPECT_FALSE(isLike("sky.png", [](float, float y) {
+        return Vector{0.3f, 0.5f + 0.1f * y, 0.9f};
+    }));
+    EXPECT_FALSE(isLike("leaves.png", [](float x, float) {
+        return Vector{0.2f, 0.5f + 0.2f * x, 0.1f};
+    }));
+    EXPECT_FALSE(isLike("white.png", [](float, float) { return Vector{1, 1, 1}; }));
+}
+
+TEST_F(PictureMeaning, TurnedOnesAreTakenAsStoredAndTold) {
+    for (const char* name : {"turned.jpg", "turned.tif"}) {
+        OIIO::ImageSpec spec(16, 8, 1, TypeDesc::UINT8);
+        std::vector<float> values(16 * 8, 0.0f);
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = i % 16 < 8 ? 1.0f : 0.0f;
+        spec.attribute("Orientation", 6);
+        writePicture(file(name), spec, values);
+        const BakedTexture texture = baked({file(name), TextureKind::kData});
+        EXPECT_EQ(texture.facts.width, 16) << name;
+        EXPECT_NEAR(readLevels(texture.file)[0].values[0], 1, 0.02) << name;
+        EXPECT_NE(texture.facts.note.find("(orientation 6)"), std::string::npos)
+            << name << ": " << texture.facts.note;
+        spec.attribute("Orientation", 1);
+        writePicture(file(name), spec, values);
+        EXPECT_EQ(baked({file(name), TextureKind::kData}).facts.note, "") << name;
+    }
+}
+
+// Rows of 16 texels, left half white, of 1 bit: by one directory of tags.
+void writeBits(const std::filesystem::path& path, bool isLittle, bool saysBits) {
+    const auto number = [&](std::uint32_t value, int bytes) {
+        std::string text;
+        for (int i = 0; i < bytes; ++i)
+            text += static_cast<char>(value >> (8 * (isLittle ? i : bytes - 1 - i)) & 255u);
+        return text;
+    };
+    std::vector<std::array<std::uint32_t, 2>> tags{
+        {256, 16}, {257, 4}, {258, 1}, {259, 1}, {262, 1}, {273, 0}, {277, 1}, {278, 4}, {279, 8}};
+    if (!saysBits) tags.erase(tags.begin() + 2);
+    const auto count = static_cast<std::uint32_t>(tags.size());
+    std::string text = (isLittle ? "II" : "MM") + number(42, 2) + number(8, 4) + number(count, 2);
+    for (const auto& [tag, value] : tags)
+        text += number(tag, 2) + number(4, 2) + number(1, 4) +
+                number(tag == 273 ? 14 + 12 * count : value, 4);
+    text += number(0, 4);
+    for (int row = 0; row < 4; ++row) text += std::string{'\xff', '\0'};
+    std::ofstream(path, std::ios::binary) << text;
+}
+
+TEST_F(PictureMeaning, OneBitIsReadWhereTheFileSaysSo) {
+    for (const bool isLittle : {false, true}) {
+        writeBits(file("bits.tif"), isLittle, true);
+        const auto values = texels({file("bits.tif"), TextureKind::kData});
+        ASSERT_EQ(values.size(), 64u);
+        EXPECT_EQ(values[0], 1.0f);
+        EXPECT_EQ(values[15], 0.0f);
+        writeBits(file("none.tif"), isLittle, false);
+        EXPECT_TRUE(refusesWith(refusal([&] { baked({file("none.tif")}); }), 3,
+                                {"none.tif", "BitsPerSample"}));
+    }
 }
 
 TEST_F(PictureMeaning, WhatAFileIsCalledSaysNothing) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <map>
 #include <numbers>
 
@@ -278,6 +279,77 @@ TEST(EnvironmentLight, PictureLiesAsDocumented) {
     const Environment turned({Rgb(1.0f), 0, {0, 0, 1, 0, 0, 1, 0, 0, -1, 0, 0, 0}}, &picture);
     EXPECT_NEAR(at(turned, {-1, 0, 0}).r, 3.5f, 1e-5);
     EXPECT_NEAR(at(turned, {0, 0, -1}).r, 5.5f, 1e-5);
+}
+
+// A picture that is repeated in both directions, as a texture is that says nothing of what is
+// outside.
+class RepeatedPicture final : public TextureSource {
+  public:
+    RepeatedPicture(std::uint32_t rows, std::function<float(std::int64_t)> row)
+        : m_rows(rows), m_row(std::move(row)) {}
+    Texel lookUp(std::int32_t, Vec2f uv, const UvFootprint&) const override {
+        const float y = uv.y * static_cast<float>(m_rows) - 0.5f, y0 = std::floor(y);
+        const auto at = [&](float row) {
+            const std::int64_t n = m_rows;
+            return m_row((static_cast<std::int64_t>(row) % n + n) % n);
+        };
+        const float value = at(y0) * (1 - (y - y0)) + at(y0 + 1) * (y - y0);
+        return {value, value, value};
+    }
+    std::array<std::uint32_t, 2> texels(std::int32_t) const override { return {4, m_rows}; }
+    std::uint64_t failureCount() const override { return 0; }
+
+  private:
+    std::uint32_t m_rows;
+    std::function<float(std::int64_t)> m_row;  // counted from below
+};
+
+// The last row ends at its pole: nothing of the first is mixed in, for what is seen and for the
+// chances; of a row or two as well.
+TEST(EnvironmentLight, RowsEndAtThePoles) {
+    for (const std::uint32_t rows : {2u, 32u, 4096u}) {
+        const RepeatedPicture upper(rows, [&](std::int64_t row) {
+            return 2 * row >= static_cast<std::int64_t>(rows) ? 1.0f : 0.0f;
+        });
+        const Environment sky({Rgb(1.0f), 0, kIdentityTransform}, &upper);
+        const auto seen = [&](const Vec3f& d) { return sky.radiance(normalize(d)).r; };
+        const float rounding = 0x1p-20f * static_cast<float>(rows);
+        EXPECT_NEAR(seen({0, 1, 0}), 1, rounding) << rows;
+        EXPECT_NEAR(seen({0, -1, 0}), 0, rounding) << rows;
+        EXPECT_NEAR(seen({1e-4f, 1, 1e-4f}), 1, rounding) << rows;
+        EXPECT_NEAR(seen({1e-4f, -1, 1e-4f}), 0, rounding) << rows;
+        EXPECT_NEAR(sky.integral() / (2 * std::numbers::pi), 1, 1e-3) << rows;
+    }
+    const RepeatedPicture one(1, [](std::int64_t) { return 3.0f; });
+    const Environment even({Rgb(1.0f), 0, kIdentityTransform}, &one);
+    EXPECT_EQ(even.radiance({0, 1, 0}).r, 3.0f);
+}
+
+// A sun in the lowest row: chances and radiance have the same sky, so that their quotient sums up
+// to what is seen all around; nothing of it shines from above.
+TEST(EnvironmentLight, ChancesEndAtThePoles) {
+    constexpr std::uint32_t kRows = 16;
+    const RepeatedPicture low(kRows, [](std::int64_t row) { return row == 0 ? 100.0f : 0.1f; });
+    const Environment sky({Rgb(1.0f), 0, kIdentityTransform}, &low);
+    Random random(7);
+    double sum = 0, upper = 0;
+    constexpr int kSamples = 100'000;
+    for (int i = 0; i < kSamples; ++i) {
+        float pdf;
+        const Vec3f d = sky.sample(random.next2D(), pdf);
+        const double value = static_cast<double>(sky.radiance(d).r) / static_cast<double>(pdf);
+        sum += value / kSamples;
+        if (d.y > 0) upper += value / kSamples;
+    }
+    double all = 0;
+    constexpr int kSteps = 10'000;
+    for (int i = 0; i < kSteps; ++i) {
+        const double y = (i + 0.5) / kSteps * 2 - 1;
+        const auto d = Vec3f(Vec3d{std::sqrt(1 - y * y), y, 0});
+        all += static_cast<double>(sky.radiance(d).r) * 4 * std::numbers::pi / kSteps;
+    }
+    EXPECT_NEAR(sum / all, 1, 0.01);
+    EXPECT_NEAR(upper / (0.1 * 2 * std::numbers::pi), 1, 0.1);
 }
 
 // Each light's share of directions over their stated densities is its solid angle, be there few

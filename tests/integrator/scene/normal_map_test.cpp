@@ -27,10 +27,20 @@ void expectNear(const Vec3f& found, const Vec3f& right) {
 }
 
 TEST(NormalMap, EightBitsHaveAnExactMiddle) {
-    EXPECT_EQ(decodedNormal(128.0f / 255.0f), 0.0f);
-    EXPECT_EQ(decodedNormal(1.0f), 1.0f);
-    EXPECT_EQ(decodedNormal(0.0f), -1.0f);
-    EXPECT_NEAR(decodedNormal(127.0f / 255.0f), -1.0f / 127, 1e-6f);
+    EXPECT_EQ(decodedNormal(128.0f / 255.0f, 255), 0.0f);
+    EXPECT_EQ(decodedNormal(1.0f, 255), 1.0f);
+    EXPECT_EQ(decodedNormal(0.0f, 255), -1.0f);
+    EXPECT_NEAR(decodedNormal(127.0f / 255.0f, 255), -1.0f / 127, 1e-6f);
+}
+
+TEST(NormalMap, SixteenBitsAndFloatsHaveOneToo) {
+    EXPECT_EQ(decodedNormal(32768.0f / 65535.0f, 65535), 0.0f);
+    EXPECT_EQ(decodedNormal(1.0f, 65535), 1.0f);
+    EXPECT_EQ(decodedNormal(0.0f, 65535), -1.0f);
+    EXPECT_EQ(decodedNormal(0.5f, 1), 0.0f);
+    EXPECT_EQ(decodedNormal(1.0f, 1), 1.0f);
+    EXPECT_EQ(decodedNormal(0.0f, 1), -1.0f);
+    EXPECT_EQ(decodedNormal(0.75f, 1), 0.5f);
 }
 
 TEST(NormalMap, FlatOnesChangeNothing) {
@@ -96,7 +106,7 @@ Measured floorUnder(const Vec3f& mapped, float scale, IntegratorKind integrator)
     mesh.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     mesh.triangles = mesh.texcoordIndices = {{0, 1, 2}, {0, 2, 3}};
     maker.mesh(mesh, maker.material(material));
-    const auto coded = [](float v) { return (v * 127.0f + 128.0f) / 255.0f; };
+    const auto coded = [](float v) { return 0.5f * v + 0.5f; };
     maker.description.textures =
         std::make_shared<OneTexel>(Texel{coded(mapped.x), coded(mapped.y), coded(mapped.z), 1.0f});
     maker.sun({0, -1, 0}, Rgb(2.0f), 0);

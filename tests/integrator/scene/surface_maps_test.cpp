@@ -46,7 +46,7 @@ std::shared_ptr<const TextureSource> heights(std::function<float(Vec2f)> height)
 }
 
 std::shared_ptr<const TextureSource> normals(const Vec3f& mapped) {
-    const auto coded = [](float v) { return (v * 127.0f + 128.0f) / 255.0f; };
+    const auto coded = [](float v) { return 0.5f * v + 0.5f; };
     const Texel texel{coded(mapped.x), coded(mapped.y), coded(mapped.z), 1.0f};
     return std::make_shared<Function>([texel](Vec2f) { return texel; });
 }
@@ -98,6 +98,30 @@ MaterialDescription brushed() {
     material.roughness = 0.3f;
     material.anisotropy = 0.8f;
     return material;
+}
+
+// What has no texture coordinates has no direction to be brushed along: told once a material, where
+// it would have shown.
+TEST(SurfaceMaps, LostAnisotropyIsToldOnceAMaterial) {
+    const auto told = [](const MaterialDescription& material, const TriangleMesh& mesh) {
+        SceneMaker maker;
+        const auto index = maker.material(material);
+        for (int i = 0; i < 3; ++i) maker.mesh(mesh, index);
+        maker.pointLight({0, 9, 0}, Rgb(1.0f));
+        const auto scene = maker.build();
+        return std::ranges::count_if(scene->notices(), [](const Notice& notice) {
+            return notice.text.find("anisotropic") != std::string::npos;
+        });
+    };
+    TriangleMesh bare = floorMesh();
+    bare.texcoords.clear();
+    bare.texcoordIndices.clear();
+    EXPECT_EQ(told(brushed(), bare), 1);
+    EXPECT_EQ(told(brushed(), floorMesh()), 0);
+    MaterialDescription dull = brushed();
+    dull.kind = MaterialKind::kSurface;
+    dull.glossy = Rgb(0.0f);
+    EXPECT_EQ(told(dull, bare), 0);
 }
 
 TEST(SurfaceMaps, NormalMapsGoWithInstances) {
