@@ -13,11 +13,11 @@
 #include "host_shim/cli/check_options.h"
 #include "host_shim/cli/copies_options.h"
 #include "host_shim/cli/farm_options.h"
-#include "host_shim/cli/not_available.h"
 #include "host_shim/cli/option_table.h"
 #include "host_shim/cli/option_values.h"
 #include "host_shim/cli/piece_options.h"
 #include "host_shim/cli/unknown_words.h"
+#include "host_shim/cli/verbs.h"
 #include "host_shim/cli/watch_options.h"
 #include "host_shim/colour/exposure.h"
 #include "host_shim/formats/mtl/mtl_dialect.h"
@@ -264,17 +264,8 @@ std::string oneLine(std::string text) {
     return text;
 }
 
-enum class Command { kRender, kMerge, kCache, kCheck, kFarm, kPack, kWatch };
-
-Command commandOf(const std::vector<std::string>& arguments) {
-    if (arguments.empty()) return Command::kRender;
-    return arguments.front() == "merge"   ? Command::kMerge
-           : arguments.front() == "cache" ? Command::kCache
-           : arguments.front() == "check" ? Command::kCheck
-           : arguments.front() == "farm"  ? Command::kFarm
-           : arguments.front() == "pack"  ? Command::kPack
-           : arguments.front() == "watch" ? Command::kWatch
-                                          : Command::kRender;
+[[noreturn]] void refuseWords(const std::string& about) {
+    throw HostError(ExitCode::kUsage, about + " (see pm_host -h)");
 }
 
 // Which words belong to which option; what they mean is read from typed.
@@ -293,23 +284,27 @@ void readWords(const std::vector<std::string>& arguments, Command command, Typed
         addAllOfFarm(app, typed, options, nullptr);
     else
         addAll(app, typed, options, nullptr);
+    if (const std::string about = aboutSigns(app, arguments); !about.empty()) refuseWords(about);
+    const bool isRender = command == Command::kRender;
     try {
         // CLI11 takes them from the end.
-        app.parse(std::vector<std::string>(
-            arguments.rbegin(), arguments.rend() - (command == Command::kRender ? 0 : 1)));
-    } catch (const CLI::ExtrasError&) {
-        throw HostError(ExitCode::kUsage,
-                        aboutUnknownWords(app, app.remaining()) + " (see pm_host -h)");
+        app.parse(
+            std::vector<std::string>(arguments.rbegin(), arguments.rend() - (isRender ? 0 : 1)));
     } catch (const CLI::ParseError& error) {
-        throw HostError(ExitCode::kUsage, oneLine(error.what()) + " (see pm_host -h)");
+        const std::string about = isRender ? aboutVerbs(arguments, true) : std::string();
+        if (!about.empty()) refuseWords(about);
+        const bool isUnknown = dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+        refuseWords(isUnknown ? aboutUnknownWords(app, app.remaining()) : oneLine(error.what()));
     }
+    if (const std::string about = isRender ? aboutVerbs(arguments, false) : std::string();
+        !about.empty())
+        refuseWords(about);
     if (command == Command::kFarm) options.farm->given = givenOptions(app);
 }
 
 }  // namespace
 
 Options parseCommandLine(const std::vector<std::string>& arguments, bool areNamesFilled) {
-    refuseWhatIsNotAvailableYet(arguments);
     const Command command = commandOf(arguments);
     const bool isMerge = command == Command::kMerge;
     Options options;

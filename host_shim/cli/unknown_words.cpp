@@ -6,54 +6,110 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <numeric>
 #include <string_view>
 #include <utility>
+
+#include "host_shim/cli/foreign_words.h"
+#include "host_shim/cli/letters_apart.h"
+#include "host_shim/values/letter_case.h"
 
 namespace pm::host {
 namespace {
 
-// Letters to add, drop or change to make one word of the other (Levenshtein 1966).
-std::size_t lettersApart(std::string_view a, std::string_view b) {
-    std::vector<std::size_t> row(b.size() + 1);
-    std::iota(row.begin(), row.end(), std::size_t{0});
-    for (std::size_t i = 0; i < a.size(); ++i) {
-        std::size_t diagonal = std::exchange(row[0], i + 1);
-        for (std::size_t j = 0; j < b.size(); ++j) {
-            const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
-            diagonal = std::exchange(row[j + 1], std::min({changed, row[j] + 1, row[j + 1] + 1}));
-        }
-    }
-    return row.back();
+std::vector<std::string> longNames(const CLI::App& app) {
+    std::vector<std::string> names;
+    for (const CLI::Option* option : app.get_options())
+        for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    return names;
 }
 
-// The option that a word is a slip of the hand for, or "".
-std::string likelyOption(const CLI::App& app, std::string_view word) {
-    constexpr std::size_t kMostLetters = 2;
+// Letters and digits alone, in lower case.
+std::string bare(std::string_view word) {
+    std::string plain = lowerCase(word);
+    std::erase_if(plain, [](char c) { return c == '-' || c == '_'; });
+    return plain;
+}
+
+// The option that a word is written otherwise for, as --lookAt and --look_at; or "".
+std::string otherSpelling(const CLI::App& app, std::string_view word) {
+    const std::vector<std::string> names = longNames(app);
+    const auto found = std::ranges::find(names, bare(word), bare);
+    return found == names.end() ? std::string() : *found;
+}
+
+// The option that a word is a slip of the hand for, or its beginning; or "".
+std::string likelyOption(const CLI::App& app, const std::string& word) {
+    constexpr std::size_t kShortest = 5;  // of what may be a beginning, with its dashes
     std::string nearest;
-    std::size_t least = kMostLetters + 1;
-    for (const CLI::Option* option : app.get_options())
-        for (const std::string& name : option->get_lnames()) {
-            const std::size_t apart = lettersApart("--" + name, word);
-            if (apart < least) {
-                least = apart;
-                nearest = "--" + name;
-            }
-        }
-    return nearest;
+    std::size_t least = kMostLettersApart + 1;
+    std::vector<std::string> longer;
+    for (const std::string& name : longNames(app)) {
+        const std::size_t apart = lettersApart(name, word);
+        if (word.size() >= kShortest && name.starts_with(word)) longer.push_back(name);
+        if (apart >= least) continue;
+        least = apart;
+        nearest = name;
+    }
+    return longer.size() == 1 ? longer.front() : nearest;
+}
+
+bool isOption(const std::string& word) {
+    return (word.starts_with('-') || word.starts_with('+')) && word.size() > 1;
+}
+
+std::string answerTo(const CLI::App& app, const std::string& name) {
+    constexpr std::string_view kNone = "there is no such option";
+    if (bare(name) == "denoise")
+        return fmt::format("not available yet; {}", aboutForeignWord(name));
+    std::string meant = otherSpelling(app, name);
+    if (meant.empty()) {
+        if (const std::string_view answer = aboutForeignWord(name); !answer.empty())
+            return fmt::format("{}; {}", kNone, answer);
+        meant = likelyOption(app, name);
+    }
+    return meant.empty() ? std::string(kNone) : fmt::format("{}; is {} meant?", kNone, meant);
+}
+
+// "samples=64" is no file either.
+bool isForeignPair(const std::string& word) {
+    const auto equals = word.find('=');
+    return equals != std::string::npos && !aboutForeignWord(word.substr(0, equals)).empty();
 }
 
 }  // namespace
 
 std::string aboutUnknownWords(const CLI::App& app, const std::vector<std::string>& unknown) {
-    const auto option = std::ranges::find_if(
-        unknown, [](const std::string& word) { return word.starts_with('-') && word != "-"; });
-    if (option == unknown.end())
-        return fmt::format("'{}': one scene is wanted", fmt::join(unknown, " "));
-    const std::string name = option->substr(0, option->find('='));
-    const std::string likely = likelyOption(app, name);
-    return name + ": there is no such option" +
-           (likely.empty() ? std::string() : fmt::format("; is {} meant?", likely));
+    std::vector<std::pair<std::string, std::string>> told;  // names, answer
+    for (const std::string& word : unknown) {
+        if (!isOption(word) && !isForeignPair(word)) continue;
+        const std::string name = word.substr(0, word.find('='));
+        std::string answer = answerTo(app, name);
+        const auto same =
+            std::ranges::find(told, answer, [](const auto& one) { return one.second; });
+        if (same == told.end())
+            told.emplace_back(name, std::move(answer));
+        else if (same->first != name)
+            same->first += ", " + name;
+    }
+    if (told.empty()) return fmt::format("'{}': one scene is wanted", fmt::join(unknown, " "));
+    std::string text;
+    for (const auto& [names, answer] : told)
+        text += fmt::format("{}{}: {}", text.empty() ? "" : "; ", names, answer);
+    return text;
+}
+
+std::string aboutSigns(const CLI::App& app, const std::vector<std::string>& arguments) {
+    for (const std::string& word : arguments) {
+        if (word.starts_with('+') && !aboutForeignWord(word).empty())
+            return fmt::format("{}: {}", word, answerTo(app, word));
+        const std::string name = word.substr(0, word.find('='));
+        if (name.size() < 4 || name[0] != '-' || name[1] == '-') continue;
+        const std::string meant = otherSpelling(app, name);
+        const bool isNumber = name.find_first_of("0123456789.") == 1;
+        if (isNumber || (meant.empty() && aboutForeignWord(name).empty())) continue;
+        return fmt::format("{}: {}", name, answerTo(app, name));
+    }
+    return {};
 }
 
 }  // namespace pm::host

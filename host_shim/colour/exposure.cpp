@@ -79,6 +79,16 @@ double measuredExposureStops(const Picture& picture, const std::array<double, 3>
            0.0;
 }
 
+double darkShare(const Picture& picture, const std::array<double, 3>& luminance) {
+    constexpr double kNearlyBlack = 0.00243;  // code 8
+    const Seen all = seen(picture, luminance);
+    if (all.surfaces.empty()) return 0;
+    const double least = kNearlyBlack * std::exp2(-measuredExposureStops(picture, luminance));
+    const auto dark =
+        std::ranges::count_if(all.surfaces, [least](double value) { return value < least; });
+    return static_cast<double>(dark) / static_cast<double>(all.surfaces.size());
+}
+
 double litShare(const Picture& picture, const std::array<double, 3>& luminance) {
     const Seen all = seen(picture, luminance);
     if (all.surfaces.empty()) return 1;

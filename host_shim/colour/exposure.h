@@ -34,4 +34,8 @@ double measuredExposureStops(const Picture& picture, const std::array<double, 3>
 // where nothing is covered but by lamps.
 double litShare(const Picture& picture, const std::array<double, 3>& luminance);
 
+// How much of what is covered and shows no lamp stays nearly black (below code 8 of 255 as sRGB) at
+// the exposure that is measured, in [0,1]; 0 where nothing is covered but by lamps.
+double darkShare(const Picture& picture, const std::array<double, 3>& luminance);
+
 }  // namespace pm::host

@@ -101,8 +101,13 @@ class Farm {
         m_plan = planFarm(frames, m_folder, machines, m_log);
         m_plan.given = planOptions(farm);
         if (!farm.dryRun) m_folder.writePlan(m_plan);
-        m_log.info(fmt::format("{} tasks for {} machines, instruction set {}", m_plan.tasks.size(),
-                               machines.size(), m_plan.isa));
+        // Of commands that are printed nobody knows where they will run, nor of nodes that are
+        // down.
+        const std::string where = machines.empty() ? std::string("machines that aren't known yet")
+                                                   : fmt::format("{} machine{}", machines.size(),
+                                                                 machines.size() == 1 ? "" : "s");
+        m_log.info(fmt::format("{} task{} for {}, instruction set {}", m_plan.tasks.size(),
+                               m_plan.tasks.size() == 1 ? "" : "s", where, m_plan.isa));
     }
     // Until every part is there and whole.
     void renderAll() {

@@ -13,20 +13,22 @@ namespace {
 
 using Point = std::array<double, 3>;
 
-// The front stays where it shows this share of what the best view does.
-constexpr double kGoodEnough = 2.0 / 3;
+// The front stays where it shows this share of what the best view does: half, as its floor and
+// ceiling, seen along them, are hidden by their own cells.
+constexpr double kGoodEnough = 0.5;
 // Of the cells that hold surface, so many are looked at.
 constexpr std::size_t kLookedAt = 4096;
 // What is seen from behind says less.
 constexpr double kBackWeight = 0.25;
 
-constexpr std::array<Point, 7> kDirections{{{0.7, 0.5, 1},
+constexpr std::array<Point, 8> kDirections{{{0.7, 0.5, 1},
                                             {-0.7, 0.5, 1},
                                             {0.4, 1.2, 1},
                                             {1, 0, 0},
                                             {-1, 0, 0},
                                             {0.7, 0.5, -1},
-                                            {-0.7, 0.5, -1}}};
+                                            {-0.7, 0.5, -1},
+                                            {0, 0, -1}}};
 
 // Cells that hold surface, evenly out of all.
 std::vector<Cell> someCells(const OccupancyGrid& grid) {
@@ -74,18 +76,63 @@ double seenArea(const OccupancyGrid& grid, const Cell& cell, const Point& along)
     return seen;
 }
 
-double shown(const OccupancyGrid& grid, const std::vector<Cell>& cells, const Point& eye) {
-    double sum = 0;
-    for (const Cell& cell : cells) {
-        const Point at = grid.middleOf(cell);
+// How much of what is around a place is hidden from outside, in [0,1]: of the 26 directions to its
+// neighbours those that end at a surface, beyond the third that any wall beside it hides.
+double shelter(const OccupancyGrid& grid, const Cell& place) {
+    constexpr int kOfOneWall = 9, kAll = 26;
+    int blocked = 0;
+    for (int code = 0; code < 27; ++code) {
+        const Cell by{code % 3 - 1, code / 3 % 3 - 1, code / 9 - 1};
+        if (by == Cell{}) continue;
+        Cell cell = place;
+        do {
+            for (std::size_t axis = 0; axis < 3; ++axis) cell[axis] += by[axis];
+        } while (grid.contains(cell) && !grid.holds(cell));
+        if (grid.contains(cell)) ++blocked;
+    }
+    return std::max(0.0, static_cast<double>(blocked - kOfOneWall) / (kAll - kOfOneWall));
+}
+
+// The cell before a surface's, towards the eye.
+Cell placeBefore(const OccupancyGrid& grid, const Cell& cell, const Point& along) {
+    constexpr double kBeside = 1.75;
+    Point at = grid.middleOf(cell);
+    for (std::size_t axis = 0; axis < 3; ++axis)
+        at[axis] += kBeside * grid.cellSize() * along[axis];
+    return grid.cellOf(at);
+}
+
+// Of each cell what an eye sees of it, more of what is inside of something; 0 where something
+// stands before it.
+std::vector<double> seenFrom(const OccupancyGrid& grid, const std::vector<Cell>& cells,
+                             const Point& eye) {
+    constexpr double kInside = 4;
+    std::vector<double> areas(cells.size());
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+        const Point at = grid.middleOf(cells[i]);
         Point along{eye[0] - at[0], eye[1] - at[1], eye[2] - at[2]};
         const double length =
             std::sqrt(along[0] * along[0] + along[1] * along[1] + along[2] * along[2]);
         if (!(length > 0)) continue;
         for (double& part : along) part /= length;
-        if (isFree(grid, cell, along)) sum += seenArea(grid, cell, along);
+        if (isFree(grid, cells[i], along))
+            areas[i] = seenArea(grid, cells[i], along) *
+                       (1 + kInside * shelter(grid, placeBefore(grid, cells[i], along)));
     }
-    return sum;
+    return areas;
+}
+
+// How much each of the views shows. What few of them show counts for more, as all of them share a
+// cell: so a box that is open to one side is looked into, and not at its lid.
+std::vector<double> shownBy(const std::vector<std::vector<double>>& views, std::size_t cells) {
+    std::vector<double> sums(views.size());
+    for (std::size_t cell = 0; cell < cells; ++cell) {
+        double all = 0;
+        for (const std::vector<double>& view : views) all += view[cell];
+        for (std::size_t i = 0; all > 0 && i < views.size(); ++i)
+            sums[i] += views[i][cell] * views[i][cell] / all;
+    }
+    return sums;
 }
 
 }  // namespace
@@ -93,20 +140,28 @@ double shown(const OccupancyGrid& grid, const std::vector<Cell>& cells, const Po
 std::optional<Point> betterEye(const OccupancyGrid& grid, const OutsideView& view) {
     if (!(grid.cellSize() > 0)) return std::nullopt;
     const std::vector<Cell> cells = someCells(grid);
-    const double front = shown(grid, cells, view.frontEye);
+    std::vector<Point> eyes{view.frontEye};
+    for (const Point& direction : kDirections)
+        eyes.push_back(eyeFrom(direction, view.bounds, view.verticalFov, view.aspect));
+    std::vector<std::vector<double>> views;
+    for (const Point& eye : eyes) views.push_back(seenFrom(grid, cells, eye));
+    const std::vector<double> shown = shownBy(views, cells.size());
     // Of two that show the same the first: rounding doesn't decide.
     constexpr double kClearly = 1.05;
-    double most = 0;
-    Point best{};
-    for (const Point& direction : kDirections) {
-        const Point eye = eyeFrom(direction, view.bounds, view.verticalFov, view.aspect);
-        const double here = shown(grid, cells, eye);
-        if (!(here > kClearly * most)) continue;
-        most = here;
-        best = eye;
+    std::size_t best = 0, straight = 0;
+    double most = 0, mostStraight = 0;
+    for (std::size_t i = 1; i < eyes.size(); ++i) {
+        if (kDirections[i - 1][1] == 0 && shown[i] > kClearly * mostStraight) {
+            mostStraight = shown[i];
+            straight = i;
+        }
+        if (!(shown[i] > kClearly * most)) continue;
+        most = shown[i];
+        best = i;
     }
-    if (front >= kGoodEnough * most) return std::nullopt;
-    return best;
+    if (shown.front() >= kGoodEnough * most) return std::nullopt;
+    // As the front does, another side stays straight where it is nearly as good.
+    return eyes[mostStraight >= kGoodEnough * most ? straight : best];
 }
 
 namespace {

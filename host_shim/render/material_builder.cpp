@@ -332,8 +332,15 @@ void MaterialBuilder::setNamed(const NamedValue& value, PmrMaterial handle) {
     constexpr std::array kColours = {
         "diffuse", "glossy",   "transmission",     "emission", "diffuseTransmission",
         "sheen",   "edgeTint", "attenuationColour"};
+    constexpr std::array kOfChannels = {"conductorN", "conductorK"};
+    const auto isAmong = [&](const auto& names) {
+        return std::ranges::find(names, value.name) != names.end();
+    };
     std::vector<double> numbers = value.numbers;
-    if (numbers.size() == 3 && std::ranges::find(kColours, value.name) != kColours.end()) {
+    // One number is grey.
+    if (numbers.size() == 1 && (isAmong(kColours) || isAmong(kOfChannels)))
+        numbers.assign(3, value.numbers.front());
+    if (numbers.size() == 3 && isAmong(kColours)) {
         const Rgb3 colour = m_colour.materialToRendering({static_cast<float>(numbers[0]),
                                                           static_cast<float>(numbers[1]),
                                                           static_cast<float>(numbers[2])});

@@ -19,6 +19,9 @@ namespace {
 
 // Of the surfaces that are seen; no more are lit where a scene's own light shows nothing.
 constexpr double kShowsNothing = 0.01;
+// Of them; where more stay nearly black at any exposure, a light at the camera is added, or, of the
+// second, told of.
+constexpr double kMisses = 0.9, kMostlyDark = 0.6;
 
 // The note that a part keeps: "exposure STOPS" as --exposure takes it, and how it was come by.
 constexpr std::string_view kNote = "exposure ";
@@ -109,12 +112,25 @@ void Session::buildLit(SceneData& data, const CameraPose& camera, const ColourPi
     // Who says where to stand may want to see that it is dark there.
     const bool isPlaced = m_options.camera.eye || !data.cameras.empty();
     if (!isAuto || needsLight || isPlaced) return;
-    if (litShare(pilot(*scene, colour), colour.luminanceWeights()) > kShowsNothing) return;
+    const Picture& seen = pilot(*scene, colour);
+    const auto& weights = colour.luminanceWeights();
+    const bool isLit = litShare(seen, weights) > kShowsNothing;
+    const double dark = darkShare(seen, weights);
+    if (isLit && dark <= kMisses) {
+        if (dark > kMostlyDark)
+            warn(Warning::kDefaultLight,
+                 fmt::format("{}: {:.0f} % of what is seen gets next to none of its own light; "
+                             "--camera-light on adds a light at the camera",
+                             name, 100 * dark));
+        return;
+    }
     warn(Warning::kDefaultLight,
          name +
-             ": its own light reaches nothing that the camera sees: lamps are closed away, too "
-             "small, or shine to the other side; a point light at the camera is added "
-             "(--camera-light off leaves it out)");
+             (isLit ? fmt::format(": its own light misses {:.0f} % of what the camera sees",
+                                  100 * dark)
+                    : std::string(": its own light reaches nothing that the camera sees: lamps "
+                                  "are closed away, too small, or shine to the other side")) +
+             "; a point light at the camera is added (--camera-light off leaves it out)");
     m_pilot.reset();
     scene.emplace(context, m_log);
     build(true);

@@ -14,6 +14,7 @@
 
 #include "integrator/materials/material_description.h"
 #include "integrator/sampling/warps.h"
+#include "integrator/scene/media.h"
 #include "integrator/scene/shape_record.h"
 
 namespace pm {
@@ -119,6 +120,21 @@ bool Scene::CoincidentFaces::areCutAlike(const Scene& scene, const Face& face, c
            index == scene.m_shapes[other.shape].materialOf(other.primitive);
 }
 
+bool Scene::CoincidentFaces::isRanked(const Scene& scene, const Face& face, const Face& other) {
+    const auto isOfBody = [&](const Face& one) {
+        RayHit hit;
+        hit.shape = one.shape;
+        hit.primitive = one.primitive;
+        return scene.m_media->isOfBody(hit);
+    };
+    return scene.m_media && priorityOf(scene, face) != priorityOf(scene, other) && isOfBody(face) &&
+           isOfBody(other);
+}
+
+std::int32_t Scene::CoincidentFaces::priorityOf(const Scene& scene, const Face& face) {
+    return scene.material(scene.m_shapes[face.shape].materialOf(face.primitive)).priority;
+}
+
 bool Scene::CoincidentFaces::hidesOther(const Scene& scene, const Face& face, const Face& other) {
     const Rank rank = rankOf(scene, face), ofOther = rankOf(scene, other);
     if (rank == Rank::kSheet && ofOther > rank) return true;
@@ -127,7 +143,7 @@ bool Scene::CoincidentFaces::hidesOther(const Scene& scene, const Face& face, co
     // Media know what is on both sides of all together, but between faces that look the same way a
     // layer is lost.
     if (rank == Rank::kGlass)
-        return !areOfPane(scene, face, other) &&
+        return !areOfPane(scene, face, other) && !isRanked(scene, face, other) &&
                (!scene.m_media ||
                 dot(scene.m_shapes[face.shape].facet(face.primitive).normal,
                     scene.m_shapes[other.shape].facet(other.primitive).normal) > 0.0f);
@@ -294,13 +310,14 @@ RayHit Scene::CoincidentFaces::nearSide(const Ray& ray, std::span<const RayHit> 
     return soFar;
 }
 
-std::pair<int, Scene::CoincidentFaces::Face> Scene::CoincidentFaces::orderFor(
-    const Ray& ray, const Face& face) const {
+Scene::CoincidentFaces::Order Scene::CoincidentFaces::orderFor(const Ray& ray,
+                                                               const Face& face) const {
     Rank rank = rankOf(m_scene, face);
     const Vec3f normal = m_scene.m_shapes[face.shape].facet(face.primitive).normal;
     // Lamps shine from their fronts only.
     if (rank == Rank::kShining && dot(normal, ray.direction) >= 0.0f) rank = Rank::kOpaque;
-    return {-static_cast<int>(rank), face};
+    return {-static_cast<int>(rank),
+            rank == Rank::kGlass && m_scene.m_media ? -priorityOf(m_scene, face) : 0, face};
 }
 
 std::uint64_t Scene::CoincidentFaces::memoryBytes() const {

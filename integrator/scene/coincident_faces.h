@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "integrator/scene/scene.h"
@@ -20,7 +20,8 @@ namespace pm {
 // the first in the scene.
 //
 // The two sides of a pane that is too thin to start rays in are met as one, with what both do to
-// light. Opaque faces that lie on opaque ones are not looked for.
+// light. Of bodies of glass with unlike priorities that of the higher one is met, which is there on
+// the inner side. Opaque faces that lie on opaque ones are not looked for.
 class Scene::CoincidentFaces {
   public:
     // Null where there are none. Adds a notice for those that no rule helps. Searches in parallel
@@ -45,6 +46,7 @@ class Scene::CoincidentFaces {
         auto operator<=>(const Face&) const = default;
     };
     struct Found;
+    using Order = std::tuple<int, std::int32_t, Face>;  // rank, priority of bodies of glass
     enum class Rank : std::uint8_t { kGlass, kSheet, kOpaque, kShining };
 
     CoincidentFaces(const Scene& scene, const std::vector<Face>& faces);
@@ -58,6 +60,9 @@ class Scene::CoincidentFaces {
     static bool areNeighbours(const Scene& scene, const Face& face, const Face& other);
     // Whether they let light through by the same picture, as the faces of blocks of leaves.
     static bool areCutAlike(const Scene& scene, const Face& face, const Face& other);
+    // Whether both are of bodies of which one's priority says which of them is there.
+    static bool isRanked(const Scene& scene, const Face& face, const Face& other);
+    static std::int32_t priorityOf(const Scene& scene, const Face& face);
     // Whether light that meets one of them does not meet the other, and should.
     static bool hidesOther(const Scene& scene, const Face& face, const Face& other);
     static void search(const Scene& scene, const Face& face, std::uint32_t points, Found& found);
@@ -66,7 +71,7 @@ class Scene::CoincidentFaces {
     // together with the side that it leaves by; else as chosen so far.
     RayHit nearSide(const Ray& ray, std::span<const RayHit> met, const RayHit& soFar) const;
     // The least is met.
-    std::pair<int, Face> orderFor(const Ray& ray, const Face& face) const;
+    Order orderFor(const Ray& ray, const Face& face) const;
 
     const Scene& m_scene;
     std::vector<std::vector<bool>> m_isAmong;  // of each shape's triangles; empty of those without

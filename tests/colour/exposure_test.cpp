@@ -86,6 +86,17 @@ TEST(Exposure, litShareCountsSurfacesThatCanBeShown) {
     EXPECT_DOUBLE_EQ(litShare(greys({}, {9.0f}), kThirds), 1);
 }
 
+TEST(Exposure, darkShareIsOfWhatStaysBlack) {
+    EXPECT_DOUBLE_EQ(darkShare(greys({1.0f, 1.0f, 1e-7f, 0.0f}, {9.0f}), kThirds), 0.5);
+    // However dim all is, exposure finds it.
+    EXPECT_DOUBLE_EQ(darkShare(greys({1e-5f, 2e-5f, 1e-5f}), kThirds), 0);
+    std::vector<float> spot(96, 1e-6f);
+    spot.resize(100, 5.0f);
+    EXPECT_DOUBLE_EQ(darkShare(greys(spot), kThirds), 0.96);
+    EXPECT_DOUBLE_EQ(darkShare(greys({1e-9f, 0.0f}, {9.0f}), kThirds), 1);
+    EXPECT_DOUBLE_EQ(darkShare(greys({}, {9.0f}), kThirds), 0);
+}
+
 TEST(Exposure, multipliesBeforeTheView) {
     for (const char* view : {"", "untone-mapped"}) {
         const ColourPipeline colour({.view = view});

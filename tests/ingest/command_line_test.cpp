@@ -82,8 +82,8 @@ TEST(CommandLine, refusesWhatIsUnknownOrToCome) {
     EXPECT_TRUE(refusal({"--bogus"}).starts_with("2 "));
     EXPECT_TRUE(refusal({"another.obj"}).starts_with("2 "));
     EXPECT_TRUE(refusal({"-o"}).starts_with("2 "));
-    EXPECT_EQ(refusal({"--denoise", "x"}), "2 --denoise: not available yet");
-    EXPECT_EQ(refusal({"--denoise=x"}), "2 --denoise: not available yet");
+    EXPECT_TRUE(refusal({"--denoise", "x"}).starts_with("2 --denoise: not available yet; pm has"));
+    EXPECT_TRUE(refusal({"--denoise=x"}).starts_with("2 --denoise: not available yet; pm has"));
 }
 
 TEST(CommandLine, levelsOfAntiAliasing) {

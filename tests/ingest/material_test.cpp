@@ -37,6 +37,25 @@ TEST(Material, diffuseAndGlossy) {
     EXPECT_TRUE(r.heard.list.empty());
 }
 
+// By hand nothing else says that it is glass; black paint of a program stays black.
+TEST(Material, tfBesideKd0IsClear) {
+    for (const char* glass :
+         {"Kd 0 0 0\nTf 1 1 1\n", "Kd 0 0 0\nTf 1 1 1\nNi 1.5\n", "Kd 0 0 0\nTf 1 1 1\nPr 0\n",
+          "Kd 0 0 0\nTf 1 1 1\nPr 0.2\nNi 1.4\nd 1\n", "Kd 0 0 0\nTf 1 1 1\nNi 1.5\nillum 2\n",
+          "Kd 0 0 0\nKs 1 1 1\nTf 1 1 1\nNi 1.33\n"}) {
+        const Result r = read(glass);
+        EXPECT_EQ(r.material.kind, MaterialKind::kDielectric) << glass;
+        EXPECT_EQ(r.material.transmission, (Colour{1, 1, 1})) << glass;
+    }
+    EXPECT_EQ(read("Kd 0 0 0\nTf 0.9 0.5 0.6\nPr 0.1\n").material.transmission,
+              (Colour{0.9f, 0.5f, 0.6f}));
+    for (const char* paint : {"Kd 0 0 0\nTf 0 0 0\n", "Kd 0.1 0 0\nTf 1 1 1\n",
+                              "Kd 0 0 0\nKs 0 0 0\nTf 1 1 1\nNi 1.5\nillum 2\nd 1\n",
+                              "Kd 0 0 0\nKs 0.5 0.5 0.5\nTf 1 1 1\nNi 1.5\nillum 2\n",
+                              "Kd 0 0 0\nKe 5 5 5\nTf 1 1 1\n"})
+        EXPECT_EQ(read(paint).material.kind, MaterialKind::kSurface) << paint;
+}
+
 TEST(Material, noLobeWithoutAnExponentOrWithIllum1) {
     EXPECT_EQ(read("Kd 0.5 0.5 0.5\nKs 0.2 0.2 0.2\n").material.glossy, Colour{});
     EXPECT_EQ(read("Kd 0.5 0.5 0.5\nKs 0.2 0.2 0.2\nNs 9\nillum 1\n").material.glossy, Colour{});

@@ -160,8 +160,12 @@ class PrincipledSection {
         const bool hasRoughnessMap = keepsRoughnessMap();
         const double rough = hasRoughnessMap ? ofRoughnessMap() : roughness();
         Colour tint = m_section.colour("Kd").value_or(Colour{1, 1, 1});
+        // Who writes by hand says by Tf what it lets through, and by Kd 0 that nothing else is
+        // there.
+        const bool isTintedByTf = !m_isBlenders && mean(tint) == 0 && !m_section.hasMap("map_Kd");
+        if (isTintedByTf) tint = *m_section.colour("Tf");
         // Since Blender 4 it is the colour of a way through two boundaries.
-        if (m_dialect == MtlDialect::kBlender4)
+        if (m_dialect == MtlDialect::kBlender4 && !isTintedByTf)
             for (double& channel : tint) channel = std::sqrt(std::max(channel, 0.0));
         if (m_section.hasMap("map_Kd")) m_section.maps["map_Tf"] = m_section.maps["map_Kd"];
         for (const char* key : {"Kd", "map_Kd", "Ks", "map_Ks", "Pm", "Ns"}) drop(key);

@@ -231,12 +231,25 @@ class MaterialReader {
 
     const char* opacityKey() const { return given("d") ? "d" : "Tr"; }
 
+    // Of what nothing is said but what it lets through: Tf beside Kd 0, by hand. Programs write
+    // illum and d as well, and any Tf.
+    bool isClearByTf() const {
+        const bool isBare = given("Kd") && isBlack(m_material.diffuse) &&
+                            !m_material.diffuseTexture && isBlack(m_material.emission) &&
+                            !m_material.emissionTexture;
+        if (!isBare || !given("Tf") || !(largestOf(colour("Tf")) > 0)) return false;
+        if (!given("illum")) return true;
+        return illum() <= 2 && isBlack(m_material.glossy) && number("Ni", 1) != 1 && !given("d") &&
+               !given("Tr");
+    }
+
     void decideKind() {
         const bool reflects = !isBlack(m_material.glossy);
         m_opacity = static_cast<float>(opacity());
         const bool hasIor = number("Ni", 1) != 1;
         const int model = illum();
-        if (model == 4 || model == 6 || model == 7 || (m_opacity < 1 && hasIor)) {
+        if (model == 4 || model == 6 || model == 7 || (m_opacity < 1 && hasIor) ||
+            (m_opacity == 1 && isClearByTf())) {
             m_material.kind = MaterialKind::kDielectric;
         } else if ((model == 3 || model == 5) && reflects) {
             m_material.kind = MaterialKind::kMirror;

@@ -103,8 +103,8 @@ JsonPlace JsonPlace::entry(std::size_t index) const {
     return {(*m_value)[index], *m_file, fmt::format("{}[{}]", m_path, index)};
 }
 
-std::vector<JsonPlace> JsonPlace::entries() const {
-    if (!m_value->is_array()) refuseValue("a list");
+std::vector<JsonPlace> JsonPlace::entriesOr(const char* allowed) const {
+    if (!m_value->is_array()) refuseValue(allowed);
     std::vector<JsonPlace> all;
     for (std::size_t i = 0; i < m_value->size(); ++i) all.push_back(entry(i));
     return all;

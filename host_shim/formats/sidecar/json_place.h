@@ -42,7 +42,9 @@ class JsonPlace {
     // Of an object.
     std::vector<std::pair<std::string, JsonPlace>> members() const;
     // The entries of a list; of a key that is not there none.
-    std::vector<JsonPlace> entries() const;
+    std::vector<JsonPlace> entries() const { return entriesOr("a list"); }
+    // The same, where other values are allowed too.
+    std::vector<JsonPlace> entriesOr(const char* allowed) const;
     std::vector<JsonPlace> entriesOf(const char* key) const;
 
     bool isText() const { return m_value->is_string(); }

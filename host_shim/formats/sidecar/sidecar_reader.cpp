@@ -79,7 +79,8 @@ SidecarMaterial readMaterial(const std::string& name, const JsonPlace& at) {
         else if (value.isNumber())
             named.numbers = {value.number()};
         else
-            for (const JsonPlace& entry : value.entries()) named.numbers.push_back(entry.number());
+            for (const JsonPlace& entry : value.entriesOr("a number, a text or a list of numbers"))
+                named.numbers.push_back(entry.number());
     }
     return material;
 }

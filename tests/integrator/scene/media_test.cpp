@@ -112,6 +112,42 @@ TEST(Media, WithoutPrioritiesTheSmallerBodyIsThere) {
     }
 }
 
+// Both end in one plane, above or below: the priority says which of them is there.
+TEST(Media, FacesInOnePlaneAreOfTheHigherPriority) {
+    for (const bool isFirst : {false, true})
+        for (const double ends : {0.0, 4.0}) {
+            SceneMaker maker;
+            const auto glass = maker.material(medium(1.5f, isFirst ? 1 : 3, 1.0f)),
+                       water = maker.material(medium(1.33f, 2));
+            const auto addGlass = [&] { slab(maker, 0, 4, glass); };
+            if (isFirst) addGlass();
+            slab(maker, ends > 0 ? 2 : 0, ends > 0 ? 4 : 2, water, 2.2);
+            if (!isFirst) addGlass();
+            addLampAndCamera(maker);
+            const double left = std::pow(0.25, isFirst ? 2 : 4);
+            const double right = isFirst ? through({{1.5, left}, {1.33}}) : through({{1.5, left}});
+            for (const auto integrator : kIntegrators)
+                EXPECT_NEAR(seen(maker, integrator).mean[1], right, 3e-3 * right)
+                    << isFirst << ends;
+            const auto scene = maker.build();
+            for (const Notice& notice : scene->notices())
+                EXPECT_EQ(notice.text.find("lie on others"), std::string::npos) << notice.text;
+        }
+}
+
+// Neither is said to be there.
+TEST(Media, FacesInOnePlaneOfEqualPrioritiesAreTold) {
+    SceneMaker maker;
+    slab(maker, 0, 4, maker.material(medium(1.5f, 0, 1.0f)));
+    slab(maker, 2, 4, maker.material(medium(1.33f)), 2.2);
+    addLampAndCamera(maker);
+    const auto scene = maker.build();
+    bool isTold = false;
+    for (const Notice& notice : scene->notices())
+        isTold |= notice.text.find("of glass lie on others of glass") != std::string::npos;
+    EXPECT_TRUE(isTold);
+}
+
 TEST(Media, BodiesOfOneMaterialThatOverlapAreOne) {
     SceneMaker maker;
     const auto glass = maker.material(medium(1.5f));
