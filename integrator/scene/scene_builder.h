@@ -9,6 +9,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "integrator/materials/opacity.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/scene_core.h"
 #include "integrator/scene/shape_record.h"
@@ -18,6 +19,11 @@ namespace pm {
 
 inline bool emits(const MaterialDescription& material) {
     return !isBlack(material.emission);
+}
+
+// Whether what shines is another than its number: by its picture, or as part of it is cut away.
+inline bool shinesByTexture(const MaterialDescription& material) {
+    return material.emissionTexture != kNoTexture || letsThrough(material);
 }
 
 // Builds a Scene: checks the description, moves everything to the scene's own centre in double,

@@ -57,7 +57,7 @@ void Scene::Builder::addLightTriangles() {
     for (std::size_t i = 0; i < m_scene.m_lights.size(); ++i) {
         goOn();
         const SurfaceLight* const shining = m_scene.m_lights[i].surface();
-        if (!shining || m_scene.material(shining->material).emissionTexture != kNoTexture) continue;
+        if (!shining || shinesByTexture(m_scene.material(shining->material))) continue;
         const SurfaceLight& light = *shining;
         const ShapeRecord& record = m_scene.m_shapes[light.shape];
         if (!record.mesh || record.exactOf(light.primitive)) continue;

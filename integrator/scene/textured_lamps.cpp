@@ -10,9 +10,11 @@
 #include <string>
 #include <utility>
 
+#include "integrator/materials/opacity.h"
 #include "integrator/sampling/pinned_math.h"
 #include "integrator/sampling/warps.h"
 #include "integrator/scene/scene.h"
+#include "integrator/scene/scene_builder.h"
 #include "integrator/scene/shape_record.h"
 
 namespace pm {
@@ -27,9 +29,8 @@ constexpr double kLeastPower = 1e-6;
 // Sines of a sphere's latitude-longitude picture at its poles.
 constexpr float kLeastSine = 1e-4f;
 
-// Its texture's number, or kNoTexture.
-std::int32_t textureOf(const Scene& scene, const Light& light) {
-    return light.surface() ? scene.material(light.surface()->material).emissionTexture : kNoTexture;
+bool shinesByTexture(const Scene& scene, const Light& light) {
+    return light.surface() && pm::shinesByTexture(scene.material(light.surface()->material));
 }
 
 // Of the circle on which a picture's row lies, the sphere's radius being 1.
@@ -41,12 +42,14 @@ float sineOfRow(float v) {
 
 Rgb Scene::emission(std::uint32_t index, Vec2f uv) const {
     const MaterialDescription& material = this->material(index);
-    if (material.emissionTexture == kNoTexture) return material.emission;
+    // What is cut away doesn't shine.
+    const float share = opacityAt(materials(), material, uv);
+    if (material.emissionTexture == kNoTexture) return material.emission * share;
     const auto texture = static_cast<std::size_t>(material.emissionTexture);
     const bool isBad = texture < m_hasBadTexels.size() && m_hasBadTexels[texture];
     const Texel t = asLight(isBad ? textures()->lookUpOfLight(material.emissionTexture, uv)
                                   : textures()->lookUp(material.emissionTexture, uv, {}));
-    return material.emission * Rgb(t.r, t.g, t.b);
+    return material.emission * Rgb(t.r, t.g, t.b) * share;
 }
 
 bool Scene::findBadTexels(std::int32_t texture, const CancelCheck& cancel) {
@@ -70,7 +73,14 @@ bool Scene::findBadTexels(std::int32_t texture, const CancelCheck& cancel) {
 LampTexture Scene::lookAtLamp(const SurfaceLight& light, std::size_t mostLooks,
                               const CancelCheck& cancel) const {
     const ShapeRecord& record = m_shapes[light.shape];
-    const auto [across, down] = textures()->texels(material(light.material).emissionTexture);
+    std::uint32_t across = 1, down = 1;
+    const MaterialDescription& shining = material(light.material);
+    for (const std::int32_t texture : {shining.emissionTexture, shining.opacityTexture}) {
+        if (texture == kNoTexture) continue;
+        const auto [columns, rows] = textures()->texels(texture);
+        across = std::max(across, columns);
+        down = std::max(down, rows);
+    }
     LampTexture::Lamp lamp;
     lamp.mostLooks = mostLooks;
     if (!record.mesh) {
@@ -104,14 +114,15 @@ LampTexture Scene::lookAtLamp(const SurfaceLight& light, std::size_t mostLooks,
 
 void Scene::lookAtTextures(const CancelCheck& cancel) {
     const auto count = static_cast<std::size_t>(std::ranges::count_if(
-        m_lights, [&](const Light& light) { return textureOf(*this, light) != kNoTexture; }));
+        m_lights, [&](const Light& light) { return shinesByTexture(*this, light); }));
     if (count == 0) return;
     std::set<std::int32_t> textures;
-    for (const Light& light : m_lights) textures.insert(textureOf(*this, light));
+    for (const Light& light : m_lights)
+        if (light.surface()) textures.insert(material(light.surface()->material).emissionTexture);
     textures.erase(kNoTexture);
     for (const std::int32_t texture : textures) findBadTexels(texture, cancel);
     for (Light& light : m_lights) {
-        if (textureOf(*this, light) == kNoTexture) continue;
+        if (!shinesByTexture(*this, light)) continue;
         SurfaceLight& shining = *light.surface();
         LampTexture texture =
             lookAtLamp(shining, std::max<std::size_t>(1, kMostLooks / count), cancel);
