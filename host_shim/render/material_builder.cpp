@@ -138,7 +138,7 @@ std::optional<BakedTexture> MaterialBuilder::readable(const TextureUse& use,
     }
 }
 
-void MaterialBuilder::putOutLamps(SceneData& data) {
+void MaterialBuilder::putOutLights(SceneData& data) {
     std::set<std::uint32_t> used;
     for (const InstanceData& instance : data.instances)
         for (const std::uint32_t material : data.materialsOf(instance)) used.insert(material);

@@ -34,7 +34,7 @@ class MaterialBuilder {
     TextureCounts textureCounts() const;
     // What shines by a picture that can't be read gives no light: that is told and the lamp put
     // out.
-    void putOutLamps(SceneData& data);
+    void putOutLights(SceneData& data);
     // A picture that can't be had is warned of; what stands for it is taken. Errors: those of the
     // plugin; HostError kMemory for one that takes more memory than it may.
     PmrMaterial build(const MaterialData& material);

@@ -102,7 +102,7 @@ void Session::buildLit(SceneData& data, const CameraPose& camera, const ColourPi
             scene->build({data, name, m_options.subdivide, camera}, colour, materials);
         });
     };
-    materials.putOutLamps(data);
+    materials.putOutLights(data);
     const bool isAuto = m_options.cameraLight == CameraLight::kAuto;
     const bool needsLight = isAuto && !data.hasLight();
     build(needsLight || m_options.cameraLight == CameraLight::kOn);
