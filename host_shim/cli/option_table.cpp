@@ -108,6 +108,8 @@ void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
             "which program's MTL it is: " + allDialectNames() + " (by the headers of the files)");
     app.add_flag("--bump-is-normal", options.bumpIsNormal,
                  "take the pictures of map_Bump as normal maps, as in Blender's files they are");
+    app.add_flag("--alpha-of-pictures", options.alphaOfPictures,
+                 "take the alpha of map_Kd's pictures as map_d, where a material has none");
     addList(app, "--search-path", typed.searchPaths, "DIR",
             "where libraries and textures are looked for that are not found beside the scene; may "
             "be repeated");

@@ -99,10 +99,11 @@ struct Options {
     std::uint32_t threads{0};  // 0 = all allowed
     Subdivide subdivide{Subdivide::kTagged};
     ReadRules reading;
-    bool noSidecar{};     // SCENE.pm.json is not read
-    bool bumpIsNormal{};  // bump maps are normal maps, where a material has no other
-    bool writeSidecar{};  // and is written
-    std::string layers;   // separated by commas
+    bool noSidecar{};        // SCENE.pm.json is not read
+    bool bumpIsNormal{};     // bump maps are normal maps, where a material has no other
+    bool alphaOfPictures{};  // of map_Kd counts as map_d, where a material has none
+    bool writeSidecar{};     // and is written
+    std::string layers;      // separated by commas
     ColourOptions colour;
     ExposureOption exposure;
     CameraLight cameraLight{CameraLight::kAuto};

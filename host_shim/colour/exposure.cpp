@@ -22,12 +22,17 @@ constexpr double kLeastMeteredShare = 0.1;
 const double kLeastShown = 0.01 * std::exp2(-kMostExposureStops);
 
 struct Seen {
-    std::vector<double> surfaces, lamps;  // luminance of each covered pixel
+    // Luminance of each covered pixel, but for those of surfaces that reflect nothing: no exposure
+    // shows these, and no light.
+    std::vector<double> surfaces, lamps;
 };
 
 Seen seen(const Picture& picture, const std::array<double, 3>& weights) {
     constexpr std::array<const char*, 3> kBeauty{"R", "G", "B"};
     constexpr std::array<const char*, 3> kEmission{"emission.R", "emission.G", "emission.B"};
+    constexpr std::array<const char*, 3> kAlbedo{"albedo.R", "albedo.G", "albedo.B"};
+    constexpr double kBlack = 1e-4;
+    const bool knowsAlbedo = picture.find(kAlbedo[0]) != nullptr;
     const auto luminance = [&](const std::array<const char*, 3>& names, std::size_t i) {
         double sum = 0;
         for (std::size_t c = 0; c < 3; ++c) {
@@ -41,8 +46,9 @@ Seen seen(const Picture& picture, const std::array<double, 3>& weights) {
     if (alpha == nullptr) return result;
     for (std::size_t i = 0; i < alpha->values.size(); ++i) {
         if (!(alpha->values[i] > 0.0f)) continue;
-        auto& kind = luminance(kEmission, i) > 0 ? result.lamps : result.surfaces;
-        kind.push_back(luminance(kBeauty, i));
+        const bool isLamp = luminance(kEmission, i) > 0;
+        if (!isLamp && knowsAlbedo && luminance(kAlbedo, i) < kBlack) continue;
+        (isLamp ? result.lamps : result.surfaces).push_back(luminance(kBeauty, i));
     }
     return result;
 }

@@ -218,6 +218,27 @@ void MaterialBuilder::tellNormals(const TextureUse& use, const std::string& of) 
     }
 }
 
+// A picture that says where it is to be seen through, of a material that doesn't ask for that.
+void MaterialBuilder::tellAlpha(const TextureUse& use, const std::string& of) {
+    std::vector<TextureRequest> requests;
+    addRequests(use, TextureKind::kColour, requests);
+    for (const TextureRequest& request : requests) {
+        try {
+            if (!preparer().texture(request).facts.hasHoles) continue;
+        } catch (const HostError&) {
+            continue;  // told already
+        }
+        const std::string file = request.file.string();
+        if (m_told.insert("alpha " + file).second)
+            m_warn(Warning::kTexture,
+                   fmt::format("{}: {}: {} has texels that are to be seen through, which are shown "
+                               "as surface, as there is no map_d; --alpha-of-pictures takes its "
+                               "alpha as map_d",
+                               use.place, of, file));
+        return;
+    }
+}
+
 PmrTexture MaterialBuilder::make(const PmrTextureDesc& desc, const std::string& shown) {
     PmrTexture texture = nullptr;
     m_context.check(m_context.api().createTexture(m_context.handle(), &desc, &texture), shown);
@@ -261,6 +282,8 @@ PmrMaterial MaterialBuilder::build(const MaterialData& material) {
         return made;
     };
     desc.diffuseTexture = colourOf(material.diffuseTexture, desc.diffuse);
+    if (material.diffuseTexture && !material.opacityTexture)
+        tellAlpha(*material.diffuseTexture, of);
     desc.glossyTexture = colourOf(material.glossyTexture, desc.glossy);
     desc.glossyExponentTexture = texture(material.glossyExponentTexture, TextureKind::kData, of);
     desc.transmissionTexture = colourOf(material.transmissionTexture, desc.transmission);

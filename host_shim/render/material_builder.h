@@ -47,6 +47,7 @@ class MaterialBuilder {
     PmrTexture picture(const TextureUse& use, const std::string& shown, TextureKind kind,
                        const std::string& of);
     void tellNormals(const TextureUse& use, const std::string& of);
+    void tellAlpha(const TextureUse& use, const std::string& of);
     PmrTexture tiles(const TextureUse& use, TextureKind kind, const std::string& of);
     PmrTexture make(const PmrTextureDesc& desc, const std::string& shown);
     PmrTexture make(const TextureUse& use, const BakedTexture& baked, const std::string& shown);

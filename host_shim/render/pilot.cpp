@@ -26,6 +26,7 @@ Options pilotOptions(const Options& options, const char* integrator) {
     pilot.width = scaled(options.width);
     pilot.height = scaled(options.height);
     pilot.progress = ProgressStyle::kNone;
+    pilot.layers = "albedo";  // by which black surfaces are known from unlit ones
     for (const GivenSetting& setting : options.settings)
         if (setting.name == "threads") pilot.settings.push_back(setting);
     for (const auto& [name, value] : {std::pair{"integrator", integrator},

@@ -12,6 +12,7 @@
 #include "host_shim/formats/sidecar/sidecar_parts.h"
 #include "host_shim/formats/source_file.h"
 #include "host_shim/process/interrupt.h"
+#include "host_shim/render/picture_alpha.h"
 #include "host_shim/render/scene_memory.h"
 
 namespace pm::host {
@@ -104,6 +105,7 @@ SceneData readScene(const Options& options, const WarningSink& warn,
     if (sidecar) addSidecar(*sidecar, scene, limits);
     addSky(options.sky, scene);
     if (options.bumpIsNormal) takeBumpAsNormal(scene.materials);
+    if (options.alphaOfPictures) takeAlphaOfPictures(scene.materials);
     return scene;
 }
 

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include "host_shim/textures/picture_kind.h"
 #include "host_shim/textures/stated_colours.h"
@@ -73,10 +74,13 @@ PictureRows::PictureRows(const std::filesystem::path& file, TextureKind kind, ch
     const bool isStraight = m_spec.get_int_attribute("oiio:UnassociatedAlpha") != 0;
     m_divides = m_layout.alpha >= 0 && !isStraight;
     if (m_divides) m_picks.push_back(m_layout.alpha);
+    const bool looksAtAlpha = kind == TextureKind::kColour && m_layout.alpha >= 0;
+    const int also = looksAtAlpha ? m_layout.alpha : m_picks[0];
     const auto [low, high] = std::ranges::minmax(m_picks);
-    m_firstChannel = low;
-    m_endChannel = high + 1;
-    for (int& pick : m_picks) pick -= low;
+    m_firstChannel = std::min(low, also);
+    m_endChannel = std::max(high, also) + 1;
+    for (int& pick : m_picks) pick -= m_firstChannel;
+    if (looksAtAlpha) m_alpha = m_layout.alpha - m_firstChannel;
     const bool isColour = m_layout.values == Values::kColour || m_layout.values == Values::kTwo ||
                           m_layout.values == Values::kXyz;
     m_channels = isColour ? 3 : 1;
@@ -203,8 +207,19 @@ void PictureRows::loadBand(int dataRow, OIIO::TypeDesc type) {
     if (!good || !text.empty()) failReading(text);
 }
 
+// texels: at the alpha of the first.
 template <typename T>
-void PictureRows::pickRow(int dataRow, std::span<T> row) const {
+void PictureRows::lookForHoles(const T* texels, std::size_t count, std::size_t stride) {
+    // Edges of what is opaque, and what a lossy file makes of 1, are above.
+    constexpr double kOpaque = 0.9;
+    const double full =
+        std::numeric_limits<T>::is_integer ? static_cast<double>(std::numeric_limits<T>::max()) : 1;
+    for (std::size_t i = 0; i < count && !m_hasHoles; ++i)
+        m_hasHoles = static_cast<double>(texels[i * stride]) < kOpaque * full;
+}
+
+template <typename T>
+void PictureRows::pickRow(int dataRow, std::span<T> row) {
     const auto stored = static_cast<std::size_t>(m_endChannel - m_firstChannel);
     const std::size_t picks = m_picks.size();
     const auto width = static_cast<std::size_t>(m_spec.width);
@@ -218,6 +233,7 @@ void PictureRows::pickRow(int dataRow, std::span<T> row) const {
     if (first >= end) return;
     T* to = row.data() + static_cast<std::size_t>(left + static_cast<std::int64_t>(first)) * picks;
     from += first * stored;
+    if (m_alpha >= 0) lookForHoles(from + m_alpha, end - first, stored);
     if (picks == stored && std::ranges::is_sorted(m_picks)) {
         std::copy_n(from, (end - first) * picks, to);
         return;

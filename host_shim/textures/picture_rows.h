@@ -56,6 +56,9 @@ class PictureRows {
     // Of what readRows() made luminance of: as good as all texels are unit vectors out of the
     // surface, and they are flat on the average.
     bool isLikeNormals() const;
+    // Of colours that were read: the picture has an alpha, and it says that some are to be seen
+    // through.
+    bool hasHoles() const { return m_hasHoles; }
 
   private:
     template <typename T>
@@ -63,7 +66,9 @@ class PictureRows {
     template <typename T>
     void loadBand(int dataRow, OIIO::TypeDesc type);
     template <typename T>
-    void pickRow(int dataRow, std::span<T> row) const;
+    void pickRow(int dataRow, std::span<T> row);
+    template <typename T>
+    void lookForHoles(const T* texels, std::size_t count, std::size_t stride);
     void findWindows();
     void noteOrientation();
     void lookForNormal(const float* colour);
@@ -80,6 +85,8 @@ class PictureRows {
     int m_firstChannel{}, m_endChannel{};  // what is read of the file
     std::vector<int> m_picks;              // of these
     bool m_divides{};                      // the last pick is alpha
+    int m_alpha{-1};                       // of what is read, where it is looked at
+    bool m_hasHoles{};
     int m_nextRow{};
     int m_bandRow{}, m_bandRows{};  // rows of the data window that are in memory
     std::vector<std::byte> m_band;

@@ -167,6 +167,7 @@ bool TextureBake::inspect(const std::function<void()>& goOn, TextureFacts& facts
              {digest.low64, digest.high64},
              {},
              m_rows.layout().note,
+             false,
              false};
     return true;
 }
@@ -211,8 +212,8 @@ TextureFacts TextureBake::bake(CheckedFile& file, const std::filesystem::path& p
     writer.finish(goOn);
     bad.notFinite += m_rows.badTexels().notFinite;
     bad.negative += m_rows.badTexels().negative;
-    return {m_rows.width(),       m_rows.height(),       channels, writer.texelHash(), bad,
-            m_rows.layout().note, m_rows.isLikeNormals()};
+    return {m_rows.width(),       m_rows.height(),        channels,         writer.texelHash(), bad,
+            m_rows.layout().note, m_rows.isLikeNormals(), m_rows.hasHoles()};
 }
 
 }  // namespace pm::host

@@ -30,6 +30,7 @@ struct TextureFacts {
     BadTexelCount bad;                         // texels that were replaced by 0
     std::string note;                          // what was chosen of the picture; may be empty
     bool isLikeNormals{};  // colours, of which a number was made, of a normal map
+    bool hasHoles{};       // colours, of a picture whose alpha has some seen through
 };
 
 }  // namespace pm::host

@@ -25,7 +25,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Of what textures are made and how; another number makes all of them anew.
-constexpr int kBakeVersion = 3;
+constexpr int kBakeVersion = 4;
 
 struct Stopped {};
 

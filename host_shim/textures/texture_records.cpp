@@ -77,6 +77,7 @@ Record toRecord(const TextureFacts& facts, const fs::path& file) {
     record.setNumber("notFinite", facts.bad.notFinite);
     record.set("note", facts.note);
     record.setNumber("normals", facts.isLikeNormals ? 1 : 0);
+    record.setNumber("holes", facts.hasHoles ? 1 : 0);
     return record;
 }
 
@@ -93,6 +94,7 @@ TextureFacts toFacts(const Record& record) {
     facts.bad = {record.number("negative"), record.number("notFinite")};
     facts.note = record.get("note");
     facts.isLikeNormals = record.number("normals") != 0;
+    facts.hasHoles = record.number("holes") != 0;
     return facts;
 }
 

@@ -97,6 +97,17 @@ TEST(Exposure, darkShareIsOfWhatStaysBlack) {
     EXPECT_DOUBLE_EQ(darkShare(greys({}, {9.0f}), kThirds), 0);
 }
 
+// What reflects nothing is as black in any light.
+TEST(Exposure, blackSurfacesAreNotMetered) {
+    Picture picture = greys({0.18f, 0.18f, 0.0f, 0.0f});
+    EXPECT_GT(measuredExposureStops(picture, kThirds), 1);
+    for (const char* name : {"albedo.R", "albedo.G", "albedo.B"})
+        picture.channels.push_back({name, true, {0.5f, 0.5f, 0.0f, 0.0f}});
+    EXPECT_EQ(measuredExposureStops(picture, kThirds), 0);
+    EXPECT_EQ(darkShare(picture, kThirds), 0);
+    EXPECT_EQ(litShare(picture, kThirds), 1);
+}
+
 TEST(Exposure, multipliesBeforeTheView) {
     for (const char* view : {"", "untone-mapped"}) {
         const ColourPipeline colour({.view = view});

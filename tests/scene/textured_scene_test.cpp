@@ -90,6 +90,50 @@ TEST_F(TexturedScene, BumpMapsThatLookLikeNormalMapsAreTold) {
     EXPECT_EQ(m_warnings.find("--bump-is-normal"), std::string::npos) << m_warnings;
 }
 
+// Pictures whose alpha nobody asked for: told, and used where that is asked for; what is black
+// where it is to be seen through doesn't brighten the rest.
+TEST_F(TexturedScene, AlphaOfPicturesIsToldAndTaken) {
+    constexpr int kSide = 64;
+    const auto withAlpha = [&](const std::string& name, TypeDesc type, float alpha) {
+        OIIO::ImageSpec spec(kSide, kSide, 4, type);
+        std::vector<float> values;
+        for (int i = 0; i < kSide * kSide; ++i) {
+            const bool isLeft = i % kSide < kSide / 2;
+            const float v = isLeft ? 0.5f : 0.0f;
+            values.insert(values.end(), {v, v, v, isLeft ? 1.0f : alpha});
+        }
+        const auto output = OIIO::ImageOutput::create((m_folder / name).string());
+        ASSERT_TRUE(output && output->open((m_folder / name).string(), spec)) << name;
+        ASSERT_TRUE(output->write_image(TypeDesc::FLOAT, values.data()) && output->close());
+    };
+    const auto coverage = [&](const std::string& maps, const Arguments& more) {
+        write("s.obj", kQuad);
+        write("s.mtl", "newmtl m\nKd 1 1 1\n" + maps + "\n");
+        const Picture seen = renderExr("s", Arguments{"s.obj"} + kFront + more);
+        const Channel* const alpha = seen.find("A");
+        double sum = 0;
+        if (alpha != nullptr)
+            for (const float value : alpha->values) sum += static_cast<double>(value);
+        return sum / (4 * 4);
+    };
+    const std::string word = "--alpha-of-pictures";
+    withAlpha("8.png", TypeDesc::UINT8, 0);
+    withAlpha("16.png", TypeDesc::UINT16, 0);
+    withAlpha("f.exr", TypeDesc::FLOAT, 0);
+    withAlpha("opaque.png", TypeDesc::UINT8, 1);
+    for (const std::string name : {"8.png", "16.png", "f.exr"}) {
+        EXPECT_NEAR(coverage("map_Kd " + name, {}), 1, 1e-6) << name;
+        EXPECT_NE(m_warnings.find(word), std::string::npos) << name << m_warnings;
+        EXPECT_NEAR(coverage("map_Kd " + name, {word}), 0.5, 0.1) << name;
+        EXPECT_EQ(m_warnings.find(word), std::string::npos) << name << m_warnings;
+    }
+    for (const std::string maps : {"map_Kd opaque.png", "map_Kd 8.png\nmap_d opaque.png"}) {
+        EXPECT_NEAR(coverage(maps, {}), 1, 1e-6) << maps;
+        EXPECT_EQ(m_warnings.find(word), std::string::npos) << maps << m_warnings;
+        EXPECT_NEAR(coverage(maps, {word}), 1, 1e-6) << maps;
+    }
+}
+
 // Straight up there is nothing of the lowest row, straight down nothing of the uppermost one.
 TEST_F(TexturedScene, SkiesEndAtTheirPoles) {
     write("s.obj", "v 90 0 0\nv 91 0 0\nv 90 0 1\nf 1 2 3\n");
