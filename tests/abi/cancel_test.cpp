@@ -77,6 +77,8 @@ TEST_F(CancelBuild, BuildsMakeNothingAsLongAsItHolds) {
     PmrMesh mesh = nullptr, none = nullptr;
     ASSERT_EQ(PMR_OK, makeMesh(sheet, mesh));
     const PmrScene scene = sceneOf(mesh);
+    const PmrRender running = m_host.makeRender({{"passes", "4"}});
+    EXPECT_EQ(PMR_OK, api().startRender(running)) << m_host.lastError();
     for (int i = 0; i < 2; ++i) EXPECT_EQ(PMR_OK, api().cancelBuilds(context(), 1));
     EXPECT_EQ(PMR_ERROR_CANCELLED, makeMesh(sheet, none));
     EXPECT_EQ(nullptr, none);
@@ -90,11 +92,21 @@ TEST_F(CancelBuild, BuildsMakeNothingAsLongAsItHolds) {
     EXPECT_NE(std::string::npos, m_host.lastError().find("cancelled while"));
     double bounds[6];
     EXPECT_EQ(PMR_ERROR_STATE, api().sceneBounds(scene, bounds));
-    // Other contexts, and renders of what is committed, are not concerned.
+    // Other contexts, and renders that run, are not concerned; those that plan are, as often as it
+    // takes.
     const BoxHost other;
     EXPECT_FALSE(renderBox(other, {{"passes", "1"}}).empty());
-    EXPECT_FALSE(renderBox(m_host, {{"passes", "1"}}).empty());
+    EXPECT_EQ(PMR_OK, api().waitRender(running, -1.0)) << m_host.lastError();
+    EXPECT_EQ(PMR_OK, api().destroyRender(running));
+    const PmrRender planned = m_host.makeRender({{"passes", "1"}});
+    std::int32_t delivery = 0;
+    EXPECT_EQ(PMR_ERROR_CANCELLED, api().explainRender(planned, nullptr, 0, nullptr));
+    EXPECT_EQ(PMR_ERROR_CANCELLED, api().renderDelivery(planned, &delivery));
+    for (int i = 0; i < 2; ++i) EXPECT_EQ(PMR_ERROR_CANCELLED, api().startRender(planned));
     EXPECT_EQ(PMR_OK, api().cancelBuilds(context(), 0));
+    EXPECT_EQ(PMR_OK, api().startRender(planned)) << m_host.lastError();
+    EXPECT_EQ(PMR_OK, api().waitRender(planned, -1.0)) << m_host.lastError();
+    EXPECT_EQ(PMR_OK, api().destroyRender(planned));
     EXPECT_EQ(PMR_OK, api().commitScene(scene)) << m_host.lastError();
     EXPECT_EQ(PMR_OK, api().sceneBounds(scene, bounds));
     EXPECT_EQ(PMR_OK, api().releaseScene(scene));
