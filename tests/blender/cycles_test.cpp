@@ -46,8 +46,8 @@ TEST_P(Cycles, AgreesByRegionsWithBothExporters) {
     if (!exportByBlender(scene, path(""))) GTEST_SKIP() << "blender is not installed";
     const Picture truth = readExr(path("cycles_" + scene + ".exr"));
     ASSERT_TRUE(allFinite(truth));
-    // Under the ball one region is 5.9 % off: Blender's diffuse part depends on angles, and the coat
-    // is another; how much each has of it isn't known.
+    // Under the ball one region is 5.9 % off: Blender's diffuse part depends on angles, and the
+    // coat is another; how much each has of it isn't known.
     const double allowed = scene == "plastic" ? 0.07 : 0.05;
     for (const std::string exporter : {"old", "new"}) {
         const std::string name = scene + "_" + exporter;
