@@ -6,21 +6,9 @@
 #include <map>
 #include <string>
 
-#include "host_shim/textures/picture_rows.h"
-#include "host_shim/values/host_error.h"
+#include "host_shim/textures/picture_kind.h"
 
 namespace pm::host {
-namespace {
-
-bool hasAlpha(const std::string& file) {
-    try {
-        return PictureRows(file, TextureKind::kColour, 0).layout().alpha >= 0;
-    } catch (const HostError&) {
-        return false;
-    }
-}
-
-}  // namespace
 
 void takeAlphaOfPictures(std::vector<MaterialData>& materials) {
     std::map<std::string, bool> known;  // many materials share a picture

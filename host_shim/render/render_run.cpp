@@ -8,6 +8,15 @@
 
 namespace pm::host {
 
+namespace {
+
+// While it lives, a signal ends what the library plans.
+InterruptWatch planWatch(const PluginContext& context) {
+    return InterruptWatch([&] { context.api().cancelBuilds(context.handle(), 1); });
+}
+
+}  // namespace
+
 void PMR_CALL logPluginMessage(void* user, PmrRender, int32_t level, int32_t code,
                                const char* text) {
     Log& log = *static_cast<Log*>(user);
@@ -122,7 +131,7 @@ void RenderRun::readPixels(const PmrRectangle& rectangle, const char* layer, flo
 
 bool RenderRun::deliversBuckets() const {
     std::int32_t delivery = PMR_DELIVERY_FRAME;
-    const InterruptWatch watch = planWatch();
+    const InterruptWatch watch = planWatch(m_context);
     m_context.check(api().renderDelivery(m_handle, &delivery), "render");
     return delivery == PMR_DELIVERY_BUCKETS;
 }
@@ -144,12 +153,8 @@ void RenderRun::checkSettings(PmrStatus status, const std::string& what) const {
     m_context.check(status, what);
 }
 
-InterruptWatch RenderRun::planWatch() const {
-    return InterruptWatch([this] { api().cancelBuilds(m_context.handle(), 1); });
-}
-
 std::string RenderRun::explain() const {
-    const InterruptWatch watch = planWatch();
+    const InterruptWatch watch = planWatch(m_context);
     PmrStatus status = PMR_OK;
     std::string text = pluginText([&](char* buffer, uint64_t capacity, uint64_t* needed) {
         return status = api().explainRender(m_handle, buffer, capacity, needed);
@@ -167,7 +172,7 @@ std::string RenderRun::statistics() const {
 PmrStatus RenderRun::run() {
     constexpr double kPollSeconds = 0.05;
     const PmrStatus started = [this] {
-        const InterruptWatch watch = planWatch();
+        const InterruptWatch watch = planWatch(m_context);
         return api().startRender(m_handle);
     }();
     const bool tooLarge = started == PMR_ERROR_MEMORY && !m_whyFrame.empty();

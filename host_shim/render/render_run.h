@@ -9,7 +9,6 @@
 #include "host_shim/cli/options.h"
 #include "host_shim/log/log.h"
 #include "host_shim/log/progress.h"
-#include "host_shim/process/interrupt.h"
 #include "host_shim/render/picture_source.h"
 #include "host_shim/render/scene_builder.h"
 #include "host_shim/report/bucket_times.h"
@@ -61,8 +60,6 @@ class RenderRun : public PictureSource {
 
   private:
     void apply(const GivenSetting& setting);
-    // While it lives, a signal ends what the library plans.
-    InterruptWatch planWatch() const;
     // Throws when status is an error; what: before its text. What is wrong with the settings
     // together is wrong with the command line.
     void checkSettings(PmrStatus status, const std::string& what) const;

@@ -14,4 +14,7 @@ namespace pm::host {
 // Errors: HostError kFile when the file is missing, no regular file or can't be read.
 std::string pictureReader(const std::filesystem::path& file);
 
+// Whether a picture of colours has an alpha; false for what can't be read as one. Reads the header.
+bool hasAlpha(const std::filesystem::path& file);
+
 }  // namespace pm::host

@@ -341,4 +341,12 @@ void PictureRows::readRows(int rowCount, std::vector<float>& values) {
     }
 }
 
+bool hasAlpha(const std::filesystem::path& file) {
+    try {
+        return PictureRows(file, TextureKind::kColour, 0).layout().alpha >= 0;
+    } catch (const HostError&) {
+        return false;
+    }
+}
+
 }  // namespace pm::host
