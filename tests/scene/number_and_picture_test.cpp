@@ -135,6 +135,13 @@ TEST_F(NumberAndPicture, AColourWhosePictureIsMissingIsGrey) {
     EXPECT_NEAR(seen("", "illum 1\nmap_Kd none.png\n", {"--untrusted"}), 0.8, 0.005);
 }
 
+TEST_F(NumberAndPicture, OneNumberOfAColourInASidecarIsGrey) {
+    write("a.pm.json", R"({"schema": "pm-sidecar/1", "materials": {"m": {"diffuse": 0.25}}})");
+    EXPECT_NEAR(seen("", "Kd 0.9 0.1 0.1\nillum 1\n"), 0.25, 0.001);
+    write("a.pm.json", R"({"schema": "pm-sidecar/1", "materials": {"m": {"emission": 3}}})");
+    EXPECT_NEAR(seen("", "Kd 0 0 0\nillum 1\n"), 3, 0.001);
+}
+
 TEST_F(NumberAndPicture, ASkyThatIsNoPictureIsAnError) {
     write("a.mtl", "newmtl m\n");
     for (const char* name : {"a.obj", "empty.exr"}) {
