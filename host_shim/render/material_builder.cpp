@@ -199,44 +199,40 @@ PmrTexture MaterialBuilder::tiles(const TextureUse& use, TextureKind kind, const
     return make(desc, use.file);
 }
 
-// Heights that are the picture of something else, once a material.
-void MaterialBuilder::tellNormals(const TextureUse& use, const std::string& of) {
+// The first of its files of which that is so; empty where it is of none.
+std::string MaterialBuilder::firstWith(bool TextureFacts::*fact, const TextureUse& use,
+                                       TextureKind kind) {
     std::vector<TextureRequest> requests;
-    addRequests(use, TextureKind::kData, requests);
+    addRequests(use, kind, requests);
     for (const TextureRequest& request : requests) {
         try {
-            if (!preparer().texture(request).facts.isLikeNormals) continue;
+            if (preparer().texture(request).facts.*fact) return request.file.string();
         } catch (const HostError&) {
-            continue;  // a tile that is told already
+            continue;  // one that is told already
         }
-        m_warn(
-            Warning::kTexture,
-            fmt::format("{}: {}: {} looks like a normal map and is taken as heights; in MTL a "
-                        "normal map is called norm, and --bump-is-normal takes bump maps as such",
-                        use.place, of, request.file.string()));
-        return;
     }
+    return {};
+}
+
+// Heights that are the picture of something else, once a material.
+void MaterialBuilder::tellNormals(const TextureUse& use, const std::string& of) {
+    const std::string file = firstWith(&TextureFacts::isLikeNormals, use, TextureKind::kData);
+    if (file.empty()) return;
+    m_warn(Warning::kTexture,
+           fmt::format("{}: {}: {} looks like a normal map and is taken as heights; in MTL a "
+                       "normal map is called norm, and --bump-is-normal takes bump maps as such",
+                       use.place, of, file));
 }
 
 // A picture that says where it is to be seen through, of a material that doesn't ask for that.
 void MaterialBuilder::tellAlpha(const TextureUse& use, const std::string& of) {
-    std::vector<TextureRequest> requests;
-    addRequests(use, TextureKind::kColour, requests);
-    for (const TextureRequest& request : requests) {
-        try {
-            if (!preparer().texture(request).facts.hasHoles) continue;
-        } catch (const HostError&) {
-            continue;  // told already
-        }
-        const std::string file = request.file.string();
-        if (m_told.insert("alpha " + file).second)
-            m_warn(Warning::kTexture,
-                   fmt::format("{}: {}: {} has texels that are to be seen through, which are shown "
-                               "as surface, as there is no map_d; --alpha-of-pictures takes its "
-                               "alpha as map_d",
-                               use.place, of, file));
-        return;
-    }
+    const std::string file = firstWith(&TextureFacts::hasHoles, use, TextureKind::kColour);
+    if (file.empty() || !m_told.insert("alpha " + file).second) return;
+    m_warn(Warning::kTexture,
+           fmt::format("{}: {}: {} has texels that are to be seen through, which are shown as "
+                       "surface, as there is no map_d; --alpha-of-pictures takes its alpha as "
+                       "map_d",
+                       use.place, of, file));
 }
 
 PmrTexture MaterialBuilder::make(const PmrTextureDesc& desc, const std::string& shown) {

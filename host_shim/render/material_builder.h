@@ -46,6 +46,7 @@ class MaterialBuilder {
     // read.
     PmrTexture picture(const TextureUse& use, const std::string& shown, TextureKind kind,
                        const std::string& of);
+    std::string firstWith(bool TextureFacts::*fact, const TextureUse& use, TextureKind kind);
     void tellNormals(const TextureUse& use, const std::string& of);
     void tellAlpha(const TextureUse& use, const std::string& of);
     PmrTexture tiles(const TextureUse& use, TextureKind kind, const std::string& of);

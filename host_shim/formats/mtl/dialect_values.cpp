@@ -34,16 +34,12 @@ class PrincipledSection {
 
     Translation translate() {
         // What its exporters call a bump map is the picture of a normal map.
-        if (m_isBlenders && m_section.hasMap("map_bump") && !m_section.hasMap("norm")) {
-            m_section.maps["norm"] = m_section.maps["map_bump"];
-            if (m_section.lines.contains("map_bump"))
-                m_section.lines["norm"] = m_section.lines["map_bump"];
-            drop("map_bump");
-        }
+        if (m_isBlenders && m_section.hasMap("map_bump") && !m_section.hasMap("norm"))
+            moveMap("map_bump", "norm");
         const double illum = m_section.number("illum").value_or(2);
         // Never written by Blender: somebody made glass or a mirror of it, and means what it says.
         if (illum == 4 || illum == 5 || illum == 7) return {};
-        if (picturesStandAlone(m_dialect) && m_isBlenders) dropReplacedNumbers();
+        if (picturesStandAlone(m_dialect)) dropReplacedNumbers();
         m_isMetalOn = illum == 3 || illum == 6 || illum == 8;
         if (illum != 0) m_section.numbers["illum"] = 2;
         setLayers();
@@ -67,6 +63,13 @@ class PrincipledSection {
         m_section.colours.erase(key);
         m_section.numbers.erase(key);
         m_section.maps.erase(key);
+    }
+
+    // Which is there under its name, with its line, goes under another.
+    void moveMap(const std::string& from, const std::string& to) {
+        m_section.maps[to] = m_section.maps[from];
+        if (m_section.lines.contains(from)) m_section.lines[to] = m_section.lines[from];
+        m_section.maps.erase(from);
     }
 
     // What MTL does not say of them is as Blender has it where nobody changes it.
@@ -99,11 +102,8 @@ class PrincipledSection {
 
     // A picture of it, by either key: what Blender calls one of exponents is its own of roughness.
     bool keepsRoughnessMap() {
-        if (m_isBlenders && m_section.hasMap("map_Ns") && !m_section.hasMap("map_Pr")) {
-            m_section.maps["map_Pr"] = m_section.maps["map_Ns"];
-            if (m_section.lines.contains("map_Ns"))
-                m_section.lines["map_Pr"] = m_section.lines["map_Ns"];
-        }
+        if (m_isBlenders && m_section.hasMap("map_Ns") && !m_section.hasMap("map_Pr"))
+            moveMap("map_Ns", "map_Pr");
         m_section.maps.erase("map_Ns");
         return m_section.hasMap("map_Pr");
     }
@@ -118,9 +118,7 @@ class PrincipledSection {
 
     // What the picture of roughness is multiplied by.
     double ofRoughnessMap() const {
-        return picturesStandAlone(m_dialect) && m_isBlenders
-                   ? 1
-                   : std::clamp(number("Pr", 1), 0.0, 1.0);
+        return picturesStandAlone(m_dialect) ? 1 : std::clamp(number("Pr", 1), 0.0, 1.0);
     }
 
     double metallic() {
