@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/formats/scene_data.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <limits>
 
