@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "integrator/materials/material_lobes.h"
-#include "integrator/materials/opacity.h"
+#include "integrator/materials/straight_share.h"
 #include "integrator/sampling/warps.h"
 
 namespace pm {
@@ -25,20 +25,24 @@ decltype(auto) visitMostly(const OneOf& lobe, const Call& call) {
 Bsdf::Bsdf(const Materials& materials, const Surface& surface, const Vec3f& out,
            Transport transport, const Rgb& carried)
     : m_at(out, surface.geometricNormal, surface.shadingNormal, transport) {
-    m_at.opacity = opacityAt(materials, materials[surface.material], surface.uv);
-    m_isWide = pm::isWide(materials[surface.material]);
+    const MaterialDescription& material = materials[surface.material];
+    m_at.opacity = opacityAt(materials, material, surface.uv);
+    m_at.straight = straightShare(materials, material, surface, m_at.opacity, m_at.isFront);
+    m_at.straightEtaSquared = straightEtaSquared(material, surface, m_at.isFront);
+    m_isWide = pm::isWide(material);
     setLobes(materials, surface, m_at, m_lobes);
     m_lobes.of(Lobe::kStraight) = Straight::reflectance(m_at);
     // A camera path finds no light there, so a photon from there brings none.
     if (m_at.isBehindShading && transport == Transport::kPhotons)
         m_lobes.of(Lobe::kDiffuse) = m_lobes.of(glossyLobe()) = Rgb();
-    m_diffuseOnly =
-        !m_lobes.isSmooth() && m_at.opacity == 1.0f && isBlack(reflectance(glossyLobe()));
+    m_diffuseOnly = !m_lobes.isSmooth() && isBlack(m_at.straight) && m_at.opacity == 1.0f &&
+                    isBlack(reflectance(glossyLobe()));
     if (m_diffuseOnly) {
         chooseDiffuse(carried);
         return;
     }
-    if (!isSentByWays()) limitEnergy();
+    // What goes straight into glass is more radiance, and no more energy.
+    if (!isSentByWays() && m_at.straightEtaSquared == 1.0f) limitEnergy();
     chooseProbabilities(carried);
 }
 
@@ -109,7 +113,9 @@ Rgb Bsdf::reflectedOf(const Rgb& irradiance) const {
     return irradiance * diffuse() * kInvPi;
 }
 
-float Bsdf::etaSquared() const {
+float Bsdf::etaSquared(Lobe lobe) const {
+    if (lobe == Lobe::kStraight) return m_at.straightEtaSquared;
+    if (lobe != Lobe::kRefraction) return 1.0f;
     return visitMostly(m_lobes.smooth, [](const auto& model) { return model.etaSquared(); });
 }
 

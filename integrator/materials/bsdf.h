@@ -40,7 +40,7 @@ class Bsdf {
     }
     // With which sample() chooses the lobe.
     float probability(Lobe lobe) const { return m_probability[index(lobe)]; }
-    // What the lobe reflects or transmits; at a refraction without its factor 1 / etaSquared().
+    // What the lobe reflects or transmits; at a refraction without its factor 1 / etaSquared(lobe).
     const Rgb& reflectance(Lobe lobe) const { return m_lobes.of(lobe); }
     // Whether light that comes from behind leaves by a lobe that is not delta.
     bool goesThrough() const {
@@ -82,8 +82,9 @@ class Bsdf {
     // All that is reflected or transmitted, for the albedo layer.
     Rgb albedo() const;
 
-    // Squared index on the far side over the one on this side.
-    float etaSquared() const;
+    // Squared index on the far side over the one on this side, where the lobe leads there from one
+    // medium to another; 1 of others.
+    float etaSquared(Lobe lobe) const;
 
     // The normals turned to the side of `out`.
     const Vec3f& facingGeometricNormal() const { return m_at.ng; }

@@ -216,12 +216,17 @@ inline bool isBlackBody(const MaterialDescription& material) {
     return isDiffuseAtMost(material) && isBlack(material.diffuse);
 }
 
-// Whether light passes as if nothing were there: clear glass of index 1 that no priority puts in
-// place of other glass. What has such a material is met by no ray.
-inline bool isInvisible(const MaterialDescription& material) {
+// Glass of index 1 that no priority puts in place of other glass: where nothing else is, it neither
+// bends nor reflects.
+inline bool isUnbending(const MaterialDescription& material) {
     constexpr float kRounding = 1e-6f;
     return material.kind == MaterialKind::kDielectric && material.priority == 0 &&
-           std::abs(material.ior - 1.0f) <= kRounding && material.transmission == Rgb(1.0f) &&
+           std::abs(material.ior - 1.0f) <= kRounding;
+}
+// Whether light passes as if nothing were there: such glass, clear. What has such a material is met
+// by no ray.
+inline bool isInvisible(const MaterialDescription& material) {
+    return isUnbending(material) && !absorbs(material) && material.transmission == Rgb(1.0f) &&
            material.transmissionTexture == kNoTexture && isBlack(material.emission);
 }
 
@@ -238,7 +243,7 @@ inline constexpr float kCarriesNothing = 1e-6f;
 // Whether light can leave a surface of this material other than diffusely, by a broad lobe or
 // straight on, which makes it caustic.
 inline bool castsCaustics(const MaterialDescription& material) {
-    if (isDiffuseAtMost(material) || isInvisible(material)) return false;
+    if (isDiffuseAtMost(material) || isUnbending(material)) return false;
     if (material.kind != MaterialKind::kDielectric && !material.fresnelMirror &&
         !hasCoat(material) && material.glossyTexture == kNoTexture &&
         !(maxChannel(material.glossy) > kCarriesNothing))

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "integrator/materials/layers.h"
+#include "integrator/materials/straight_share.h"
 
 namespace pm {
 
@@ -189,13 +190,10 @@ void setMirror(const MaterialDescription& material, const Numbers& numbers, cons
 void setDielectric(const MaterialDescription& material, const Numbers& numbers,
                    const Materials& materials, const Surface& surface, const LobePoint& at,
                    Lobes& lobes) {
-    const Rgb tint = numbers.reflectance(material.transmission, material.transmissionTexture);
-    if (surface.isPane) {
-        const bool isOfGlass = at.isFront || material.thinWalled;
-        return setSmooth(Pane{tint, isOfGlass ? material.ior : 1.0f / material.ior}, at, lobes);
-    }
-    const float own = at.isFront ? material.ior : 1.0f / material.ior;
-    const float eta = surface.eta > 0.0f ? surface.eta : own;
+    const float eta = relativeIndex(material, surface, at.isFront);
+    if (isUnbending(eta)) return;  // it goes straight on
+    const Rgb tint = tintAt(materials, material, surface);
+    if (surface.isPane) return setSmooth(Pane{tint, eta}, at, lobes);
     const float alpha = alphaOf(
         std::min(1.0f, glassRoughness(material) * numbers.factor(material.roughnessTexture)));
     if (!(alpha > 0.0f)) return setSmooth(Dielectric{tint, eta}, at, lobes);

@@ -9,9 +9,13 @@
 
 namespace pm {
 
-// Whether light may go straight on where it meets the material, as if nothing were there.
-inline bool letsThrough(const MaterialDescription& material) {
+// Whether a share of the surface is not there.
+inline bool isCutAway(const MaterialDescription& material) {
     return material.transparency > 0.0f || material.opacityTexture != kNoTexture;
+}
+// Whether light may go straight on where it meets the material, whatever is on its sides.
+inline bool letsThrough(const MaterialDescription& material) {
+    return isCutAway(material) || isUnbending(material);
 }
 
 // Share of the light at a point that does not go straight on, in [0, 1]. Always by the finest

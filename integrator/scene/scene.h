@@ -54,11 +54,13 @@ class Scene {
         ray.viewer = kAllRays;
         return m_tracer.occluded(ray);
     }
-    // Share of light that goes straight along a ray from its origin to tMax, in [0, 1] a channel:
-    // what the cut-outs and half-transparent sheets on it let through. All that the ray crosses
-    // counts once, faces that rays can't tell apart as one. What bends light lets none through; the
-    // medium that the ray starts in absorbs.
+    // Share of radiance that goes straight along a ray from tMax to its origin: what cut-outs,
+    // half-transparent sheets and glass that bends nothing let through, and what the media on it
+    // leave. All that the ray crosses counts once, faces that rays can't tell apart as one. What
+    // bends light lets none through. In [0, 1] a channel but where both ends are in unlike media.
     Rgb transmittance(const Ray& ray) const;
+    // The same of one surface, where a ray along `direction` meets it; black where none goes on.
+    Rgb straightShare(const Surface& surface, const Vec3f& direction) const;
 
     // The point of the curved surface that a triangle with normals stands for, over a point of the
     // triangle, and the normal there, on the same side as `side`. False: it stands for itself.
@@ -250,9 +252,10 @@ class Scene {
     bool find(Surface& surface, const Arrival& arrival) const;
     // Of that, shape and all else but isPane.
     void surfaceAt(const RayHit& hit, Surface& surface, const Arrival& arrival) const;
-    float straightShare(const Ray& ray, const RayHit& hit) const;
-    // Whether the hit is on glass that has the same medium on both sides.
-    bool isNone(const Ray& ray, const RayHit& hit) const;
+    float openShare(const Ray& ray, const RayHit& hit) const;
+    // Whether a straight way may go on through glass.
+    bool mayEnter(const RayHit& hit) const;
+    class StraightWay;
     bool areOne(const Ray& ray, const RayHit& crossing, const RayHit& next) const;
     void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, const Corner& corner,
                            double b1, double b2, Surface& surface,

@@ -23,7 +23,7 @@ inline bool emits(const MaterialDescription& material) {
 
 // Whether what shines is another than its number: by its picture, or as part of it is cut away.
 inline bool shinesByTexture(const MaterialDescription& material) {
-    return material.emissionTexture != kNoTexture || letsThrough(material);
+    return material.emissionTexture != kNoTexture || isCutAway(material);
 }
 
 // Builds a Scene: checks the description, moves everything to the scene's own centre in double,

@@ -4,11 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <span>
 #include <tuple>
 #include <vector>
 
-#include "integrator/materials/opacity.h"
+#include "integrator/materials/straight_share.h"
 #include "integrator/scene/media.h"
 #include "integrator/scene/scene.h"
 #include "integrator/scene/shape_record.h"
@@ -19,11 +20,10 @@ namespace {
 
 struct Crossing {
     RayHit hit;
-    float share;  // of light that goes straight on
+    // Of light that goes straight on; of a face of glass it is asked afterwards, see StraightWay.
+    float share;
+    bool isOfGlass;
 };
-
-// In place of a share: of a face of glass that may be none.
-constexpr float kMayBeNone = 2.0f;
 
 // What a ray crosses; most rays cross few.
 class Crossings {
@@ -54,10 +54,19 @@ class Crossings {
 
 }  // namespace
 
-float Scene::straightShare(const Ray& ray, const RayHit& hit) const {
+Rgb Scene::straightShare(const Surface& surface, const Vec3f& direction) const {
+    const MaterialDescription& material = m_materials[surface.material];
+    if (!letsThrough(material) && !(surface.eta > 0.0f)) return {};
+    return pm::straightShare(m_materials, material, surface,
+                             opacityAt(m_materials, material, surface.uv),
+                             dot(direction, surface.geometricNormal) < 0.0f);
+}
+
+// Of what is no glass.
+float Scene::openShare(const Ray& ray, const RayHit& hit) const {
     const MaterialDescription& material =
         m_materials[m_shapes[hit.shape].materialOf(hit.primitive)];
-    if (!letsThrough(material)) return 0.0f;
+    if (!isCutAway(material)) return 0.0f;
     Vec2f uv;
     if (material.opacityTexture != kNoTexture) {
         Surface surface;
@@ -80,10 +89,69 @@ bool Scene::areOne(const Ray& ray, const RayHit& crossing, const RayHit& next) c
     return (next.t - crossing.t) * slope <= offset + offsetNext;
 }
 
-bool Scene::isNone(const Ray& ray, const RayHit& hit) const {
-    Surface surface;
-    surfaceAt(hit, surface, {&ray, nullptr, true});
-    return !m_media->resolve(ray.direction, surface);
+// What is left of light on a way straight from medium to medium.
+class Scene::StraightWay {
+  public:
+    StraightWay(const Scene& scene, const Ray& ray)
+        : m_scene(scene), m_ray(ray), m_length(length(ray.direction)) {}
+
+    // Through what is cut away of a sheet.
+    void pass(float share) { m_left *= share; }
+    enum class Entered { kNothing, kGlass, kStopped };
+    // Through a face of glass. isOne: with the one crossed before, so that it counts with that but
+    // for what is behind it.
+    Entered enter(const RayHit& hit, bool isOne) {
+        if (hit.t < m_skippedTo) return Entered::kNothing;
+        Surface surface;
+        m_scene.surfaceAt(hit, surface, {&m_ray, nullptr, true});
+        const bool isLeft = dot(m_ray.direction, surface.geometricNormal) > 0.0f;
+        const bool isFace = !m_scene.m_media || m_scene.m_media->resolve(m_ray.direction, surface);
+        if (m_scene.m_media)
+            absorb(surface.medium, hit.t);
+        else
+            absorb(isLeft ? static_cast<std::int32_t>(surface.material) : kNoMedium, hit.t);
+        m_behind = rayOrigin(surface, m_ray.direction);
+        m_hasEntered = !isLeft;
+        m_lastOfGlass = static_cast<std::int32_t>(surface.material);
+        if (!isFace) return Entered::kNothing;
+        // Past a gap to what stands in the other body.
+        m_skippedTo = dot(*m_behind - m_ray.origin, m_ray.direction) / (m_length * m_length);
+        const Rgb share = m_scene.straightShare(surface, m_ray.direction);
+        m_left *= isOne ? Rgb(1.0f / straightEtaSquared(m_scene.m_materials[surface.material],
+                                                        surface, !isLeft))
+                        : share;
+        return isBlack(share) ? Entered::kStopped : Entered::kGlass;
+    }
+    Rgb end() {
+        if (!m_scene.m_absorbs) return m_left;
+        if (m_scene.m_media)
+            absorb(m_scene.m_media->at(m_behind.value_or(m_ray.origin)), m_ray.tMax);
+        else if (m_hasEntered)
+            absorb(m_lastOfGlass, m_ray.tMax);
+        return m_left;
+    }
+
+  private:
+    void absorb(std::int32_t medium, float t) {
+        if (m_scene.m_absorbs) m_left *= m_scene.leftIn(medium, (t - m_from) * m_length);
+        m_from = t;
+    }
+
+    const Scene& m_scene;
+    const Ray& m_ray;
+    const float m_length;
+    Rgb m_left{1.0f};
+    float m_from = 0.0f, m_skippedTo = 0.0f;  // in units of the ray's direction
+    std::optional<Vec3f> m_behind;            // the last face of glass
+    std::int32_t m_lastOfGlass = kNoMedium;
+    bool m_hasEntered = false;
+};
+
+bool Scene::mayEnter(const RayHit& hit) const {
+    const MaterialDescription& material =
+        m_materials[m_shapes[hit.shape].materialOf(hit.primitive)];
+    return material.kind == MaterialKind::kDielectric &&
+           (letsThrough(material) || (m_media && m_media->isOfBody(hit)));
 }
 
 Rgb Scene::transmittance(const Ray& asked) const {
@@ -93,26 +161,27 @@ Rgb Scene::transmittance(const Ray& asked) const {
     if (!m_letsThrough && !m_media) return m_tracer.occluded(ray) ? Rgb{} : Rgb(1.0f);
     Crossings crossings;
     const bool isStopped = m_tracer.stopped(ray, [&](const RayHit& hit) {
-        // Whether a face of a body is none is asked afterwards: that takes rays of its own.
-        const bool mayBeNone = m_media && m_media->isOfBody(hit);
-        const float share = mayBeNone ? kMayBeNone : straightShare(ray, hit);
-        if (share > 0.0f) crossings.add({hit, share});
+        // What is behind a face of glass takes rays of its own, so it is asked afterwards.
+        const bool isOfGlass = mayEnter(hit);
+        const float share = isOfGlass ? 1.0f : openShare(ray, hit);
+        if (share > 0.0f) crossings.add({hit, share, isOfGlass});
         return !(share > 0.0f);
     });
     if (isStopped) return {};
-    float product = 1.0f;
+    StraightWay way(*this, ray);
     const RayHit* last = nullptr;
     for (const Crossing& crossing : crossings.sorted()) {
-        if (crossing.share == kMayBeNone) {
-            if (!isNone(ray, crossing.hit)) return {};
-            continue;
+        const bool isOne = last && areOne(ray, *last, crossing.hit);
+        if (crossing.isOfGlass) {
+            const auto entered = way.enter(crossing.hit, isOne);
+            if (entered == StraightWay::Entered::kStopped) return {};
+            if (entered == StraightWay::Entered::kNothing) continue;
+        } else if (!isOne) {
+            way.pass(crossing.share);
         }
-        if (last && areOne(ray, *last, crossing.hit)) continue;
-        product *= crossing.share;
-        last = &crossing.hit;
+        if (!isOne) last = &crossing.hit;
     }
-    if (!m_absorbs || !m_media) return Rgb(product);
-    return leftIn(m_media->at(ray.origin), ray.tMax * length(ray.direction)) * product;
+    return way.end();
 }
 
 }  // namespace pm

@@ -72,6 +72,8 @@ FORBIDDEN = [
      "is asked for where light is followed; ask what a material can do, material_description.h"),
     (re.compile(r"\b(?:Lambertian|Phong|Mirror|Dielectric|Pane)\b|\bmaterials/lobes/"), LIGHT_PATHS,
      "is a lobe's model; ask the Bsdf by a lobe's role"),
+    (re.compile(r"[sS]cene(?:\(\))?\.(?:intersect|leftAlong)\("), LIGHT_PATHS,
+     "forgets what media absorb; ask meet() or goStraight(), integrator/paths/segment.h"),
     (re.compile(r"\b(?:diffuse|reflectance)\([^()]*(?:\(\))?\)\s*\*\s*kInvPi"), LIGHT_PATHS,
      "is a Lambertian lobe's business; ask Bsdf::reflectedOf"),
     (re.compile(r"\bLightKind\b|\bLight::Kind\b|\b(?:get|get_if|holds_alternative)<\w*Light>"), PARTS,

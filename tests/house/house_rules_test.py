@@ -85,6 +85,7 @@ class HouseRules(unittest.TestCase):
                  ("integrator/transport/gather", "if (m.kind == MaterialKind::kMirror) return;"),
                  ("integrator/photons/map", "MaterialKind k;"),
                  ("integrator/photons/trace", "Phong lobe{3};"),
+                 ("integrator/photons/trace", "if (!m_scene.intersect(ray, surface)) return;"),
                  ("integrator/transport/path", "Rgb out = bsdf.diffuse() * kInvPi * e;"),
                  ("integrator/scene", "std::get_if<SpotLight>(&l);"),
                  ("plugin", "if (l.kind == Light::Kind::kSpot) f();")]  # fmt: skip

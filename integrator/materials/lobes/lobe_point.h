@@ -90,8 +90,11 @@ struct LobePoint {
     // shading normal a surface would have no front to be a mirror with, so ns is ng there. What is
     // diffuse does not ask where it is seen from.
     Vec3f nd, ns;
-    float opacity = 1.0f;  // share of the light that does not go straight on, in [0, 1]
-    bool isFront;          // out is on the side of the surface's front
+    float opacity = 1.0f;  // share of the surface that is there, in [0, 1]
+    // The radiance beyond that is seen straight on, and its factor 1 / eta^2; flux has eta^2.
+    Rgb straight{};
+    float straightEtaSquared = 1.0f;
+    bool isFront;  // out is on the side of the surface's front
     bool isBehindShading;
     Transport transport;
 };

@@ -6,9 +6,13 @@
 
 namespace pm {
 
-// The share of the surface that is not there.
+// What goes straight on: where the surface is not there, or bends nothing.
 struct Straight {
-    static Rgb reflectance(const LobePoint& at) { return Rgb(1.0f - at.opacity); }
+    static Rgb reflectance(const LobePoint& at) {
+        if (at.straightEtaSquared == 1.0f) return at.straight;
+        const float squared = at.straightEtaSquared * at.straightEtaSquared;
+        return at.transport == Transport::kRadiance ? at.straight : at.straight * squared;
+    }
 
     static bool sample(const LobePoint& at, BsdfSample& sample) {
         sample.direction = -at.out;

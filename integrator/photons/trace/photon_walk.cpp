@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "integrator/paths/segment.h"
+
 namespace pm {
 
 namespace {
@@ -77,22 +79,18 @@ double PhotonWalk::walk(Part part, Sampler& sampler, Waiting& waiting, Batch& ba
         Surface surface;
         ++balance.rays;
         RayFootprint footprint = m_scene.coneAround(ray.direction, width);
-        if (!m_scene.intersect(ray, surface, &footprint)) {
+        const double before = channelSum(flux);
+        if (!meet(m_scene, ray, surface, &footprint, flux)) {
             balance.fluxEscaped += channelSum(flux);
             return landed;
         }
+        balance.fluxAbsorbed += before - channelSum(flux);
         width = footprint.width();
         if (m_scene.viewersDiffer() && way.stage == Stage::kStraight &&
             passesHidden(part, surface, sampler, balance)) {
             events.add(1.0f);
             if (events.isOver()) break;
             continue;
-        }
-        const Rgb left = m_scene.leftAlong(ray, surface);
-        if (left != Rgb(1.0f)) {
-            balance.fluxAbsorbed += channelSum(flux);
-            flux *= left;
-            balance.fluxAbsorbed -= channelSum(flux);
         }
         const Vec3f out = -ray.direction;
         const Bsdf bsdf(m_scene.materials(), surface, out, Transport::kPhotons, flux);

@@ -79,8 +79,8 @@ Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray
     while (true) {
         Surface surface;
         ++result.rays;
-        const bool hit = scene.intersect(way.path.ray, surface, &way.path.footprint);
-        if (hit) way.path.throughput *= scene.leftAlong(way.path.ray, surface);
+        const bool hit =
+            meet(scene, way.path.ray, surface, &way.path.footprint, way.path.throughput);
         addLampsMet(scene, ends, way, hit ? &surface : nullptr, atOnce, result);
         if (!hit) return result;
         if (!result.hitAny) {

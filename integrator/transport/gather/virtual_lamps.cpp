@@ -13,7 +13,7 @@
 #include <utility>
 
 #include "integrator/materials/bsdf.h"
-#include "integrator/materials/opacity.h"
+#include "integrator/paths/segment.h"
 #include "integrator/photons/emission/flux_steps.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
@@ -84,21 +84,21 @@ TwoRadii VirtualLamps::gathered(const Vec3f& position, const Vec3f& normal, floa
 // The surface at a place, as a ray meets it that goes there, straight on through what lets it pass;
 // and the share of light that comes from there. False: something is in the way.
 bool VirtualLamps::reach(const Ray& ray, const Vec3f& place, float tolerance, Surface& met,
-                         float& share) const {
+                         Rgb& share) const {
     const CacheWatch::As as(CacheUser::kShadow);
-    share = 1.0f;
-    Ray next = ray;
-    RayFootprint footprint = m_scene.coneAround(ray.direction);
-    while (m_scene.intersect(next, met, &footprint)) {
-        if (lengthSquared(met.position - place) <= tolerance * tolerance) return true;
-        const MaterialDescription& material = m_scene.material(met.material);
-        if (!letsThrough(material)) return false;
-        share *= 1.0f - opacityAt(m_scene.materials(), material, met.uv);
-        next.origin = rayOrigin(met, ray.direction);
-        next.tMax = ray.tMax - dot(next.origin - ray.origin, ray.direction);
-        if (!(share > 0.0f && next.tMax > 0.0f)) return false;
-    }
-    return false;
+    bool isReached = false;
+    goStraight(
+        m_scene, ray, m_scene.coneAround(ray.direction),
+        [&](const Surface* surface, const Rgb& left) {
+            isReached =
+                surface && lengthSquared(surface->position - place) <= tolerance * tolerance;
+            if (!isReached) return true;
+            met = *surface;
+            share = left;
+            return false;
+        },
+        [](const Surface&) { return false; });
+    return isReached;
 }
 
 // What a lamp brings alone, weighted.
@@ -113,7 +113,7 @@ Rgb VirtualLamps::irradianceBy(const Lamp& lamp, const Place& place,
     const float wayLength = length(way);
     const Ray ray{place.start, way * (1.0f / wayLength), wayLength * (1.0f + kAside)};
     Surface met;
-    float share;
+    Rgb share;
     if (!reach(ray, lamp.position, kAside * wayLength, met, share)) return {};
     const Bsdf bsdf(m_scene.materials(), met, -ray.direction, Transport::kRadiance, Rgb(1.0f));
     const float facing = -dot(away, bsdf.facingGeometricNormal());

@@ -82,8 +82,7 @@ class VirtualLamps {
     };
     void findDensities(const CancelCheck& cancel);
     Rgb irradianceBy(const Lamp& lamp, const Place& place, std::uint32_t gatherRays) const;
-    bool reach(const Ray& ray, const Vec3f& place, float tolerance, Surface& met,
-               float& share) const;
+    bool reach(const Ray& ray, const Vec3f& place, float tolerance, Surface& met, Rgb& share) const;
     float densityOf(const Rgb& irradiance) const {
         return static_cast<float>(channelSum(irradiance)) * m_inverseFlux;
     }

@@ -7,8 +7,7 @@
 #include <cmath>
 #include <span>
 
-#include "integrator/materials/opacity.h"
-#include "integrator/sampling/event_count.h"
+#include "integrator/paths/segment.h"
 #include "integrator/sampling/warps.h"
 
 namespace pm {
@@ -162,24 +161,18 @@ Rgb weightedFarLight(const Scene& scene, const LightSampler& lights, const LastS
 
 Rgb lightAlong(const Scene& scene, const LightSampler& lights, const Ray& ray,
                const LastScatter& last, std::uint32_t& rays) {
-    Rgb sum, share(1.0f);
-    EventCount events;
-    Ray next = ray;
-    for (next.viewer = kLightRays; !events.isOver(); next.viewer = kLightRays) {
-        Surface surface;
-        ++rays;
-        if (!scene.intersect(next, surface))
-            return sum + share * weightedFarLight(scene, lights, last);
-        sum += share * weightedEmission(lights, surface, last);
-        if (!scene.isHiddenFrom(surface.shape, kShadowRays)) {
-            const MaterialDescription& material = scene.material(surface.material);
-            if (!letsThrough(material)) break;
-            share *= 1.0f - opacityAt(scene.materials(), material, surface.uv);
-            if (isBlack(share)) break;
-        }
-        events.add(share.g);
-        next = rayFrom(surface, ray.direction);
-    }
+    Rgb sum;
+    Ray looking = ray;
+    looking.viewer = kLightRays;
+    goStraight(
+        scene, looking, {},
+        [&](const Surface* met, const Rgb& left) {
+            ++rays;
+            sum += left * (met ? weightedEmission(lights, *met, last)
+                               : weightedFarLight(scene, lights, last));
+            return true;
+        },
+        [&](const Surface& met) { return scene.isHiddenFrom(met.shape, kShadowRays); });
     return sum;
 }
 

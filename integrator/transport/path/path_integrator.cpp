@@ -17,12 +17,11 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler,
         const CacheWatch::As as(path.user());
         Surface surface;
         ++result.rays;
-        if (!m_scene.intersect(path.ray, surface, &path.footprint)) {
+        if (!meet(m_scene, path.ray, surface, &path.footprint, path.throughput)) {
             result.of(state.classify()) +=
                 path.throughput * weightedFarLight(m_scene, m_lights, last);
             return result;
         }
-        path.throughput *= m_scene.leftAlong(path.ray, surface);
         result.of(state.classify()) += path.throughput * weightedEmission(m_lights, surface, last);
         const Bsdf bsdf(m_scene.materials(), surface, -path.ray.direction, Transport::kRadiance,
                         path.throughput);

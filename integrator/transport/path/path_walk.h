@@ -3,6 +3,7 @@
 #pragma once
 
 #include "integrator/materials/bsdf.h"
+#include "integrator/paths/segment.h"
 #include "integrator/rays/ray_tracer.h"
 #include "integrator/sampling/event_count.h"
 #include "integrator/sampling/sampler.h"
@@ -23,7 +24,7 @@ struct Carried {
     float amount() const { return maxChannel(throughput) * etaScale; }
     void followLobe(const Bsdf& bsdf, const BsdfSample& sample) {
         throughput *= sample.weight;
-        if (sample.lobe == Lobe::kRefraction) etaScale *= bsdf.etaSquared();
+        if (isDelta(sample.lobe)) etaScale *= bsdf.etaSquared(sample.lobe);
     }
 };
 
@@ -78,7 +79,7 @@ void followCameraPath(const Scene& scene, const Ray& first, const RayFootprint& 
     PathWalk path(first, footprint);
     while (true) {
         Surface surface;
-        if (!scene.intersect(path.ray, surface, &path.footprint)) return;
+        if (!meet(scene, path.ray, surface, &path.footprint, path.throughput)) return;
         const Bsdf bsdf(scene.materials(), surface, -path.ray.direction, Transport::kRadiance,
                         path.throughput);
         if (bsdf.isBlackBody()) return;

@@ -131,14 +131,13 @@ void PhotonIntegrator::follow(Branch& branch, const Tree& tree) const {
         ++result.rays;
         const PathClass found = branch.state.classify();
         const bool isFound = isOfMap(branch.state);
-        if (!m_scene.intersect(path.ray, surface, &path.footprint)) {
+        if (!meet(m_scene, path.ray, surface, &path.footprint, path.throughput)) {
             if (!isFound)
                 result.of(found) +=
                     path.throughput * weightedFarLight(m_scene, m_lights, branch.last);
             return;
         }
         branch.way += length(surface.position - path.ray.origin);
-        path.throughput *= m_scene.leftAlong(path.ray, surface);
         if (!isFound && (tree.view.withSeenLamps || found != PathClass::kEmission))
             result.of(found) += path.throughput * weightedEmission(m_lights, surface, branch.last);
         Bsdf bsdf(m_scene.materials(), surface, -path.ray.direction, Transport::kRadiance,

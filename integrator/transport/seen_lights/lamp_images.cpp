@@ -111,9 +111,9 @@ struct Arrival {
     bool isSurface;
     std::optional<Bsdf> bsdf;  // of what may have delta lobes
 
-    // footprint: of the ray.
-    Arrival(const Scene& scene, const Ray& ray, const RayFootprint& from, const Carried& carried)
-        : footprint(from), isSurface(scene.intersect(ray, surface, &footprint)) {
+    // footprint: of the ray. carried: becomes that of here.
+    Arrival(const Scene& scene, const Ray& ray, const RayFootprint& from, Carried& carried)
+        : footprint(from), isSurface(meet(scene, ray, surface, &footprint, carried.throughput)) {
         if (isSurface && mayHaveDelta(scene.material(surface.material)))
             bsdf.emplace(scene.materials(), surface, -ray.direction, Transport::kRadiance,
                          carried.throughput);
@@ -302,7 +302,7 @@ Rgb followLobes(const Scene& scene, const LightSampler& lights, const Camera& ca
     const Ray first = camera.ray(x, y);
     std::vector<Branch> waiting{{first, camera.footprint(x, y, first)}};
     while (!waiting.empty()) {
-        const Branch branch = waiting.back();
+        Branch branch = waiting.back();
         waiting.pop_back();
         rays.push_back({branch.lobes, x, y, branch.ray});
         const Arrival arrival(scene, branch.ray, branch.footprint, branch.carried);

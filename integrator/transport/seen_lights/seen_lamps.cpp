@@ -163,8 +163,8 @@ Rgb SeenLamps::along(const Ray& ray, const RayFootprint& footprint, Sampler& sam
 // To the next surface, and on from there. False: nothing goes on.
 bool SeenLamps::step(Branch& branch, Waiting& waiting, Sampler& sampler, Rgb& found) const {
     Surface surface;
-    if (!m_scene.intersect(branch.ray, surface, &branch.footprint)) return false;
-    branch.carried.throughput *= m_scene.leftAlong(branch.ray, surface);
+    if (!meet(m_scene, branch.ray, surface, &branch.footprint, branch.carried.throughput))
+        return false;
     const Vec3f out = -branch.ray.direction;
     if (surface.light != kNoLight)
         found += branch.carried.throughput * m_lights.emittedRadiance(surface, out);

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 namespace pm {

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 
 #include "integrator/transport/frame/render_settings.h"

@@ -57,9 +57,13 @@ TEST(Transmittance, WhatStopsLightStopsAll) {
     EXPECT_EQ(along(*stackOf({sheet(0.5f), sheet(0.0f)}), {0, 0.1, 0}, {0, 0.1, 4}), 0.0f);
     EXPECT_EQ(along(*stackOf({sheet(0.5f), clear}), {0, 0.1, 0}, {0, 0.1, 4}), 0.0f);
     EXPECT_EQ(along(*stackOf({sheet(0.5f), mirror()}), {0, 0.1, 0}, {0, 0.1, 4}), 0.0f);
-    // Of glass that is half cut away, the share that is not there.
+    // Of glass that is half cut away, the share that is not there; beyond its face is glass, of
+    // whose radiance 1 / 1.5^2 is seen from outside.
     clear.transparency = 0.25f;
-    EXPECT_EQ(along(*stackOf({sheet(0.5f), clear}), {0, 0.1, 0}, {0, 0.1, 4}), 0.125f);
+    EXPECT_FLOAT_EQ(along(*stackOf({sheet(0.5f), clear}), {0, 0.1, 4}, {0, 0.1, 0}),
+                    0.125f / 2.25f);
+    EXPECT_FLOAT_EQ(along(*stackOf({sheet(0.5f), clear}), {0, 0.1, 0}, {0, 0.1, 4}),
+                    0.125f * 2.25f);
 }
 
 TEST(Transmittance, OfRaysThatAreNone) {

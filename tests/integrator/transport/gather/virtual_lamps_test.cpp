@@ -62,8 +62,12 @@ struct Patch {
 };
 
 // A floor, a wall at x = -1 and a ceiling, around the origin: 2 x 2 x 1.
-std::shared_ptr<const Scene> threeWalls(bool withScreen = false, double scale = 1) {
+std::shared_ptr<const Scene> threeWalls(bool withScreen = false, double scale = 1,
+                                        const MaterialDescription* filledWith = nullptr) {
     SceneMaker maker;
+    if (filledWith)
+        maker.box(Vec3d{-2, -2, -2} * scale, Vec3d{2, 2, 2} * scale, maker.material(*filledWith),
+                  false);
     const auto grey = maker.diffuse(Rgb(static_cast<float>(kReflectance)));
     const auto quad = [&](Vec3d p, Vec3d e0, Vec3d e1) {
         maker.quad(p * scale, e0 * scale, e1 * scale, grey);
@@ -157,6 +161,24 @@ TEST(VirtualLamps, AreHiddenByWhatIsBetween) {
     const VirtualLamps lamps(*scene, caustics, 0.02f, nullptr, 1.0f, 5);
     EXPECT_EQ(gather(*scene, empty, &lamps, placeAt({0, 0, 0.5f}, {0, 0, -1})).mean, 0);
     EXPECT_GT(gather(*scene, empty, &lamps, placeAt({-1, 0, -0.2f}, {1, 0, 0})).mean, 0);
+}
+
+TEST(VirtualLamps, LoseWhatIsAbsorbedOnTheWay) {
+    MaterialDescription medium;
+    medium.kind = MaterialKind::kDielectric;
+    medium.attenuationColour = {0.5f, 0.25f, 1.0f};
+    medium.attenuationDistance = 1.0f;
+    const PhotonMap caustics(Patch{-0.02, -0.02, 0.02, 0.02, 60}.photons());
+    const auto fromCeiling = [&](const Scene& scene) {
+        const VirtualLamps lamps(scene, caustics, 0.002f, nullptr, 1.0f, 5);
+        return lamps.sampled(placeAt({0, 0, 0.5f}, {0, 0, -1}), kRays, 0.5f);
+    };
+    const Rgb clear = fromCeiling(*threeWalls()),
+              left = fromCeiling(*threeWalls(false, 1, &medium));
+    // A way of 1, and of up to 4e-4 more.
+    EXPECT_NEAR(left.r / clear.r, 0.5f, 5e-4f);
+    EXPECT_NEAR(left.g / clear.g, 0.25f, 5e-4f);
+    EXPECT_NEAR(left.b / clear.b, 1.0f, 1e-5f);
 }
 
 // Of a sheet that is lit from below nothing shines up.
