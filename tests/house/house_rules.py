@@ -300,7 +300,17 @@ def check_shared(root):
                 yield f"{name}: is a copy of ../shared/{path.relative_to(shared)}"
 
 
-CHECKS = (check_includes, check_rooms, check_rows, check_forbidden, check_interface_names, check_cycles, check_light, check_heads,
+def check_brute_force(root):
+    """The path tracer of the tests shares no way of following light with what it judges."""
+    allowed = ("integrator/materials/", "integrator/scene/", "integrator/shapes/", "integrator/values/", "tests/integrator/brute/")
+    for name in ("brute_force.h", "brute_force.cpp"):
+        name = f"tests/integrator/brute/{name}"
+        for number, _, included in includes(root, name) if (root / name).exists() else ():
+            if "/" in included and not included.startswith(allowed):
+                yield f"{name}:{number}: includes {included}; a reference shares no more than {', '.join(allowed)}"
+
+
+CHECKS = (check_includes, check_rooms, check_rows, check_forbidden, check_interface_names, check_cycles, check_light, check_heads, check_brute_force,
           check_top_level, check_shared)  # fmt: skip
 
 

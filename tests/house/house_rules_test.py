@@ -95,6 +95,11 @@ class HouseRules(unittest.TestCase):
                 self.write(f"{folder}/y.cpp", f"/* a\n comment */\n{code}\n")
                 self.one_breach(f"{folder}/y.cpp:5")
 
+    def test_brute_force(self):
+        self.write("tests/integrator/brute/brute_force.cpp",
+                   '#include "integrator/scene/scene.h"\n#include <cmath>\n#include "integrator/paths/segment.h"\n')
+        self.one_breach("brute_force.cpp:5", "integrator/paths/segment.h")
+
     def test_interface_names(self):
         for room, code in [("session", "PmrStatus s;"), ("storage", "return PMR_OK;"),
                            ("values", "pmrGetApi(1, &api);")]:  # fmt: skip
