@@ -78,17 +78,32 @@ struct MaterialData {
         transmissionTexture, emissionTexture, opacityTexture,
         normalTexture,        // in tangent space
         bumpTexture,          // heights
-        displacementTexture;  // heights of a cage's limit surface
+        displacementTexture,  // heights of a cage's limit surface
+        weightTexture;        // of a mixture: the share of its second part
 
     std::vector<NamedValue> byName;  // in place of what else is here
+    // None, or the two of a mixture: then of the numbers above it has its own opacity, emission and
+    // maps of normals, bumps and displacement alone.
+    std::vector<MaterialData> parts;
+    float weight{};  // of the second, times the texture
 
     bool emits() const { return emission[0] > 0 || emission[1] > 0 || emission[2] > 0; }
-    // All that there may be, in the order above.
-    std::array<const Boxed<TextureUse>*, 10> textures() const {
-        return {&diffuseTexture,     &glossyTexture,       &glossyExponentTexture,
-                &roughnessTexture,   &transmissionTexture, &emissionTexture,
-                &opacityTexture,     &normalTexture,       &bumpTexture,
-                &displacementTexture};
+    // All that there may be, in the order above, then those of the parts.
+    std::vector<const Boxed<TextureUse>*> textures() const {
+        std::vector<const Boxed<TextureUse>*> all{
+            &diffuseTexture,      &glossyTexture,       &glossyExponentTexture, &roughnessTexture,
+            &transmissionTexture, &emissionTexture,     &opacityTexture,        &normalTexture,
+            &bumpTexture,         &displacementTexture, &weightTexture};
+        for (const MaterialData& part : parts)
+            for (const Boxed<TextureUse>* use : part.textures()) all.push_back(use);
+        return all;
+    }
+    // The materials that it is to be a mixture of, by name; empty of one that is none by name.
+    std::vector<std::string> partNames() const {
+        std::vector<std::string> names;
+        for (const NamedValue& value : byName)
+            if (value.name == "first" || value.name == "second") names.push_back(value.text);
+        return names;
     }
 };
 

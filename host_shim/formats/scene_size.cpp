@@ -37,6 +37,8 @@ std::uint64_t beside(const MaterialData& material) {
     for (const NamedValue& value : material.byName)
         bytes += block(value.name) + block(value.numbers) + block(value.text) + block(value.place);
     for (const Boxed<TextureUse>* use : material.textures()) bytes += beside(*use);
+    bytes += block(material.parts);
+    for (const MaterialData& part : material.parts) bytes += block(part.name) + block(part.byName);
     return bytes;
 }
 

@@ -33,17 +33,21 @@ void store(const Rgb3& colour, float largest, float (&target)[3]) {
 
 using TextureOfKind = std::pair<const Boxed<TextureUse>*, TextureKind>;
 
-std::array<TextureOfKind, 10> usesOf(const MaterialData& material) {
-    return {{{&material.diffuseTexture, TextureKind::kColour},
-             {&material.glossyTexture, TextureKind::kColour},
-             {&material.glossyExponentTexture, TextureKind::kData},
-             {&material.roughnessTexture, TextureKind::kData},
-             {&material.transmissionTexture, TextureKind::kColour},
-             {&material.emissionTexture, TextureKind::kColour},
-             {&material.opacityTexture, TextureKind::kMask},
-             {&material.normalTexture, TextureKind::kVector},
-             {&material.bumpTexture, TextureKind::kData},
-             {&material.displacementTexture, TextureKind::kData}}};
+std::vector<TextureOfKind> usesOf(const MaterialData& material) {
+    std::vector<TextureOfKind> uses{{&material.diffuseTexture, TextureKind::kColour},
+                                    {&material.glossyTexture, TextureKind::kColour},
+                                    {&material.glossyExponentTexture, TextureKind::kData},
+                                    {&material.roughnessTexture, TextureKind::kData},
+                                    {&material.transmissionTexture, TextureKind::kColour},
+                                    {&material.emissionTexture, TextureKind::kColour},
+                                    {&material.opacityTexture, TextureKind::kMask},
+                                    {&material.normalTexture, TextureKind::kVector},
+                                    {&material.bumpTexture, TextureKind::kData},
+                                    {&material.displacementTexture, TextureKind::kData},
+                                    {&material.weightTexture, TextureKind::kData}};
+    for (const MaterialData& part : material.parts)
+        for (const TextureOfKind& use : usesOf(part)) uses.push_back(use);
+    return uses;
 }
 
 TextureRequest requestOf(const TextureUse& use, const std::string& file, TextureKind kind) {
@@ -262,9 +266,10 @@ void MaterialBuilder::convertColours(const MaterialData& material, PmrMaterialDe
 }
 
 PmrMaterial MaterialBuilder::build(const MaterialData& material) {
+    for (const MaterialData& part : material.parts) build(part);
     auto desc = PMR_INIT(PmrMaterialDesc);
     desc.name = material.name.c_str();
-    desc.kind = kindOf(material.kind);
+    desc.kind = material.parts.empty() ? kindOf(material.kind) : PMR_MATERIAL_MIXTURE;
     desc.fresnel = material.fresnel ? 1 : 0;
     desc.glossyExponent = material.glossyExponent;
     desc.ior = material.ior;
@@ -289,8 +294,37 @@ PmrMaterial MaterialBuilder::build(const MaterialData& material) {
     m_context.check(m_context.api().createMaterial(m_context.handle(), &desc, &handle), of);
     m_materials.push_back(handle);
     setByName(material, handle, of);
+    setMixture(material, handle, of);
     for (const NamedValue& value : material.byName) setNamed(value, handle);
     return handle;
+}
+
+void MaterialBuilder::setMixture(const MaterialData& material, PmrMaterial handle,
+                                 const std::string& of) {
+    auto desc = PMR_INIT(PmrParameterDesc);
+    desc.object = PMR_OBJECT_MATERIAL;
+    desc.material = handle;
+    const auto set = [&] { m_context.check(m_context.api().setParameter(&desc), of); };
+    for (std::size_t i = 0; i < material.parts.size(); ++i) {
+        desc.name = i == 0 ? "first" : "second";
+        desc.text = material.parts[i].name.c_str();
+        set();
+    }
+    desc.text = nullptr;
+    desc.texture = texture(material.weightTexture, TextureKind::kData, of);
+    if (desc.texture != nullptr) {
+        desc.name = "weightTexture";
+        set();
+    }
+    if (material.parts.empty()) return;
+    const bool isLost = material.weightTexture && desc.texture == nullptr;
+    const double weight = static_cast<double>(material.weight) *
+                          (isLost ? static_cast<double>(material.weightTexture->missing) : 1);
+    desc.texture = nullptr;
+    desc.name = "weight";
+    desc.numbers = &weight;
+    desc.numberCount = 1;
+    set();
 }
 
 // What is in no struct is set by name.

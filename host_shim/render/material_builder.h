@@ -62,6 +62,8 @@ class MaterialBuilder {
     void setByName(const MaterialData& material, PmrMaterial handle, const std::string& of);
     // One that a sidecar gives. Errors: HostError, with its place.
     void setNamed(const NamedValue& value, PmrMaterial handle);
+    // What makes it a mixture of its parts, which are built.
+    void setMixture(const MaterialData& material, PmrMaterial handle, const std::string& of);
     void convertColours(const MaterialData& material, PmrMaterialDesc& desc) const;
 
     const PluginContext& m_context;

@@ -145,21 +145,28 @@ void PluginScene::build(const Request& request, const ColourPipeline& colour,
 // Only what is used is built: libraries often hold more, with pictures that are not there.
 PluginScene::Materials PluginScene::buildMaterials(const SceneData& data,
                                                    MaterialBuilder& materials) {
-    std::vector<bool> isUsed(data.materials.size());
+    // Each after the parts that it names.
+    std::vector<std::uint32_t> order;
+    std::vector<bool> isTaken(data.materials.size());
+    const auto take = [&](const auto& self, std::uint32_t index) -> void {
+        if (isTaken[index]) return;
+        isTaken[index] = true;  // one that names itself is refused where it is built
+        for (const std::string& name : data.materials[index].partNames()) {
+            const auto part = std::ranges::find(data.materials, name, &MaterialData::name);
+            if (part != data.materials.end())
+                self(self, static_cast<std::uint32_t>(part - data.materials.begin()));
+        }
+        order.push_back(index);
+    };
     for (const InstanceData& instance : data.instances)
-        for (const uint32_t material : data.materialsOf(instance)) isUsed[material] = true;
+        for (const uint32_t material : data.materialsOf(instance)) take(take, material);
     std::vector<const MaterialData*> used;
-    for (std::size_t i = 0; i < isUsed.size(); ++i)
-        if (isUsed[i]) used.push_back(&data.materials[i]);
+    for (const std::uint32_t index : order) used.push_back(&data.materials[index]);
     materials.prepare(used);
     Materials built(data.materials.size());
-    for (const InstanceData& instance : data.instances) {
+    for (const std::uint32_t index : order) {
         throwIfInterrupted();
-        for (const uint32_t material : data.materialsOf(instance)) {
-            if (built[material] == nullptr) {
-                built[material] = materials.build(data.materials[material]);
-            }
-        }
+        built[index] = materials.build(data.materials[index]);
     }
     return built;
 }

@@ -20,45 +20,71 @@ decltype(auto) visitMostly(const OneOf& lobe, const Call& call) {
     return std::visit(call, lobe);
 }
 
+Rgb sumOf(const Lobes& lobes) {
+    Rgb sum;
+    for (const Rgb& reflectance : lobes.reflectance) sum += reflectance;
+    return sum;
+}
+
+// Of a mixture, the part that is all there is at a point, where one is; else the mixture.
+std::uint32_t aloneAt(const Materials& materials, const Surface& surface) {
+    std::uint32_t index = surface.material;
+    while (materials[index].kind == MaterialKind::kMixture) {
+        const MaterialDescription& mixture = materials[index];
+        const float second = weightAt(materials, mixture, surface.uv, surface.footprint);
+        if ((second > 0.0f && second < 1.0f) || ownOpacityAt(materials, mixture, surface.uv) < 1.0f)
+            break;
+        index = second > 0.0f ? mixture.second : mixture.first;
+    }
+    return index;
+}
+
 }  // namespace
 
 Bsdf::Bsdf(const Materials& materials, const Surface& surface, const Vec3f& out,
            Transport transport, const Rgb& carried)
     : m_at(out, surface.geometricNormal, surface.shadingNormal, transport) {
-    const MaterialDescription& material = materials[surface.material];
-    m_at.opacity = opacityAt(materials, material, surface.uv);
-    m_at.straight = straightShare(materials, material, surface, m_at.opacity, m_at.isFront);
-    m_at.straightEtaSquared = straightEtaSquared(material, surface, m_at.isFront);
-    m_isWide = pm::isWide(material);
-    setLobes(materials, surface, m_at, m_lobes);
+    m_at.opacity = opacityAt(materials, surface.material, surface.uv);
+    m_at.straight = pm::straightShare(materials, surface, m_at.opacity, m_at.isFront);
+    m_at.straightEtaSquared =
+        pm::straightEtaSquared(materials[surface.material], surface, m_at.isFront);
+    const std::uint32_t alone = aloneAt(materials, surface);
+    if (materials[alone].kind == MaterialKind::kMixture) {
+        addParts(materials, alone, surface, 1.0f);
+        addUp();
+    } else {
+        setLobes(materials, alone, surface, m_at, m_lobes);
+    }
     m_lobes.of(Lobe::kStraight) = Straight::reflectance(m_at);
     // A camera path finds no light there, so a photon from there brings none.
     if (m_at.isBehindShading && transport == Transport::kPhotons)
-        m_lobes.of(Lobe::kDiffuse) = m_lobes.of(glossyLobe()) = Rgb();
-    m_diffuseOnly = !m_lobes.isSmooth() && isBlack(m_at.straight) && m_at.opacity == 1.0f &&
-                    isBlack(reflectance(glossyLobe()));
+        for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kGlossy, Lobe::kWide, Lobe::kBroad})
+            m_lobes.of(lobe) = Rgb();
+    m_diffuseOnly = !m_parts.any() && !m_lobes.isSmooth() && isBlack(m_at.straight) &&
+                    m_at.opacity == 1.0f && isBlack(reflectance(m_lobes.glossyRole));
     if (m_diffuseOnly) {
         chooseDiffuse(carried);
         return;
     }
     // What goes straight into glass is more radiance, and no more energy.
-    if (!isSentByWays() && m_at.straightEtaSquared == 1.0f) limitEnergy();
+    if (!m_parts.any() && !isSentByWays(m_lobes, m_at) && m_at.straightEtaSquared == 1.0f)
+        limitEnergy(m_lobes, m_at.opacity);
     chooseProbabilities(carried);
 }
 
 // What smooth lobes send by several ways is as much as the camera gets by each of them.
-bool Bsdf::isSentByWays() const {
-    return visitMostly(m_lobes.smooth, [&](const auto& model) { return model.sendsByWays(m_at); });
+bool Bsdf::isSentByWays(const Lobes& lobes, const LobePoint& at) {
+    return visitMostly(lobes.smooth, [&](const auto& model) { return model.sendsByWays(at); });
 }
 
 // What goes straight on is the share of the surface that is not there: none of it is taken.
-void Bsdf::limitEnergy() {
-    const float largest = maxChannel(albedo());
+void Bsdf::limitEnergy(Lobes& lobes, float opacity) {
+    const float largest = maxChannel(sumOf(lobes));
     if (!(largest > 1.0f)) return;
-    const Rgb straight = reflectance(Lobe::kStraight);
-    const float factor = m_at.opacity / (largest - straight.g);
-    for (Rgb& reflectance : m_lobes.reflectance) reflectance *= factor;
-    m_lobes.of(Lobe::kStraight) = straight;
+    const Rgb straight = lobes.of(Lobe::kStraight);
+    const float factor = opacity / (largest - straight.g);
+    for (Rgb& reflectance : lobes.reflectance) reflectance *= factor;
+    lobes.of(Lobe::kStraight) = straight;
 }
 
 // What chooseProbabilities comes to where there is one lobe; most surfaces are like that.
@@ -87,26 +113,52 @@ void Bsdf::chooseProbabilities(const Rgb& carried) {
 }
 
 Rgb Bsdf::albedo() const {
-    Rgb sum;
-    for (const Rgb& reflectance : m_lobes.reflectance) sum += reflectance;
-    return sum;
+    return sumOf(m_lobes);
+}
+
+bool Bsdf::goesThrough() const {
+    const auto isOne = [](const Lobes& lobes) {
+        return std::holds_alternative<RoughGlass>(lobes.glossy) ||
+               std::holds_alternative<DiffuseTransmission>(lobes.glossy);
+    };
+    if (!m_parts.any()) return isOne(m_lobes);
+    return std::ranges::any_of(m_parts.all(), [&](const Part& part) { return isOne(part.lobes); });
 }
 
 Rgb Bsdf::diffuse() const {
+    if (m_parts.any()) return diffuseOfParts();
     const Rgb& ofLobe = reflectance(Lobe::kDiffuse);
     return visitMostly(m_lobes.diffuse,
                        [&](const auto& model) { return model.albedo(m_at, ofLobe); });
 }
 
 float Bsdf::arrival() const {
+    if (m_parts.any()) return arrivalAtParts();
     return visitMostly(m_lobes.diffuse, [&](const auto& model) { return model.arrival(m_at); });
 }
 
-std::optional<Admission> Bsdf::admission() const {
-    if (std::holds_alternative<Lambertian>(m_lobes.diffuse)) return Admission{};
-    const auto* const below = std::get_if<Undercoat>(&m_lobes.diffuse);
+namespace {
+
+std::optional<Admission> admissionOf(const DiffuseLobe& lobe) {
+    if (std::holds_alternative<Lambertian>(lobe)) return Admission{};
+    const auto* const below = std::get_if<Undercoat>(&lobe);
     if (!below || !below->cover.isBoundaryAlone()) return std::nullopt;
     return Admission{below->cover.boundary, below->mean};
+}
+
+}  // namespace
+
+// Of several lobes each has its own, so that only what is even is known of all.
+std::optional<Admission> Bsdf::admission() const {
+    if (!m_parts.any()) return admissionOf(m_lobes.diffuse);
+    std::optional<Admission> found;
+    for (const Part& part : m_parts.all()) {
+        if (!part.has(Lobe::kDiffuse)) continue;
+        const std::optional<Admission> one = admissionOf(part.lobes.diffuse);
+        if (!one || (found && !(found->isEven() && one->isEven()))) return std::nullopt;
+        found = one;
+    }
+    return found;
 }
 
 Rgb Bsdf::reflectedOf(const Rgb& irradiance) const {
@@ -116,16 +168,22 @@ Rgb Bsdf::reflectedOf(const Rgb& irradiance) const {
 float Bsdf::etaSquared(Lobe lobe) const {
     if (lobe == Lobe::kStraight) return m_at.straightEtaSquared;
     if (lobe != Lobe::kRefraction) return 1.0f;
+    for (const Part& part : m_parts.all())
+        if (part.has(lobe))
+            return std::visit([](const auto& model) { return model.etaSquared(); },
+                              part.lobes.smooth);
     return visitMostly(m_lobes.smooth, [](const auto& model) { return model.etaSquared(); });
 }
 
 Rgb Bsdf::evaluate(Lobe lobe, const Vec3f& in) const {
+    if (m_parts.any()) return evaluateParts(lobe, in);
     const auto by = [&](const auto& model) { return model.evaluate(m_at, reflectance(lobe), in); };
     if (lobe == Lobe::kDiffuse) return visitMostly(m_lobes.diffuse, by);
     return std::visit(by, m_lobes.glossy);
 }
 
 Rgb Bsdf::evaluateSmooth(const Vec3f& in) const {
+    if (m_parts.any()) return evaluatePartsSmooth(in);
     LobePoint at = m_at;
     at.ng = at.nd;
     return visitMostly(m_lobes.diffuse, [&](const auto& model) {
@@ -136,6 +194,7 @@ Rgb Bsdf::evaluateSmooth(const Vec3f& in) const {
 float Bsdf::pdfSolidAngle(Lobe lobe, const Vec3f& in) const {
     if (!has(lobe)) return 0.0f;
     const float choice = m_followsAll ? 1.0f : m_probability[index(lobe)];
+    if (m_parts.any()) return pdfOfParts(lobe, in, choice);
     const auto by = [&](const auto& model) { return model.pdfSolidAngle(m_at, in, choice); };
     if (lobe == Lobe::kDiffuse) return visitMostly(m_lobes.diffuse, by);
     return std::visit(by, m_lobes.glossy);
@@ -161,10 +220,12 @@ bool Bsdf::take(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const
     sample.lobe = lobe;
     sample.pdfSolidAngle = probability;
     sample.weight = reflectance(lobe) / probability;
+    if (m_parts.any() && lobe != Lobe::kStraight) return takePart(lobe, probability, u, sample);
     switch (lobe) {
         case Lobe::kDiffuse:
             return takeBy(m_lobes.diffuse, u, sample);
         case Lobe::kGlossy:
+        case Lobe::kWide:
         case Lobe::kBroad:
             return takeBy(m_lobes.glossy, u, sample);
         case Lobe::kReflection:

@@ -4,10 +4,14 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
+#include <new>
 #include <optional>
+#include <span>
 #include <variant>
 
 #include "integrator/materials/lobe_kinds.h"
+#include "integrator/materials/material_traits.h"
 #include "integrator/materials/materials.h"
 #include "integrator/shapes/surface.h"
 #include "integrator/values/rgb.h"
@@ -29,24 +33,15 @@ class Bsdf {
 
     bool has(Lobe lobe) const { return m_probability[index(lobe)] > 0.0f; }
     // Whether there is a lobe that is not delta, for which lamps are sampled.
-    bool reflectsLamps() const {
-        return has(Lobe::kDiffuse) || has(Lobe::kGlossy) || has(Lobe::kBroad);
-    }
-    // The role of the lobe that is glossy or broad, where there is one: a surface has one at most.
-    Lobe glossyLobe() const { return m_lobes.glossyRole; }
-    // Whether the lobe is glossy and wide, or broad: see isWide(MaterialDescription).
-    bool isWide(Lobe lobe) const {
-        return lobe == Lobe::kBroad || (lobe == Lobe::kGlossy && m_isWide);
-    }
+    bool reflectsLamps() const { return has(Lobe::kDiffuse) || isShiny(); }
+    // Whether there is one around a direction, of any width.
+    bool isShiny() const { return has(Lobe::kGlossy) || has(Lobe::kWide) || has(Lobe::kBroad); }
     // With which sample() chooses the lobe.
     float probability(Lobe lobe) const { return m_probability[index(lobe)]; }
     // What the lobe reflects or transmits; at a refraction without its factor 1 / etaSquared(lobe).
     const Rgb& reflectance(Lobe lobe) const { return m_lobes.of(lobe); }
     // Whether light that comes from behind leaves by a lobe that is not delta.
-    bool goesThrough() const {
-        return std::holds_alternative<RoughGlass>(m_lobes.glossy) ||
-               std::holds_alternative<DiffuseTransmission>(m_lobes.glossy);
-    }
+    bool goesThrough() const;
     // Nothing but a diffuse lobe, or less.
     bool isDiffuseOnly() const { return m_diffuseOnly; }
     // Mean over channels of what could be reflected or transmitted is 0.
@@ -96,8 +91,47 @@ class Bsdf {
 
   private:
     static constexpr std::size_t index(Lobe lobe) { return static_cast<std::size_t>(lobe); }
-    bool isSentByWays() const;
-    void limitEnergy();
+    // The lobes of one part of a mixture. at: of it, its opacity is the share that it has.
+    struct Part {
+        LobePoint at;
+        Lobes lobes{};
+
+        template <typename Call>
+        decltype(auto) visit(Lobe lobe, const Call& call) const;
+        bool has(Lobe lobe) const { return !isBlack(lobes.of(lobe)); }
+        Rgb evaluate(Lobe lobe, const Vec3f& in) const;
+        float pdfSolidAngle(Lobe lobe, const Vec3f& in, float choice) const;
+        // As a model does, from a weight that is the reflectance over the choice's probability.
+        bool sample(Lobe lobe, Vec2f u, BsdfSample& sample) const;
+    };
+    // The parts of a mixture; most surfaces have none, and nothing of this is touched then.
+    class Parts {
+      public:
+        Parts() {}  // leaves the rest as it is: it is large
+        Part& add(const LobePoint& at) { return *new (slot(m_count++)) Part{at}; }
+        bool any() const { return m_count > 0; }
+        std::span<const Part> all() const { return {slot(0), m_count}; }
+
+      private:
+        Part* slot(std::size_t i) { return reinterpret_cast<Part*>(m_bytes) + i; }
+        const Part* slot(std::size_t i) const { return reinterpret_cast<const Part*>(m_bytes) + i; }
+        std::size_t m_count = 0;
+        alignas(Part) std::byte m_bytes[kMostParts * sizeof(Part)];
+    };
+
+    static bool isSentByWays(const Lobes& lobes, const LobePoint& at);
+    static void limitEnergy(Lobes& lobes, float opacity);
+    void addParts(const Materials& materials, std::uint32_t index, const Surface& surface,
+                  float share);
+    void addUp();
+    // Of all that has the lobe's role, a part's share.
+    float shareOf(const Part& part, Lobe lobe) const;
+    Rgb diffuseOfParts() const;
+    float arrivalAtParts() const;
+    Rgb evaluateParts(Lobe lobe, const Vec3f& in) const;
+    Rgb evaluatePartsSmooth(const Vec3f& in) const;
+    float pdfOfParts(Lobe lobe, const Vec3f& in, float choice) const;
+    bool takePart(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const;
     void chooseDiffuse(const Rgb& carried);
     void chooseProbabilities(const Rgb& carried);
     bool take(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const;
@@ -105,8 +139,9 @@ class Bsdf {
     bool takeBy(const OneOfModels& lobe, Vec2f u, BsdfSample& sample) const;
 
     LobePoint m_at;
-    bool m_black = false, m_diffuseOnly = false, m_followsAll = false, m_isWide = false;
-    Lobes m_lobes;
+    bool m_black = false, m_diffuseOnly = false, m_followsAll = false;
+    Lobes m_lobes;  // of a mixture the reflectances are sums, and the lobes its parts'
+    Parts m_parts;
     std::array<float, kLobeCount> m_probability{};
 };
 

@@ -51,7 +51,7 @@ struct Lobes {
     DiffuseLobe diffuse;
     GlossyLobe glossy;
     SmoothLobe smooth;
-    Lobe glossyRole = Lobe::kGlossy;  // or kBroad
+    Lobe glossyRole = Lobe::kGlossy;  // or kWide, kBroad
 
     Rgb& of(Lobe lobe) { return reflectance[static_cast<std::size_t>(lobe)]; }
     const Rgb& of(Lobe lobe) const { return reflectance[static_cast<std::size_t>(lobe)]; }

@@ -11,9 +11,8 @@
 
 namespace pm {
 
-// Only what is in this folder and the scene asks for it; what follows light asks what a material
-// can do, below.
-enum class MaterialKind { kSurface, kMirror, kDielectric };
+// Only what is in this folder asks for it; all else asks what a material can do, MaterialTraits.
+enum class MaterialKind { kSurface, kMirror, kDielectric, kMixture };
 
 // A material as the host gives it: numbers, each multiplied by its texture where it has one.
 // Units and ranges as PmrMaterialDesc in pm_plugin.h.
@@ -56,14 +55,26 @@ struct MaterialDescription {
     float normalScale = 1.0f;               // of the components along the surface
     std::int32_t bumpTexture = kNoTexture;  // heights
     float bumpScale = 1.0f;                 // scene units of a height of 1
+    // Of a mixture: the numbers of two others, and the share of the second where the texture is 1.
+    // Of its own it has what shapes the surface, the maps of normals, bumps and displacement, and
+    // an emission and a cut-out that count beside theirs.
+    std::uint32_t first = 0, second = 0;
+    float weight = 0.0f;
+    std::int32_t weightTexture = kNoTexture;
+    bool hasGlass = false;  // a part is glass: the medium is that one's; see completeMixtures()
     // Heights by which limit surfaces are displaced along their normal.
     std::int32_t displacementTexture = kNoTexture;
     float displacementScale = 1.0f;  // scene units of a height of 1
 };
 
+// Whether its faces bound a medium, or are panes.
+inline bool isGlass(const MaterialDescription& material) {
+    return material.kind == MaterialKind::kDielectric || material.hasGlass;
+}
+
 // Whether light loses on its way inside.
 inline bool absorbs(const MaterialDescription& material) {
-    return material.kind == MaterialKind::kDielectric && material.attenuationDistance > 0.0f &&
+    return isGlass(material) && material.attenuationDistance > 0.0f &&
            material.attenuationColour != Rgb(1.0f);
 }
 
@@ -72,18 +83,8 @@ inline bool hasTexture(const MaterialDescription& material) {
     for (const std::int32_t texture :
          {material.diffuseTexture, material.glossyTexture, material.glossyExponentTexture,
           material.roughnessTexture, material.transmissionTexture, material.emissionTexture,
-          material.opacityTexture, material.normalTexture, material.bumpTexture})
-        if (texture != kNoTexture) return true;
-    return false;
-}
-
-// Whether it looks up one that is filtered over what a ray covers: of what is cut away, and of
-// light, it is always the finest level.
-inline bool filtersTexture(const MaterialDescription& material) {
-    for (const std::int32_t texture :
-         {material.diffuseTexture, material.glossyTexture, material.glossyExponentTexture,
-          material.roughnessTexture, material.transmissionTexture, material.normalTexture,
-          material.bumpTexture})
+          material.opacityTexture, material.normalTexture, material.bumpTexture,
+          material.weightTexture})
         if (texture != kNoTexture) return true;
     return false;
 }
@@ -121,19 +122,6 @@ inline bool isRoughGlass(const MaterialDescription& material) {
     return material.kind == MaterialKind::kDielectric && glassRoughness(material) > 0.0f;
 }
 
-// Whether light can leave the material in no other way than diffusely, whatever its textures.
-inline bool isDiffuseAtMost(const MaterialDescription& material) {
-    return material.kind == MaterialKind::kSurface && isBlack(material.glossy) &&
-           isBlack(material.diffuseTransmission) && !hasCoat(material) && !hasSheen(material) &&
-           material.transparency == 0.0f && material.opacityTexture == kNoTexture;
-}
-
-// Half of a Phong lobe's greatest value lies 10 degrees aside, or farther.
-inline constexpr float kMostBroadExponent = 45.0f;
-
-// The same of facets: they have half of D's greatest value 5 degrees aside.
-inline constexpr float kLeastBroadRoughness = 0.369f;
-
 // Whether all that is glossy of it has at least that roughness of facets, or at most that exponent
 // of a Phong lobe: what lies below layers, and these. By the numbers alone, whatever their
 // textures.
@@ -149,73 +137,6 @@ inline bool isAtLeastAsRough(const MaterialDescription& material, float roughnes
     return own > 0.0f ? own >= roughness : material.glossyExponent <= exponent;
 }
 
-// Whether the material's glossy lobe, where it has one, is so broad that it casts no caustics:
-// light that it scatters is found as diffuse light is. Glass is never: what goes through it is none
-// of the surface's.
-inline bool isBroad(const MaterialDescription& material) {
-    return material.kind != MaterialKind::kDielectric &&
-           isAtLeastAsRough(material, kLeastBroadRoughness, kMostBroadExponent);
-}
-
-// From this roughness of facets on, or up to the exponent of a Phong lobe as wide, a ray along a
-// lobe seldom finds a lamp's image: photons do it better.
-inline constexpr float kLeastWideRoughness = 0.25f, kMostWideExponent = 510.0f;
-
-// Whether the material's glossy lobe, where it has one, is so wide that it receives caustics as a
-// diffuse one does. Broad ones are, too.
-inline bool isWide(const MaterialDescription& material) {
-    return isAtLeastAsRough(material, kLeastWideRoughness, kMostWideExponent);
-}
-
-// Whether light that a mirror or glass sends on is spread.
-inline bool isRough(const MaterialDescription& material) {
-    return material.roughness > 0.0f || material.glossyExponent > 0.0f || hasCoat(material);
-}
-
-// Whether light can leave the material in one direction, or two, like from a mirror or glass.
-inline bool mayHaveDelta(const MaterialDescription& material) {
-    return material.kind != MaterialKind::kSurface || material.transparency > 0.0f ||
-           material.opacityTexture != kNoTexture;
-}
-
-// Whether the material lets some light straight on and scatters some, as half-transparent sheets
-// do.
-inline bool isSheet(const MaterialDescription& material) {
-    return material.kind == MaterialKind::kSurface && mayHaveDelta(material) &&
-           !isBlack(material.diffuse);
-}
-
-// Whether light may go on behind the material, through glass or straight.
-inline bool mayTransmit(const MaterialDescription& material) {
-    return material.kind == MaterialKind::kDielectric || material.transparency > 0.0f ||
-           material.opacityTexture != kNoTexture;
-}
-
-// Whether the material has a diffuse lobe: photons may be kept at it.
-inline bool reflectsDiffusely(const MaterialDescription& material) {
-    return material.kind == MaterialKind::kSurface && !isBlack(material.diffuse);
-}
-
-// Whether the material may have a lobe that is glossy or broad.
-inline bool mayBeGlossy(const MaterialDescription& material) {
-    return (material.kind == MaterialKind::kSurface &&
-            !(isBlack(material.glossy) && isBlack(material.diffuseTransmission) &&
-              !hasCoat(material) && !hasSheen(material))) ||
-           (material.kind == MaterialKind::kMirror && isRough(material)) || isRoughGlass(material);
-}
-
-// Whether the numbers are those of a broad lobe. So may glass have them, to no effect on what it
-// does; times that the plan expects count it.
-inline bool hasBroadNumbers(const MaterialDescription& material) {
-    return (!isBlack(material.glossy) || hasCoat(material) || hasSheen(material)) &&
-           isBroad(material) && (material.kind == MaterialKind::kSurface || isRough(material));
-}
-
-// Whether light that meets the material goes nowhere from there, whatever its textures.
-inline bool isBlackBody(const MaterialDescription& material) {
-    return isDiffuseAtMost(material) && isBlack(material.diffuse);
-}
-
 // Glass of index 1 that no priority puts in place of other glass: where nothing else is, it neither
 // bends nor reflects.
 inline bool isUnbending(const MaterialDescription& material) {
@@ -223,34 +144,4 @@ inline bool isUnbending(const MaterialDescription& material) {
     return material.kind == MaterialKind::kDielectric && material.priority == 0 &&
            std::abs(material.ior - 1.0f) <= kRounding;
 }
-// Whether light passes as if nothing were there: such glass, clear. What has such a material is met
-// by no ray.
-inline bool isInvisible(const MaterialDescription& material) {
-    return isUnbending(material) && !absorbs(material) && material.transmission == Rgb(1.0f) &&
-           material.transmissionTexture == kNoTexture && isBlack(material.emission);
-}
-
-// Whether a medium fills what its faces enclose.
-inline bool fillsItsInside(const MaterialDescription& material) {
-    return material.kind == MaterialKind::kDielectric && !material.thinWalled &&
-           !isInvisible(material);
-}
-
-// What a lobe may reflect and still count as carrying nothing: far less than one photon a pass
-// would bring.
-inline constexpr float kCarriesNothing = 1e-6f;
-
-// Whether light can leave a surface of this material other than diffusely, by a broad lobe or
-// straight on, which makes it caustic.
-inline bool castsCaustics(const MaterialDescription& material) {
-    if (isDiffuseAtMost(material) || isUnbending(material)) return false;
-    if (material.kind != MaterialKind::kDielectric && !material.fresnelMirror &&
-        !hasCoat(material) && material.glossyTexture == kNoTexture &&
-        !(maxChannel(material.glossy) > kCarriesNothing))
-        return false;
-    const bool mayBeBroad = material.kind == MaterialKind::kSurface ||
-                            (material.kind == MaterialKind::kMirror && isRough(material));
-    return !(mayBeBroad && isBroad(material));
-}
-
 }  // namespace pm

@@ -188,8 +188,8 @@ void setMirror(const MaterialDescription& material, const Numbers& numbers, cons
 }
 
 void setDielectric(const MaterialDescription& material, const Numbers& numbers,
-                   const Materials& materials, const Surface& surface, const LobePoint& at,
-                   Lobes& lobes) {
+                   const Materials& materials, std::uint32_t index, const Surface& surface,
+                   const LobePoint& at, Lobes& lobes) {
     const float eta = relativeIndex(material, surface, at.isFront);
     if (isUnbending(eta)) return;  // it goes straight on
     const Rgb tint = tintAt(materials, material, surface);
@@ -199,26 +199,26 @@ void setDielectric(const MaterialDescription& material, const Numbers& numbers,
     if (!(alpha > 0.0f)) return setSmooth(Dielectric{tint, eta}, at, lobes);
     const GlassAlbedo* const table = surface.eta > 0.0f
                                          ? materials.tables->glassOf(at.isFront ? eta : 1.0f / eta)
-                                         : materials.tablesOf(surface.material).glass;
+                                         : materials.tablesOf(index).glass;
     setGlossy(RoughGlass{{alpha}, tint, table, !at.isFront}, at, lobes);
 }
 
 }  // namespace
 
-void setLobes(const Materials& materials, const Surface& surface, const LobePoint& at,
-              Lobes& lobes) {
-    const MaterialDescription& material = materials[surface.material];
+void setLobes(const Materials& materials, std::uint32_t index, const Surface& surface,
+              const LobePoint& at, Lobes& lobes) {
+    const MaterialDescription& material = materials[index];
     const Numbers numbers(materials, surface);
-    lobes.glossyRole = isBroad(material) ? Lobe::kBroad : Lobe::kGlossy;
+    lobes.glossyRole = glossyRoleOf(material, materials.roles);
     switch (material.kind) {
         case MaterialKind::kSurface:
-            return setSurface(material, numbers, surface, materials.tablesOf(surface.material), at,
-                              lobes);
+            return setSurface(material, numbers, surface, materials.tablesOf(index), at, lobes);
         case MaterialKind::kMirror:
-            return setMirror(material, numbers, surface, materials.tablesOf(surface.material), at,
-                             lobes);
+            return setMirror(material, numbers, surface, materials.tablesOf(index), at, lobes);
         case MaterialKind::kDielectric:
-            return setDielectric(material, numbers, materials, surface, at, lobes);
+            return setDielectric(material, numbers, materials, index, surface, at, lobes);
+        case MaterialKind::kMixture:
+            return;  // its parts have some: see Bsdf
     }
 }
 

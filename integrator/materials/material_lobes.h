@@ -8,9 +8,10 @@
 
 namespace pm {
 
-// The lobes that a surface has by its material's numbers, textures looked up there: all but the
-// straight one. They may reflect more than comes in. lobes: as made, empty.
-void setLobes(const Materials& materials, const Surface& surface, const LobePoint& at,
-              Lobes& lobes);
+// The lobes that a surface has by a material's numbers, textures looked up there: all but the
+// straight one. They may reflect more than comes in. index: of the material, which is no mixture.
+// lobes: as made, empty.
+void setLobes(const Materials& materials, std::uint32_t index, const Surface& surface,
+              const LobePoint& at, Lobes& lobes);
 
 }  // namespace pm

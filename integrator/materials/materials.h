@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "integrator/materials/lobe_roles.h"
 #include "integrator/materials/material_description.h"
 #include "integrator/materials/material_tables.h"
 #include "integrator/materials/texture_source.h"
@@ -17,6 +18,7 @@ struct Materials {
     std::span<const MaterialDescription> all;
     const TextureSource* textures = nullptr;
     const MaterialTables* tables = nullptr;  // null: no material needs one
+    LobeRoles roles{};
 
     TablesOf tablesOf(std::uint32_t index) const {
         return tables && !tables->all.empty() ? tables->all[index] : TablesOf{};

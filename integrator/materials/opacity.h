@@ -5,26 +5,40 @@
 #include <algorithm>
 
 #include "integrator/materials/materials.h"
+#include "integrator/values/uv_footprint.h"
 #include "integrator/values/vec.h"
 
 namespace pm {
 
-// Whether a share of the surface is not there.
-inline bool isCutAway(const MaterialDescription& material) {
-    return material.transparency > 0.0f || material.opacityTexture != kNoTexture;
-}
-// Whether light may go straight on where it meets the material, whatever is on its sides.
-inline bool letsThrough(const MaterialDescription& material) {
-    return isCutAway(material) || isUnbending(material);
+// Of a mixture: the second's share at a point, in [0, 1].
+inline float weightAt(const Materials& materials, const MaterialDescription& mixture, Vec2f uv,
+                      const UvFootprint& footprint = {}) {
+    float weight = mixture.weight;
+    if (mixture.weightTexture != kNoTexture)
+        weight *= materials.textures->lookUp(mixture.weightTexture, uv, footprint).r;
+    return weight > 0.0f ? std::min(weight, 1.0f) : 0.0f;
 }
 
-// Share of the light at a point that does not go straight on, in [0, 1]. Always by the finest
-// level: shadow rays, which have no footprint, are to meet what all others meet.
-inline float opacityAt(const Materials& materials, const MaterialDescription& material, Vec2f uv) {
+// By a material's own numbers.
+inline float ownOpacityAt(const Materials& materials, const MaterialDescription& material,
+                          Vec2f uv) {
     float opacity = 1.0f - material.transparency;
     if (material.opacityTexture != kNoTexture)
         opacity *= materials.textures->lookUp(material.opacityTexture, uv, {}).r;
     return opacity > 0.0f ? std::min(opacity, 1.0f) : 0.0f;
+}
+
+// Share of the surface that is there at a point, in [0, 1]. Always by the finest level: shadow
+// rays, which have no footprint, are to meet what all others meet.
+inline float opacityAt(const Materials& materials, std::uint32_t index, Vec2f uv) {
+    const MaterialDescription& material = materials[index];
+    const float own = ownOpacityAt(materials, material, uv);
+    if (material.kind != MaterialKind::kMixture || own == 0.0f) return own;
+    const float second = weightAt(materials, material, uv);
+    float parts = 0.0f;
+    if (second < 1.0f) parts += (1.0f - second) * opacityAt(materials, material.first, uv);
+    if (second > 0.0f) parts += second * opacityAt(materials, material.second, uv);
+    return own * parts;
 }
 
 }  // namespace pm

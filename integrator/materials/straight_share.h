@@ -41,26 +41,40 @@ inline Rgb tintAt(const Materials& materials, const MaterialDescription& materia
 
 // Inside of glass of index n radiance is n^2 times as much as outside (Veach 1997, section 5.2): so
 // is what comes in where its face is cut away, and even light stays even. The square of the index
-// beyond over that on the side that the face is met from, where it is cut; 1 of all else.
+// beyond over that on the side that the face is met from; 1 of all else.
 inline float straightEtaSquared(const MaterialDescription& material, const Surface& surface,
                                 bool isFront) {
-    if (material.kind != MaterialKind::kDielectric || !isCutAway(material) || surface.isPane)
-        return 1.0f;
+    if (!isGlass(material) || surface.isPane) return 1.0f;
     const float eta = relativeIndex(material, surface, isFront);
-    return eta * eta;
+    return isUnbending(eta) ? 1.0f : eta * eta;
+}
+
+// What glass that bends nothing lets through of what is there of it.
+inline Rgb unbentShare(const Materials& materials, std::uint32_t index, const Surface& surface) {
+    const MaterialDescription& material = materials[index];
+    if (material.kind == MaterialKind::kDielectric) {
+        const Rgb tint = tintAt(materials, material, surface);
+        return (surface.isPane ? tint * tint : tint) *
+               ownOpacityAt(materials, material, surface.uv);
+    }
+    if (material.kind != MaterialKind::kMixture) return {};
+    const float second = weightAt(materials, material, surface.uv);
+    return (unbentShare(materials, material.first, surface) * (1.0f - second) +
+            unbentShare(materials, material.second, surface) * second) *
+           ownOpacityAt(materials, material, surface.uv);
 }
 
 // Share of the radiance beyond that is seen straight on where a ray meets the surface; above 1
 // where it comes from a denser medium. opacity: there, see opacityAt(). isFront: the ray comes from
 // the side of the surface's front.
-inline Rgb straightShare(const Materials& materials, const MaterialDescription& material,
-                         const Surface& surface, float opacity, bool isFront) {
+inline Rgb straightShare(const Materials& materials, const Surface& surface, float opacity,
+                         bool isFront) {
+    const MaterialDescription& material = materials[surface.material];
     const Rgb open(1.0f - opacity);
-    if (material.kind != MaterialKind::kDielectric) return open;
-    if (!isUnbending(relativeIndex(material, surface, isFront)))
-        return open * (1.0f / straightEtaSquared(material, surface, isFront));
-    const Rgb tint = tintAt(materials, material, surface);
-    return open + (surface.isPane ? tint * tint : tint) * opacity;
+    if (!isGlass(material)) return open;
+    if (isUnbending(relativeIndex(material, surface, isFront)))
+        return open + unbentShare(materials, surface.material, surface);
+    return open * (1.0f / straightEtaSquared(material, surface, isFront));
 }
 
 }  // namespace pm

@@ -53,9 +53,9 @@ struct Scene::CoincidentFaces::Found {
 Scene::CoincidentFaces::Rank Scene::CoincidentFaces::rankOf(const Scene& scene, const Face& face) {
     const ShapeRecord& record = scene.m_shapes[face.shape];
     if (record.lightOf(face.primitive) != kNoLight) return Rank::kShining;
-    const MaterialDescription& material = scene.material(record.materialOf(face.primitive));
-    if (material.kind == MaterialKind::kDielectric) return Rank::kGlass;
-    return isSheet(material) ? Rank::kSheet : Rank::kOpaque;
+    const MaterialTraits& traits = scene.traits(record.materialOf(face.primitive));
+    if (traits.isGlass) return Rank::kGlass;
+    return traits.isSheet() ? Rank::kSheet : Rank::kOpaque;
 }
 
 // Whether a point of another face lies in a face's plane, and both lie alike, as far as rays can
@@ -83,9 +83,8 @@ double Scene::CoincidentFaces::depthBehind(const Scene& scene, const Face& face,
 bool Scene::CoincidentFaces::areOfPane(const Scene& scene, const Face& face, const Face& other) {
     const ShapeRecord &record = scene.m_shapes[face.shape], &ofOther = scene.m_shapes[other.shape];
     const std::uint32_t index = record.materialOf(face.primitive);
-    const MaterialDescription& material = scene.material(index);
-    return material.kind == MaterialKind::kDielectric && material.transparency == 0.0f &&
-           material.opacityTexture == kNoTexture && ofOther.mesh &&
+    const MaterialTraits& traits = scene.traits(index);
+    return traits.isGlass && !traits.isCutAway && ofOther.mesh &&
            index == ofOther.materialOf(other.primitive) &&
            dot(record.facet(face.primitive).normal, ofOther.facet(other.primitive).normal) < 0.0f &&
            depthBehind(scene, face, other) > 0.0;
@@ -221,14 +220,13 @@ std::unique_ptr<const Scene::CoincidentFaces> Scene::CoincidentFaces::find(
         const ShapeRecord& record = scene.m_shapes[shape];
         if (!record.mesh) continue;
         const bool mayBe = std::ranges::any_of(record.materials, [&](std::uint32_t m) {
-            const MaterialDescription& material = scene.material(m);
-            return (material.kind == MaterialKind::kDielectric && !isInvisible(material)) ||
-                   isSheet(material) || !isBlack(material.emission);
+            const MaterialTraits& traits = scene.traits(m);
+            return (traits.isGlass && !traits.isInvisible) || traits.isSheet() || traits.emits;
         });
         if (!mayBe || (record.placement && !looksAt(record))) continue;
         for (std::uint32_t i = 0; i < record.mesh->triangles.size(); ++i)
             if (rankOf(scene, {shape, i}) != Rank::kOpaque &&
-                !isInvisible(scene.material(record.materialOf(i))))
+                !scene.traits(record.materialOf(i)).isInvisible)
                 special.push_back({shape, i});
     }
     if (special.empty()) return nullptr;

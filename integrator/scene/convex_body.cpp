@@ -69,20 +69,15 @@ class Body {
         return true;
     }
 
-    static bool isOpaque(const MaterialDescription& material) {
-        return material.kind != MaterialKind::kDielectric && material.transparency == 0.0f &&
-               material.opacityTexture == kNoTexture && isBlack(material.diffuseTransmission);
-    }
-
     bool addBall(std::uint32_t index) {
-        const MaterialDescription& material =
-            m_scene.material(m_scene.description().instances[index].materials[0]);
-        if (isInvisible(material)) return true;
-        if (!isOpaque(material)) return false;
+        const MaterialTraits& material =
+            m_scene.traits(m_scene.description().instances[index].materials[0]);
+        if (material.isInvisible) return true;
+        if (!material.isOpaque) return false;
         if (!m_scene.isSphere(index)) return false;
         const SphereShape sphere = m_scene.ballAround(index);
-        const bool shines = !isBlack(material.emission);
-        if (!isBlackBody(material))
+        const bool shines = material.emits;
+        if (!material.isBlack)
             m_balls.push_back({sphere.centre, sphere.radius, shines});
         else if (shines)
             m_lampBalls.push_back({sphere.centre, sphere.radius, true});
@@ -102,15 +97,15 @@ class Body {
                                   cross(Vec3d{m[4], m[5], m[6]}, Vec3d{m[8], m[9], m[10]})) < 0;
         for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
             const std::uint32_t slot = mesh.materials.empty() ? 0 : mesh.materials[i];
-            const MaterialDescription& material = m_scene.material(instance.materials[slot]);
-            if (isInvisible(material)) continue;
-            if (!isOpaque(material)) return false;
+            const MaterialTraits& material = m_scene.traits(instance.materials[slot]);
+            if (material.isInvisible) continue;
+            if (!material.isOpaque) return false;
             Triangle triangle;
             for (std::size_t k = 0; k < 3; ++k)
                 triangle.corners[k] = toScene(mesh.positions[mesh.triangles[i][k]]);
             if (mirrored) std::swap(triangle.corners[1], triangle.corners[2]);
-            triangle.shines = !isBlack(material.emission);
-            if (!isBlackBody(material))
+            triangle.shines = material.emits;
+            if (!material.isBlack)
                 m_triangles.push_back(triangle);
             else if (triangle.shines)
                 m_lamps.push_back(triangle);

@@ -38,14 +38,14 @@ double TextureHeights::at(const std::array<double, 2>& texcoord) const {
     return std::clamp(height, m_range[0], m_range[1]);
 }
 
-void cutWhereNeeded(SceneDescription& description, const CancelCheck& cancel) {
+void cutWhereNeeded(SceneDescription& description, std::span<const MaterialTraits> traits,
+                    const CancelCheck& cancel) {
     for (InstanceDescription& instance : description.instances) {
         const auto* const limit = std::get_if<std::shared_ptr<const LimitShape>>(&instance.shape);
         if (!limit) continue;
         const bool isNeeded = std::ranges::any_of(instance.materials, [&](std::uint32_t index) {
-            if (index >= description.materials.size()) return false;  // told later
-            const MaterialDescription& material = description.materials[index];
-            return !isBlack(material.emission) || isInvisible(material);
+            if (index >= traits.size()) return false;  // told later
+            return traits[index].emits || traits[index].isInvisible;
         });
         if (!isNeeded) continue;
         const int rate = instance.tessellationRate > 0 ? static_cast<int>(instance.tessellationRate)

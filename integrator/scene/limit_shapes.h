@@ -8,8 +8,10 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
+#include "integrator/materials/material_traits.h"
 #include "integrator/scene/scene_description.h"
 #include "integrator/tessellation/edge_rates.h"
 #include "integrator/tessellation/height_field.h"
@@ -36,7 +38,8 @@ class TextureHeights final : public HeightField {
 
 // Cuts whole those limit shapes that light leaves or that no ray is to meet: each of their
 // triangles has to be known. Throws as tessellate().
-void cutWhereNeeded(SceneDescription& description, const CancelCheck& cancel);
+void cutWhereNeeded(SceneDescription& description, std::span<const MaterialTraits> traits,
+                    const CancelCheck& cancel);
 
 // A box that holds a shape, world space: its cage's, and as much as its materials may displace.
 Box3d boxAround(const LimitShape& shape, const Transform& transform, double highest);

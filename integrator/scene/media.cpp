@@ -137,8 +137,7 @@ bool Scene::Media::resolve(const Vec3f& direction, Surface& surface) const {
     const bool isFront = dot(direction, surface.geometricNormal) < 0.0f;
     const Vec3f off = surface.geometricNormal * (isFront ? surface.offset : -surface.offset);
     surface.medium = at(surface.position + off);
-    const MaterialDescription& material = m_scene.material(surface.material);
-    if (surface.isPane || !fillsItsInside(material)) return true;
+    if (surface.isPane || !m_scene.traits(surface.material).fillsItsInside) return true;
     const Vec3f towards = isFront ? -surface.geometricNormal : surface.geometricNormal;
     std::int32_t there;
     if (const Body* const body = bodyOf({surface.shape, surface.primitive})) {

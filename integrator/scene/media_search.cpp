@@ -67,7 +67,7 @@ class Scene::Media::Search {
             record.bounds(i, box.lo, box.hi);
             m_boxes[shape].grow(box);
             const std::uint32_t material = record.materialOf(i);
-            if (!fillsItsInside(m_scene.material(material))) continue;
+            if (!m_scene.traits(material).fillsItsInside) continue;
             auto found = std::ranges::find(here, material, &Part::material);
             if (found == here.end()) found = here.insert(found, {shape, material, {}});
             found->box.grow(box);
@@ -81,7 +81,7 @@ class Scene::Media::Search {
                    overlap(part.box, other.box);
         };
         if (std::ranges::any_of(m_parts, isOther)) return true;
-        if (!absorbs(m_scene.material(part.material))) return false;
+        if (!m_scene.traits(part.material).absorbs) return false;
         for (std::uint32_t shape = 0; shape < m_boxes.size(); ++shape)
             if (shape != part.shape && overlap(part.box, m_boxes[shape])) return true;
         if (m_scene.m_shapes[part.shape].materials.size() > 1) return true;
@@ -193,7 +193,7 @@ class Scene::Media::Search {
 std::unique_ptr<const Scene::Media> Scene::Media::find(const Scene& scene,
                                                        std::vector<Notice>& notices,
                                                        const CancelCheck& cancel) {
-    const bool hasAny = std::ranges::any_of(scene.m_description.materials, fillsItsInside);
+    const bool hasAny = std::ranges::any_of(scene.m_traits, &MaterialTraits::fillsItsInside);
     Search search(scene, notices, cancel);
     if (!hasAny || !search.findParts()) return nullptr;
     auto media = std::unique_ptr<Media>(new Media(scene));

@@ -81,8 +81,8 @@ bool Scene::findFlat(const CancelCheck& cancel) const {
     // cancels.
     Vec3d normal, origin;
     const auto reflects = [&](const ShapeRecord& record, std::uint32_t primitive) {
-        const MaterialDescription& material = m_description.materials[record.materialOf(primitive)];
-        return !isBlackBody(material) && !isInvisible(material);
+        const MaterialTraits& traits = m_traits[record.materialOf(primitive)];
+        return !traits.isBlack && !traits.isInvisible;
     };
     const auto forEachTriangle = [&](const auto& visit) {
         for (const ShapeRecord& record : m_shapes) {

@@ -18,6 +18,7 @@
 #include "integrator/lights/lamp_triangle.h"
 #include "integrator/lights/light.h"
 #include "integrator/materials/absorption.h"
+#include "integrator/materials/material_traits.h"
 #include "integrator/materials/materials.h"
 #include "integrator/rays/ray_tracer.h"
 #include "integrator/scene/scene_core.h"
@@ -104,6 +105,7 @@ class Scene {
     const MaterialDescription& material(std::uint32_t index) const {
         return m_description.materials[index];
     }
+    const MaterialTraits& traits(std::uint32_t material) const { return m_traits[material]; }
     const TextureSource* textures() const { return m_description.textures.get(); }
     // Those that are infinitely far come last.
     const std::vector<Light>& lights() const { return m_lights; }
@@ -181,6 +183,8 @@ class Scene {
     }
     // Radiance of a material's front, W m^-2 sr^-1, >= 0.
     Rgb emission(std::uint32_t material, Vec2f uv) const;
+    // That is not exceeded anywhere.
+    Rgb mostEmission(std::uint32_t material) const;
     // The point of a sphere shape that lies in a direction (of any length) from its centre.
     Surface pointOnSphere(std::uint32_t shape, const Vec3d& direction) const;
     // Of the light of that number; says no of one that is no triangle, has a texture, or is
@@ -260,7 +264,7 @@ class Scene {
     void surfaceOnTriangle(const ShapeRecord& shape, std::uint32_t primitive, const Corner& corner,
                            double b1, double b2, Surface& surface,
                            const Arrival& arrival = {nullptr, nullptr, false}) const;
-    void footprintOnTriangle(const MaterialDescription& material, const Attributes& attributes,
+    void footprintOnTriangle(const MaterialTraits& material, const Attributes& attributes,
                              const Corner& corner, Vec2f at, const Arrival& arrival,
                              Surface& surface) const;
     void footprintOnCurved(const ShapeRecord& shape, const Arrival& arrival,
@@ -279,6 +283,9 @@ class Scene {
                        const UvFootprint& footprint, Surface& surface) const;
     static float smoothness(const Attributes& attributes, Vec2f barycentric,
                             const Surface& surface);
+    // All that decide what a material emits where; and whether one is of its radiance.
+    std::vector<std::int32_t> texturesOfEmission(std::uint32_t material) const;
+    bool isOfEmission(std::int32_t texture) const;
     // Of a texture of lights; gives notice the first time.
     bool findBadTexels(std::int32_t texture, const CancelCheck& cancel);
     LampTexture lookAtLamp(const SurfaceLight& light, std::size_t mostLooks,
@@ -289,6 +296,7 @@ class Scene {
     static void nameSurface(const ShapeRecord& shape, std::uint32_t primitive, Surface& surface);
 
     SceneDescription m_description;
+    std::vector<MaterialTraits> m_traits;  // of the materials
     MaterialTables m_tables;
     Materials m_materials{m_description.materials, m_description.textures.get(), &m_tables};
     std::vector<std::unique_ptr<const HeightField>> m_heights;  // of the materials that displace

@@ -20,7 +20,9 @@
 namespace pm {
 
 void Scene::Builder::run() {
-    cutWhereNeeded(m_scene.m_description, m_cancel);
+    completeMixtures(m_scene.m_description.materials);
+    m_scene.m_traits = traitsOf(m_scene.m_description.materials, m_scene.m_materials.roles);
+    cutWhereNeeded(m_scene.m_description, m_scene.m_traits, m_cancel);
     checkInstances();
     findHeights();
     findBounds();
@@ -31,12 +33,11 @@ void Scene::Builder::run() {
     m_scene.m_isFlat = m_scene.findFlat(m_cancel);
     m_scene.m_hasSheets = findSheets();
     m_scene.m_viewersDiffer = findViewers();
-    m_scene.m_letsThrough = std::ranges::any_of(m_scene.m_description.materials, pm::letsThrough);
-    m_scene.m_filtersTextures =
-        std::ranges::any_of(m_scene.m_description.materials, filtersTexture);
-    m_scene.m_absorbs = std::ranges::any_of(m_scene.m_description.materials, absorbs);
-    m_scene.m_hasThinWalls = std::ranges::any_of(m_scene.m_description.materials,
-                                                 [](const auto& m) { return m.thinWalled; });
+    const std::vector<MaterialTraits>& traits = m_scene.m_traits;
+    m_scene.m_letsThrough = std::ranges::any_of(traits, &MaterialTraits::letsThrough);
+    m_scene.m_filtersTextures = std::ranges::any_of(traits, &MaterialTraits::filtersTextures);
+    m_scene.m_absorbs = std::ranges::any_of(traits, &MaterialTraits::absorbs);
+    m_scene.m_hasThinWalls = std::ranges::any_of(traits, &MaterialTraits::isThinWalled);
     noteHiddenSheen();
     noteLostAnisotropy();
     addToTracer();
@@ -75,7 +76,7 @@ void Scene::Builder::noteLostAnisotropy() {
         if (record.hasMaps) continue;
         for (const std::uint32_t index : record.materials) {
             const MaterialDescription& material = m_scene.m_description.materials[index];
-            if (isStretched(material) && told.insert(index).second)
+            if (m_scene.traits(index).isStretched && told.insert(index).second)
                 m_scene.m_notices.push_back(
                     {NoticeCode::kNotCovered,
                      fmt::format("material '{}' is anisotropic along texture coordinates, which "
@@ -122,11 +123,11 @@ void Scene::Builder::checkSlots(const InstanceDescription& instance) {
 }
 
 FaceKind Scene::Builder::kindOf(const ShapeRecord& record, std::uint32_t primitive) const {
-    const MaterialDescription& material = m_scene.material(record.materialOf(primitive));
-    if (isInvisible(material)) return FaceKind::kInvisible;
-    if (emits(material)) return record.mirrored ? FaceKind::kShiningMirrored : FaceKind::kShining;
-    if (material.kind == MaterialKind::kDielectric) return FaceKind::kGlass;
-    return isSheet(material) ? FaceKind::kSheet : FaceKind::kOpaque;
+    const MaterialTraits& traits = m_scene.traits(record.materialOf(primitive));
+    if (traits.isInvisible) return FaceKind::kInvisible;
+    if (traits.emits) return record.mirrored ? FaceKind::kShiningMirrored : FaceKind::kShining;
+    if (traits.isGlass) return FaceKind::kGlass;
+    return traits.isSheet() ? FaceKind::kSheet : FaceKind::kOpaque;
 }
 
 void Scene::Builder::leaveOutCopies() {
@@ -188,8 +189,7 @@ void Scene::Builder::addToTracer() {
 void Scene::Builder::lookForCloseSpheres() {
     std::vector<GlassSphere> spheres;
     for (const ShapeRecord& record : m_scene.m_shapes)
-        if (record.curved && record.curved->sphere() &&
-            m_scene.material(record.materials[0]).kind == MaterialKind::kDielectric)
+        if (record.curved && record.curved->sphere() && m_scene.traits(record.materials[0]).isGlass)
             spheres.push_back({record.curved->sphere()->sphere().centre,
                                record.curved->sphere()->sphere().radius});
     if (const std::size_t count = countCloseSpheres(std::move(spheres)); count > 0)
@@ -206,7 +206,7 @@ bool Scene::Builder::findViewers() const {
         m_scene.m_description.instances, [&](const InstanceDescription& instance) {
             const bool shadow = (instance.hiddenFrom & kShadowRays) != 0,
                        reflection = (instance.hiddenFrom & kReflectionRays) != 0;
-            const auto shines = [&](std::uint32_t m) { return emits(m_scene.material(m)); };
+            const auto shines = [&](std::uint32_t m) { return m_scene.traits(m).emits; };
             return shadow != reflection ||
                    (reflection && std::ranges::any_of(instance.materials, shines));
         });
@@ -214,7 +214,7 @@ bool Scene::Builder::findViewers() const {
 
 Viewers Scene::Builder::seenBy(std::uint32_t shape) const {
     const InstanceDescription& instance = m_scene.m_description.instances[shape];
-    const auto shines = [&](std::uint32_t m) { return emits(m_scene.material(m)); };
+    const auto shines = [&](std::uint32_t m) { return m_scene.traits(m).emits; };
     Viewers seen = kCameraRays | kShadowRays | kReflectionRays;
     seen &= ~instance.hiddenFrom;
     if ((seen & kShadowRays) != 0 || std::ranges::any_of(instance.materials, shines))
@@ -223,7 +223,7 @@ Viewers Scene::Builder::seenBy(std::uint32_t shape) const {
 }
 
 bool Scene::Builder::findSheets() const {
-    const auto isOne = [&](std::uint32_t material) { return isSheet(m_scene.material(material)); };
+    const auto isOne = [&](std::uint32_t material) { return m_scene.traits(material).isSheet(); };
     return std::ranges::any_of(m_scene.m_shapes, [&](const ShapeRecord& record) {
         return std::ranges::any_of(record.materials, isOne);
     });

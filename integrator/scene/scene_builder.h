@@ -17,15 +17,6 @@
 
 namespace pm {
 
-inline bool emits(const MaterialDescription& material) {
-    return !isBlack(material.emission);
-}
-
-// Whether what shines is another than its number: by its picture, or as part of it is cut away.
-inline bool shinesByTexture(const MaterialDescription& material) {
-    return material.emissionTexture != kNoTexture || isCutAway(material);
-}
-
 // Builds a Scene: checks the description, moves everything to the scene's own centre in double,
 // then rounds to float once; finds the lights; hands the shapes to the ray tracer. Used once, by
 // one thread, in the calling TBB arena.

@@ -12,7 +12,7 @@ namespace pm {
 void Scene::Builder::findLights(std::uint32_t shape) {
     ShapeRecord& record = m_scene.m_shapes[shape];
     if (std::ranges::none_of(record.materials, [&](std::uint32_t material) {
-            return emits(m_scene.material(material));
+            return m_scene.traits(material).emits;
         }))
         return;
     if (record.curved && !record.curved->sphere())
@@ -24,13 +24,13 @@ void Scene::Builder::findLights(std::uint32_t shape) {
     for (std::uint32_t i = 0; i < primitives; ++i) {
         goOn();
         const std::uint32_t material = record.materialOf(i);
-        if (!emits(m_scene.material(material))) continue;
+        if (!m_scene.traits(material).emits) continue;
         const double area = record.mesh ? triangleArea(record, i) : record.curved->area();
         if (!(area > 0)) continue;
         if (record.lightOfPrimitive.empty()) record.lightOfPrimitive.assign(primitives, kNoLight);
         record.lightOfPrimitive[i] = static_cast<std::int32_t>(m_scene.m_lights.size());
         const SurfaceLight light{shape, i, material, -1, static_cast<float>(area)};
-        const Rgb& e = m_scene.material(material).emission;
+        const Rgb e = m_scene.mostEmission(material);
         const double power = kPiDouble * area * channelSum(e) / 3;
         if (record.mesh)
             m_scene.m_lights.emplace_back(TriangleLight{light}, power);
@@ -57,7 +57,7 @@ void Scene::Builder::addLightTriangles() {
     for (std::size_t i = 0; i < m_scene.m_lights.size(); ++i) {
         goOn();
         const SurfaceLight* const shining = m_scene.m_lights[i].surface();
-        if (!shining || shinesByTexture(m_scene.material(shining->material))) continue;
+        if (!shining || m_scene.traits(shining->material).shinesUnevenly) continue;
         const SurfaceLight& light = *shining;
         const ShapeRecord& record = m_scene.m_shapes[light.shape];
         if (!record.mesh || record.exactOf(light.primitive)) continue;

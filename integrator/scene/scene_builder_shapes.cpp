@@ -25,7 +25,7 @@ void Scene::Builder::countUses() {
 bool Scene::Builder::isFlattened(const InstanceDescription& instance) const {
     return Placement(instance.transform).condition > Placement::kMostCondition ||
            std::ranges::any_of(instance.materials, [&](std::uint32_t material) {
-               return isInvisible(m_scene.material(material));
+               return m_scene.traits(material).isInvisible;
            });
 }
 
@@ -150,7 +150,7 @@ void Scene::Builder::addShape(const InstanceDescription& instance) {
         addLimit(*limit, instance, record);
     } else {
         record.curved.emplace(instance.shape, instance.transform, m_scene.m_centre,
-                              hasTexture(m_scene.material(record.materials[0])), instance.name);
+                              m_scene.traits(record.materials[0]).looksUpTextures, instance.name);
     }
     m_scene.prepareMaps(record, instance, m_cancel);
     m_scene.m_shapes.push_back(std::move(record));

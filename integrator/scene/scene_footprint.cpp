@@ -27,8 +27,8 @@ Vec2f sharesOf(const Vec3f& step, const Vec3d& e1, const Vec3d& e2) {
 }
 
 // What a mirror or glass sends on of wide rays may be a picture of its texture.
-bool isFiltered(const RayFootprint& footprint, const MaterialDescription& material) {
-    return !footprint.isWide || material.kind == MaterialKind::kSurface;
+bool isFiltered(const RayFootprint& footprint, const MaterialTraits& material) {
+    return !footprint.isWide || material.isOfSurface;
 }
 
 // What a difference of texture coordinates is where a seam may lie between.
@@ -38,14 +38,14 @@ float acrossSeam(float difference) {
 
 }  // namespace
 
-void Scene::footprintOnTriangle(const MaterialDescription& material, const Attributes& attributes,
+void Scene::footprintOnTriangle(const MaterialTraits& material, const Attributes& attributes,
                                 const Corner& corner, Vec2f at, const Arrival& arrival,
                                 Surface& surface) const {
     RayFootprint& footprint = *arrival.footprint;
     footprint.arrive(*arrival.ray, surface.position, surface.geometricNormal);
     const Vec2f x = sharesOf(footprint.x.origin, corner.e1, corner.e2),
                 y = sharesOf(footprint.y.origin, corner.e1, corner.e2);
-    if (attributes.hasNormals && mayHaveDelta(material)) {
+    if (attributes.hasNormals && material.hasDelta) {
         const Vec3f n0 = attributes.normals[0], along1 = attributes.normals[1] - n0,
                     along2 = attributes.normals[2] - n0;
         const Vec3f n = n0 + along1 * at.x + along2 * at.y;
@@ -71,7 +71,7 @@ void Scene::footprintOnCurved(const ShapeRecord& record, const Arrival& arrival,
     RayFootprint& footprint = *arrival.footprint;
     footprint.arrive(*arrival.ray, surface.position, surface.geometricNormal);
     const auto longest = kLongestStep * static_cast<float>(record.curved->size());
-    const bool filters = isFiltered(footprint, m_materials[surface.material]);
+    const bool filters = isFiltered(footprint, m_traits[surface.material]);
     for (auto [side, onto] :
          {std::pair{&footprint.x, &surface.footprint.x}, {&footprint.y, &surface.footprint.y}}) {
         const float step = length(side->origin);

@@ -188,7 +188,7 @@ void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive
     surface.tangent = {};
     surface.footprint = {};
     if (arrival.footprint)
-        footprintOnTriangle(m_materials[record.materialOf(primitive)], attributes, corner, {f1, f2},
+        footprintOnTriangle(m_traits[record.materialOf(primitive)], attributes, corner, {f1, f2},
                             arrival, surface);
     if (attributes.hasTexcoords) {
         const auto& [t0, t1, t2] = attributes.texcoords;
@@ -197,7 +197,7 @@ void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive
         if (record.hasMaps && !arrival.ofShapeOnly) {
             // Of caustics every facet counts.
             const bool isFinest = arrival.footprint && arrival.footprint->isWide &&
-                                  castsCaustics(m_materials[record.materialOf(primitive)]);
+                                  m_traits[record.materialOf(primitive)].castsCaustics;
             applyMaps(record, primitive, attributes,
                       {e1, e2, {t1.x - t0.x, t1.y - t0.y}, {t2.x - t0.x, t2.y - t0.y}}, {f1, f2},
                       isFinest ? UvFootprint{} : surface.footprint, surface);

@@ -30,7 +30,7 @@ constexpr double kLeastPower = 1e-6;
 constexpr float kLeastSine = 1e-4f;
 
 bool shinesByTexture(const Scene& scene, const Light& light) {
-    return light.surface() && pm::shinesByTexture(scene.material(light.surface()->material));
+    return light.surface() && scene.traits(light.surface()->material).shinesUnevenly;
 }
 
 // Of the circle on which a picture's row lies, the sphere's radius being 1.
@@ -43,13 +43,21 @@ float sineOfRow(float v) {
 Rgb Scene::emission(std::uint32_t index, Vec2f uv) const {
     const MaterialDescription& material = this->material(index);
     // What is cut away doesn't shine.
-    const float share = opacityAt(materials(), material, uv);
-    if (material.emissionTexture == kNoTexture) return material.emission * share;
+    const float share = ownOpacityAt(materials(), material, uv);
+    Rgb ofParts;
+    if (material.kind == MaterialKind::kMixture && m_traits[index].emits) {
+        const float second = weightAt(materials(), material, uv);
+        ofParts = (emission(material.first, uv) * (1.0f - second) +
+                   emission(material.second, uv) * second) *
+                  share;
+        if (isBlack(material.emission)) return ofParts;
+    }
+    if (material.emissionTexture == kNoTexture) return ofParts + material.emission * share;
     const auto texture = static_cast<std::size_t>(material.emissionTexture);
     const bool isBad = texture < m_hasBadTexels.size() && m_hasBadTexels[texture];
     const Texel t = asLight(isBad ? textures()->lookUpOfLight(material.emissionTexture, uv)
                                   : textures()->lookUp(material.emissionTexture, uv, {}));
-    return material.emission * Rgb(t.r, t.g, t.b) * share;
+    return ofParts + material.emission * Rgb(t.r, t.g, t.b) * share;
 }
 
 bool Scene::findBadTexels(std::int32_t texture, const CancelCheck& cancel) {
@@ -70,13 +78,35 @@ bool Scene::findBadTexels(std::int32_t texture, const CancelCheck& cancel) {
     return true;
 }
 
+std::vector<std::int32_t> Scene::texturesOfEmission(std::uint32_t index) const {
+    const MaterialDescription& shining = material(index);
+    std::vector<std::int32_t> textures;
+    for (const std::int32_t texture :
+         {shining.emissionTexture, shining.opacityTexture, shining.weightTexture})
+        if (texture != kNoTexture) textures.push_back(texture);
+    if (shining.kind == MaterialKind::kMixture)
+        for (const std::uint32_t part : {shining.first, shining.second})
+            std::ranges::copy(texturesOfEmission(part), std::back_inserter(textures));
+    return textures;
+}
+
+bool Scene::isOfEmission(std::int32_t texture) const {
+    return std::ranges::any_of(m_description.materials, [&](const MaterialDescription& m) {
+        return m.emissionTexture == texture;
+    });
+}
+
+Rgb Scene::mostEmission(std::uint32_t index) const {
+    const MaterialDescription& m = material(index);
+    if (m.kind != MaterialKind::kMixture) return m.emission;
+    return m.emission + mostEmission(m.first) + mostEmission(m.second);
+}
+
 LampTexture Scene::lookAtLamp(const SurfaceLight& light, std::size_t mostLooks,
                               const CancelCheck& cancel) const {
     const ShapeRecord& record = m_shapes[light.shape];
     std::uint32_t across = 1, down = 1;
-    const MaterialDescription& shining = material(light.material);
-    for (const std::int32_t texture : {shining.emissionTexture, shining.opacityTexture}) {
-        if (texture == kNoTexture) continue;
+    for (const std::int32_t texture : texturesOfEmission(light.material)) {
         const auto [columns, rows] = textures()->texels(texture);
         across = std::max(across, columns);
         down = std::max(down, rows);
@@ -118,15 +148,16 @@ void Scene::lookAtTextures(const CancelCheck& cancel) {
     if (count == 0) return;
     std::set<std::int32_t> textures;
     for (const Light& light : m_lights)
-        if (light.surface()) textures.insert(material(light.surface()->material).emissionTexture);
-    textures.erase(kNoTexture);
+        if (light.surface())
+            for (const std::int32_t texture : texturesOfEmission(light.surface()->material))
+                if (isOfEmission(texture)) textures.insert(texture);
     for (const std::int32_t texture : textures) findBadTexels(texture, cancel);
     for (Light& light : m_lights) {
         if (!shinesByTexture(*this, light)) continue;
         SurfaceLight& shining = *light.surface();
         LampTexture texture =
             lookAtLamp(shining, std::max<std::size_t>(1, kMostLooks / count), cancel);
-        const double whole = channelMean(material(shining.material).emission);
+        const double whole = channelMean(mostEmission(shining.material));
         light.powerMean = std::numbers::pi * static_cast<double>(shining.area) *
                           std::max(texture.mean(), kLeastPower * whole);
         if (texture.isEven()) continue;

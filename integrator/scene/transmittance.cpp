@@ -55,20 +55,18 @@ class Crossings {
 }  // namespace
 
 Rgb Scene::straightShare(const Surface& surface, const Vec3f& direction) const {
-    const MaterialDescription& material = m_materials[surface.material];
-    if (!letsThrough(material) && !(surface.eta > 0.0f)) return {};
-    return pm::straightShare(m_materials, material, surface,
-                             opacityAt(m_materials, material, surface.uv),
+    if (!m_traits[surface.material].letsThrough() && !(surface.eta > 0.0f)) return {};
+    return pm::straightShare(m_materials, surface,
+                             opacityAt(m_materials, surface.material, surface.uv),
                              dot(direction, surface.geometricNormal) < 0.0f);
 }
 
 // Of what is no glass.
 float Scene::openShare(const Ray& ray, const RayHit& hit) const {
-    const MaterialDescription& material =
-        m_materials[m_shapes[hit.shape].materialOf(hit.primitive)];
-    if (!isCutAway(material)) return 0.0f;
+    const std::uint32_t material = m_shapes[hit.shape].materialOf(hit.primitive);
+    if (!m_traits[material].isCutAway) return 0.0f;
     Vec2f uv;
-    if (material.opacityTexture != kNoTexture) {
+    if (m_traits[material].looksUpTextures) {
         Surface surface;
         surfaceAt(hit, surface, {&ray, nullptr, true});
         uv = surface.uv;
@@ -148,10 +146,8 @@ class Scene::StraightWay {
 };
 
 bool Scene::mayEnter(const RayHit& hit) const {
-    const MaterialDescription& material =
-        m_materials[m_shapes[hit.shape].materialOf(hit.primitive)];
-    return material.kind == MaterialKind::kDielectric &&
-           (letsThrough(material) || (m_media && m_media->isOfBody(hit)));
+    const MaterialTraits& traits = m_traits[m_shapes[hit.shape].materialOf(hit.primitive)];
+    return traits.isGlass && (traits.letsThrough() || (m_media && m_media->isOfBody(hit)));
 }
 
 Rgb Scene::transmittance(const Ray& asked) const {

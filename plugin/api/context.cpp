@@ -61,4 +61,15 @@ void Context::sendNotice(const Notice& notice) const {
     sendMessage(PMR_LEVEL_WARNING, static_cast<std::int32_t>(notice.code), notice.text);
 }
 
+void Context::nameMaterial(const std::string& name, std::weak_ptr<MaterialObject> material) {
+    const std::lock_guard lock(m_namesMutex);
+    m_materials[name] = std::move(material);
+}
+
+std::shared_ptr<MaterialObject> Context::materialOfName(const std::string& name) const {
+    const std::lock_guard lock(m_namesMutex);
+    const auto found = m_materials.find(name);
+    return found == m_materials.end() ? nullptr : found->second.lock();
+}
+
 }  // namespace pm::plugin

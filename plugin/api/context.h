@@ -4,7 +4,9 @@
 
 #include <atomic>
 #include <cstdint>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <string>
 
 #include "integrator/values/cancel_check.h"
@@ -14,6 +16,8 @@
 #include "plugin/textures/texture_system.h"
 
 namespace pm::plugin {
+
+class MaterialObject;
 
 // What everything that a host makes hangs on: its message function and the textures. Lives until
 // the last object made from it ends.
@@ -34,6 +38,11 @@ class Context {
     // What buildCheck() looks at.
     const std::atomic<bool>& buildsAreCancelled() const { return m_cancelBuilds; }
 
+    // Materials by their names, the one made last of each, while they live. Threads: any.
+    void nameMaterial(const std::string& name, std::weak_ptr<MaterialObject> material);
+    // Null: none has that name.
+    std::shared_ptr<MaterialObject> materialOfName(const std::string& name) const;
+
     // Passes a message to the host, on the calling thread. Threads: any.
     void sendMessage(std::int32_t level, std::int32_t code, const std::string& text) const;
     void sendNotice(const Notice& notice) const;
@@ -46,6 +55,8 @@ class Context {
     std::shared_ptr<TextureSystem> m_textures = std::make_shared<TextureSystem>();
 
     std::atomic<bool> m_cancelBuilds{false};
+    mutable std::mutex m_namesMutex;
+    std::map<std::string, std::weak_ptr<MaterialObject>> m_materials;
 };
 
 }  // namespace pm::plugin

@@ -2,9 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
+#include <string_view>
 
 #include "plugin/api/choice_reader.h"
 #include "plugin/api/objects.h"
@@ -101,12 +103,43 @@ std::string MaterialObject::owner() const {
     return fmt::format("material '{}'", m_values.value("name").text);
 }
 
+bool MaterialObject::holds(const MaterialObject& other) const {
+    const Parts parts = this->parts();
+    return this == &other ||
+           std::ranges::any_of(parts, [&](const auto& part) { return part && part->holds(other); });
+}
+
+std::shared_ptr<MaterialObject> MaterialObject::namedPart(const PmrParameterDesc& desc,
+                                                          const std::string& owner) const {
+    const std::string_view name = desc.name == nullptr ? "" : desc.name;
+    if ((name != "first" && name != "second") || desc.text == nullptr) return nullptr;
+    auto part = m_context->materialOfName(desc.text);
+    if (!part)
+        throw CallError(CallStatus::kName,
+                        fmt::format("{}: {} is '{}', and no material of that name has been made",
+                                    owner, name, desc.text));
+    if (part->holds(*this))
+        throw argumentError(fmt::format("{}: {} is '{}', so that it would be a part of itself",
+                                        owner, name, desc.text));
+    return part;
+}
+
 void MaterialObject::setParameter(const PmrParameterDesc& desc) {
-    const std::lock_guard lock(m_mutex);
+    std::unique_lock lock(m_mutex);
+    const std::string owner = this->owner();
+    lock.unlock();  // a part may be asked whether it holds this
+    auto part = namedPart(desc, owner);
+    lock.lock();
     if (m_isUsed)
         throw CallError(CallStatus::kState,
-                        owner() + ": a scene uses it, so it can't change; an edit makes a new one");
-    setByName(m_values, desc, *m_context, owner());
+                        owner + ": a scene uses it, so it can't change; an edit makes a new one");
+    setByName(m_values, desc, *m_context, owner);
+    if (part) m_parts[std::string_view(desc.name) == "first" ? 0 : 1] = std::move(part);
+}
+
+MaterialObject::Parts MaterialObject::parts() const {
+    const std::lock_guard lock(m_mutex);
+    return m_parts;
 }
 
 const MaterialSet& MaterialObject::use() {
@@ -121,7 +154,10 @@ std::shared_ptr<MaterialObject> makeMaterial(std::shared_ptr<Context> context,
     MaterialSet values(materialParameters());
     readStructInto(values, &desc, *context, "PmrMaterialDesc");
     values.check(0, fmt::format("material '{}'", values.value("name").text));
-    return std::make_shared<MaterialObject>(std::move(context), std::move(values));
+    const std::string name = values.value("name").text;
+    auto material = std::make_shared<MaterialObject>(context, std::move(values));
+    context->nameMaterial(name, material);
+    return material;
 }
 
 }  // namespace pm::plugin

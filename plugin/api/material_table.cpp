@@ -28,14 +28,23 @@ constexpr Place<M> kDisplacementScale = {memberPlace<&M::displacementScale>().pu
                                                  hasher.add(material.displacementScale);
                                          }};
 
+// Which materials they are, the scene knows.
+template <std::uint32_t M::*Part>
+constexpr Place<M> partPlace() {
+    return {nullptr, [](Hasher& hasher, const M& material) {
+                if (material.kind == MaterialKind::kMixture) hasher.add(material.*Part);
+            }};
+}
+
 constexpr std::array kMaterialRows = {
     MaterialParameter{{.name = "kind",
                        .help = "surface: diffuse, plus a glossy lobe; mirror: glossy is its "
-                               "reflectance; dielectric: smooth boundary of a medium",
+                               "reflectance; dielectric: smooth boundary of a medium; mixture: of "
+                               "first and second",
                        .type = Type::kChoice,
-                       .maximum = 2,
+                       .maximum = 3,
                        .defaultText = "surface",
-                       .choices = "surface,mirror,dielectric"},
+                       .choices = "surface,mirror,dielectric,mixture"},
                       {Kind::kInt32, offsetof(PmrMaterialDesc, kind)},
                       {memberPlace<&M::kind>()}},
     MaterialParameter{{.name = "fresnel",
@@ -306,6 +315,28 @@ constexpr std::array kMaterialRows = {
                        .isLater = true},
                       {},
                       {kDisplacementScale}},
+    MaterialParameter{{.name = "first",
+                       .help = "Mixture: the name of one of its two materials, which was made "
+                               "before. It may be a mixture.",
+                       .type = Type::kText},
+                      {},
+                      {partPlace<&M::first>()}},
+    MaterialParameter{
+        {.name = "second", .help = "Mixture: the name of the other.", .type = Type::kText},
+        {},
+        {partPlace<&M::second>()}},
+    MaterialParameter{{.name = "weight",
+                       .help = "Mixture: share of the second.",
+                       .defaultText = "0",
+                       .isLater = true},
+                      {},
+                      {memberPlace<&M::weight>()}},
+    MaterialParameter{{.name = "weightTexture",
+                       .help = "Multiplies weight.",
+                       .type = Type::kTexture,
+                       .isLater = true},
+                      {},
+                      {texturePlace<&M::weightTexture>()}},
 };
 
 }  // namespace

@@ -93,6 +93,7 @@ static_assert(same(ParameterType::kObjects, PMR_PARAMETER_OBJECTS));
 static_assert(same(MaterialKind::kSurface, PMR_MATERIAL_SURFACE));
 static_assert(same(MaterialKind::kMirror, PMR_MATERIAL_MIRROR));
 static_assert(same(MaterialKind::kDielectric, PMR_MATERIAL_DIELECTRIC));
+static_assert(same(MaterialKind::kMixture, PMR_MATERIAL_MIXTURE));
 
 static_assert(same(Wrap::kRepeat, PMR_WRAP_REPEAT));
 static_assert(same(Wrap::kClamp, PMR_WRAP_CLAMP));

@@ -4,6 +4,7 @@
 // immutable once a scene uses them, so any number of scenes and threads share them.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <mutex>
@@ -111,13 +112,23 @@ class MaterialObject {
     void setParameter(const PmrParameterDesc& desc);
     // For a scene; it doesn't change from then on.
     const MaterialSet& use();
+    // Of a mixture, as its parameters name them; null where they don't.
+    using Parts = std::array<std::shared_ptr<MaterialObject>, 2>;
+    Parts parts() const;
 
   private:
     std::string owner() const;  // for errors
+    // Whether it is this one, or a part of it.
+    bool holds(const MaterialObject& other) const;
+    // The part that a parameter names, null of another. Errors: CallError(NAME) without one of that
+    // name, CallError(ARGUMENT) where this would be a part of itself.
+    std::shared_ptr<MaterialObject> namedPart(const PmrParameterDesc& desc,
+                                              const std::string& owner) const;
 
     const std::shared_ptr<Context> m_context;
-    std::mutex m_mutex;  // of what follows
+    mutable std::mutex m_mutex;  // of what follows
     MaterialSet m_values;
+    Parts m_parts;
     bool m_isUsed = false;
 };
 

@@ -70,12 +70,22 @@ std::uint32_t SceneObject::materialIndex(const std::shared_ptr<MaterialObject>& 
     const auto index = static_cast<std::uint32_t>(m_materials.size());
     const auto [found, isNew] = m_materialIndices.try_emplace(material.get(), index);
     if (!isNew) return found->second;
+    m_description.materials.emplace_back();
+    m_materials.push_back(material);
     MaterialDescription description;
     material->use().putInto(description, [this](const std::shared_ptr<const Texture>& texture) {
         return m_textures->add(texture);
     });
-    m_description.materials.push_back(std::move(description));
-    m_materials.push_back(material);
+    if (description.kind == MaterialKind::kMixture) {
+        const MaterialObject::Parts parts = material->parts();
+        if (!parts[0] || !parts[1])
+            throw argumentError(
+                fmt::format("material '{}' is a mixture; its first and second have to be set",
+                            description.name));
+        description.first = materialIndex(parts[0]);
+        description.second = materialIndex(parts[1]);
+    }
+    m_description.materials[index] = std::move(description);
     return index;
 }
 

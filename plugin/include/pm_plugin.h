@@ -253,6 +253,7 @@ typedef struct PmrTextureDesc {
 #define PMR_MATERIAL_SURFACE 0    /* diffuse, plus a glossy lobe */
 #define PMR_MATERIAL_MIRROR 1     /* glossy colour as reflectance */
 #define PMR_MATERIAL_DIELECTRIC 2 /* boundary of a medium of index ior; front = outside */
+#define PMR_MATERIAL_MIXTURE 3    /* of two others: parameters first, second, weight by name */
 
 /* A texture multiplies the number beside it. All reflectances in [0,1]. Materials are two-sided
  * but for emission, which leaves the front. */

@@ -122,13 +122,6 @@ class PrincipledSection {
     }
 
     double metallic() {
-        for (const char* map : {"map_Pm", "refl"}) {
-            if (!m_section.hasMap(map)) continue;
-            drop(map);
-            note(map, fmt::format("{} is a picture of what is metal here, which is not rendered "
-                                  "yet; {} is taken for all",
-                                  map, number("Pm", m_isMetalOn ? 1 : 0)));
-        }
         if (const auto given = m_section.number("Pm")) return std::clamp(*given, 0.0, 1.0);
         if (!m_isMetalOn) return 0;
         return std::clamp(mean(m_section.colour("Ka").value_or(Colour{1, 1, 1})), 0.0, 1.0);
@@ -295,6 +288,20 @@ void translateRhino(MtlSection& section) {
 
 }  // namespace
 
+std::optional<MetalMap> metalMapOf(MtlDialect dialect, const MtlSection& section) {
+    const bool isBlenders = emitsFromBothSides(dialect);
+    if (!isBlenders && dialect != MtlDialect::kGeneric) return std::nullopt;
+    const double illum = section.number("illum").value_or(2);
+    if (illum == 4 || illum == 5 || illum == 7) return std::nullopt;
+    if (mean(section.colour("Tf").value_or(Colour{})) >= 0.5) return std::nullopt;
+    for (const char* key : {"map_Pm", "refl"}) {
+        if (!section.hasMap(key) || (!isBlenders && key != std::string_view("map_Pm"))) continue;
+        const double factor = std::clamp(section.number("Pm").value_or(1), 0.0, 1.0);
+        return MetalMap{key, picturesStandAlone(dialect) ? 1 : factor};
+    }
+    return std::nullopt;
+}
+
 bool emitsFromBothSides(MtlDialect dialect) {
     return dialect == MtlDialect::kBlender28 || dialect == MtlDialect::kBlender3 ||
            dialect == MtlDialect::kBlender4;
@@ -329,8 +336,9 @@ Translation translateToGeneric(MtlDialect dialect, MtlSection& section) {
         case MtlDialect::kGeneric:
             // The keys for physically based materials mean what Blender's do; who says how a mirror
             // or glass is rough needs no more than that.
-            if (section.number("Pm") || ((section.number("Pr") || section.hasMap("map_Pr")) &&
-                                         section.number("illum").value_or(2) <= 2))
+            if (section.number("Pm") || section.hasMap("map_Pm") ||
+                ((section.number("Pr") || section.hasMap("map_Pr")) &&
+                 section.number("illum").value_or(2) <= 2))
                 return PrincipledSection(MtlDialect::kBlender4, section, false).translate();
             break;
         case MtlDialect::kMcGuire:

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <set>
+#include <utility>
 
 #include "host_shim/formats/mtl/material_layers.h"
 #include "host_shim/formats/mtl/material_maps.h"
@@ -60,6 +61,12 @@ class MaterialReader {
         return std::move(m_material);
     }
 
+    // A map of the section alone, for what is made of several materials.
+    Boxed<TextureUse> readMapAlone(const std::string& key) {
+        m_material.name = m_section.name;
+        return map(key.c_str(), true);
+    }
+
   private:
     bool given(const char* key) const {
         return m_section.colours.contains(key) || m_section.numbers.contains(key);
@@ -98,6 +105,9 @@ class MaterialReader {
     float missing(const std::string& key) const {
         constexpr float kUsualGrey = 0.8f, kUsual = 0.5f;
         if (key == "map_Ke") return 0;
+        // As if nobody had spoken of a picture.
+        if (key == "map_Pm" || key == "refl")
+            return static_cast<float>(std::clamp(number("Pm", 0), 0.0, 1.0));
         const bool isBase = m_section.maps.at(key) == m_diffuseMap;
         const std::string number = isBase ? "Kd" : key.substr(std::string_view("map_").size());
         if (m_numbersGiven.contains(number)) return 1;
@@ -411,6 +421,52 @@ class MaterialReader {
 
 }  // namespace
 
+namespace {
+
+// What is the surface's whatever it is made of goes to the mixture.
+void moveWhatIsShared(MaterialData& part, MaterialData& mixture) {
+    mixture.transparency = std::exchange(part.transparency, 0.0f);
+    mixture.emission = std::exchange(part.emission, {});
+    mixture.emitsFromBothSides = part.emitsFromBothSides;
+    for (Boxed<TextureUse> MaterialData::*use :
+         {&MaterialData::opacityTexture, &MaterialData::emissionTexture,
+          &MaterialData::normalTexture, &MaterialData::bumpTexture,
+          &MaterialData::displacementTexture}) {
+        mixture.*use = std::move(part.*use);
+        (part.*use).reset();
+    }
+}
+
+// A surface that is metal where a picture says so: the same section once as what is none, once as
+// what is.
+MaterialData mixedByMetal(const MtlSection& section, const MetalMap& metal, const MtlSource& source,
+                          SceneFiles& files, const WarningSink& warn) {
+    const WarningSink once = [](Warning, const std::string&) {};
+    MaterialData mixture;
+    mixture.name = section.name;
+    mixture.weight = static_cast<float>(metal.factor);
+    mixture.weightTexture = MaterialReader(section, source, files, warn).readMapAlone(metal.key);
+    const auto alone = static_cast<float>(std::clamp(section.number("Pm").value_or(0), 0.0, 1.0));
+    if (!mixture.weightTexture)
+        mixture.weight = alone;
+    else if (mixture.weight > 0)
+        mixture.weightTexture->missing = alone / mixture.weight;
+    for (const double share : {0.0, 1.0}) {
+        MtlSection part = section;
+        part.maps.erase(metal.key);
+        part.numbers["Pm"] = share;
+        MaterialData made =
+            MaterialReader(std::move(part), source, files, share == 0 ? warn : once).read();
+        made.name += share == 0 ? " (no metal)" : " (metal)";
+        MaterialData ignored;
+        moveWhatIsShared(made, share == 0 ? mixture : ignored);
+        mixture.parts.push_back(std::move(made));
+    }
+    return mixture;
+}
+
+}  // namespace
+
 MaterialData defaultMaterial(const std::string& name) {
     MaterialData material;
     material.name = name;
@@ -430,8 +486,10 @@ std::map<std::string, MaterialData> readMaterials(std::string_view mtlText, cons
             return;
         }
         std::string name = section.name;
+        const auto metal = metalMapOf(source.dialect, section);
         materials.emplace(std::move(name),
-                          MaterialReader(std::move(section), source, files, warn).read());
+                          metal ? mixedByMetal(section, *metal, source, files, warn)
+                                : MaterialReader(std::move(section), source, files, warn).read());
     });
     return materials;
 }

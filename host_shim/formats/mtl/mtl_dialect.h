@@ -70,6 +70,14 @@ struct Translation {
     double diffuseGain{1};  // that the picture of Kd is multiplied by
 };
 
+// A picture of what is metal, and what multiplies it.
+struct MetalMap {
+    std::string key;
+    double factor{1};
+};
+// None where the section's program or kind of surface has none.
+std::optional<MetalMap> metalMapOf(MtlDialect dialect, const MtlSection& section);
+
 // Turns what a section says in its dialect into what the keys mean in the generic one. Nothing is
 // changed for kGeneric.
 Translation translateToGeneric(MtlDialect dialect, MtlSection& section);

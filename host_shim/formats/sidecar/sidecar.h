@@ -38,6 +38,7 @@ struct SidecarInstance {
 struct SidecarMaterial {
     std::string name;  // of one that the scene's material libraries have
     std::vector<NamedValue> values;
+    Boxed<TextureUse> weightTexture;  // of a mixture
 };
 
 struct SidecarSphere {

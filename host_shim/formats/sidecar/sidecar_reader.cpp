@@ -67,10 +67,25 @@ SidecarSphere readSphere(const JsonPlace& at, NameTable& names) {
     return sphere;
 }
 
-SidecarMaterial readMaterial(const std::string& name, const JsonPlace& at) {
+TextureUse readPicture(const JsonPlace& at, SceneFiles& files) {
+    const std::string name = at.text();
+    const auto file = files.find(files.folder(), name);
+    if (!file) at.refuse(": " + files.whyNone(files.folder(), name));
+    TextureUse use;
+    use.file = file->string();
+    use.place = fmt::format("{}: {}", at.file(), at.path());
+    return use;
+}
+
+SidecarMaterial readMaterial(const std::string& name, const JsonPlace& at, SceneFiles& files) {
     SidecarMaterial material;
     material.name = name;
     for (const auto& [key, value] : at.members()) {
+        if (key == "weightTexture") {
+            material.weightTexture = readPicture(value, files);
+            material.weightTexture->isData = true;
+            continue;
+        }
         NamedValue& named = material.values.emplace_back();
         named.name = key;
         named.place = fmt::format("{}: {}", value.file(), value.path());
@@ -83,16 +98,6 @@ SidecarMaterial readMaterial(const std::string& name, const JsonPlace& at) {
                 named.numbers.push_back(entry.number());
     }
     return material;
-}
-
-TextureUse readPicture(const JsonPlace& at, SceneFiles& files) {
-    const std::string name = at.text();
-    const auto file = files.find(files.folder(), name);
-    if (!file) at.refuse(": " + files.whyNone(files.folder(), name));
-    TextureUse use;
-    use.file = file->string();
-    use.place = fmt::format("{}: {}", at.file(), at.path());
-    return use;
 }
 
 EnvironmentData readEnvironment(const JsonPlace& at, SceneFiles& files) {
@@ -187,7 +192,7 @@ class SidecarParts {
         if (part.key == "materials") {
             const JsonPlace at(part.value, m_sidecar.file,
                                JsonPlace::memberPath(part.key, part.name));
-            keep(readMaterial(part.name, at), m_sidecar.materials);
+            keep(readMaterial(part.name, at, m_files), m_sidecar.materials);
             return;
         }
         const JsonPlace at(part.value, m_sidecar.file, fmt::format("{}[{}]", part.key, part.index));
@@ -259,7 +264,11 @@ std::vector<std::string> Sidecar::materialNames() const {
     std::vector<std::string> all;
     for (std::uint32_t number = 0; number < isPut.size(); ++number)
         if (isPut[number]) all.push_back(names[number]);
-    for (const SidecarMaterial& material : materials) all.push_back(material.name);
+    for (const SidecarMaterial& material : materials) {
+        all.push_back(material.name);
+        for (const NamedValue& value : material.values)
+            if (value.name == "first" || value.name == "second") all.push_back(value.text);
+    }
     std::ranges::sort(all);
     all.erase(std::unique(all.begin(), all.end()), all.end());
     return all;

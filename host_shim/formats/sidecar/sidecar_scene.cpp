@@ -243,7 +243,13 @@ class Addition {
             const auto found = known.find(given.name);
             if (found == known.end())
                 refuseMaterial(given.name, JsonPlace::memberPath("materials", given.name));
-            m_scene.materials[found->second].byName = given.values;
+            for (const NamedValue& value : given.values)
+                if ((value.name == "first" || value.name == "second") &&
+                    !known.contains(value.text))
+                    refuseMaterial(value.text, value.place);
+            MaterialData& material = m_scene.materials[found->second];
+            material.byName = given.values;
+            if (given.weightTexture) material.weightTexture = given.weightTexture;
         }
     }
 

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 
@@ -10,12 +11,13 @@
 
 namespace pm {
 
-// The roles that the parts of a BSDF have in light paths; a surface has one lobe a role at most.
+// The roles that the parts of a BSDF have in light paths; of a mixture several lobes may have one.
 // Each path is told apart by the lobes it went through, so lobes are sampled one at a time, never
 // as a mixture. Which model stands in a role is the business of its own file in this folder.
 enum class Lobe : std::uint8_t {
     kDiffuse,     // much like Lambertian: irradiance is all that need be known of what it reflects
     kGlossy,      // around one direction, narrow enough to cast caustics
+    kWide,        // the same, and wide enough to receive them as a diffuse one does
     kBroad,       // one that is not: for the classes of paths much like the diffuse one
     kReflection,  // mirror, and the reflected part of a dielectric (delta)
     kRefraction,  // delta
@@ -23,8 +25,16 @@ enum class Lobe : std::uint8_t {
     // class of paths and stands in no density. Shadow rays go by it as well: Scene::transmittance.
     kStraight,
 };
-inline constexpr std::size_t kLobeCount = 6;
+inline constexpr std::size_t kLobeCount = 7;
 
+// Around a direction, of three widths.
+inline constexpr std::array kShinyLobes{Lobe::kGlossy, Lobe::kWide, Lobe::kBroad};
+constexpr bool isWide(Lobe lobe) {
+    return lobe == Lobe::kWide || lobe == Lobe::kBroad;
+}
+constexpr bool isShiny(Lobe lobe) {
+    return lobe == Lobe::kGlossy || isWide(lobe);
+}
 constexpr bool isDelta(Lobe lobe) {
     return lobe == Lobe::kReflection || lobe == Lobe::kRefraction || lobe == Lobe::kStraight;
 }

@@ -102,7 +102,7 @@ void addMesh(const Scene& scene, const InstanceDescription& instance, const Tria
              std::vector<Item>& items, const CancelCheck& cancel) {
     std::vector<bool> casts;
     for (const std::uint32_t material : instance.materials)
-        casts.push_back(castsCaustics(scene.material(material)));
+        casts.push_back(scene.traits(material).castsCaustics);
     if (std::find(casts.begin(), casts.end(), true) == casts.end()) return;
     for (std::size_t i = 0; i < mesh.triangles.size(); ++i) {
         goOn(cancel);
@@ -130,7 +130,7 @@ std::vector<Item> castingItems(const Scene& scene, const CancelCheck& cancel) {
                 std::get_if<std::shared_ptr<const TriangleMesh>>(&instances[i].shape)) {
             addMesh(scene, instances[i], **mesh, items, cancel);
         } else if (std::ranges::any_of(instances[i].materials, [&](std::uint32_t material) {
-                       return castsCaustics(scene.material(material));
+                       return scene.traits(material).castsCaustics;
                    })) {
             for (std::uint32_t part = 0; part < scene.partCount(i); ++part)
                 items.push_back(itemOf(scene.ballAroundPart(i, part)));

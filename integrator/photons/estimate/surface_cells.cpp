@@ -64,7 +64,7 @@ bool SurfaceCells::findAlong(const Vec3f& middle, const Vec3f& through, const Ve
                                                                 : -surface.geometricNormal;
         if (dot(normal, direction) >= kDirectionCosine &&
             maxAbsComponent(position - middle) <= kCellReach * cellSize &&
-            reflectsDiffusely(m_scene.material(surface.material)))
+            m_scene.traits(surface.material).isDiffuse)
             return true;
         const float passed = dot(ray.origin - position, direction) + 1e-3f * cellSize;
         ray.origin -= direction * passed;

@@ -52,8 +52,8 @@ SeenArea lookFor(const Scene& scene, const PhotonGate& gate, const Vec3f& apex,
     const Vec3f ray = gate.position + inPlane - apex;
     Surface surface;
     if (!scene.meet({apex, ray, kRayReach}, surface)) return {};
-    const MaterialDescription& material = scene.material(surface.material);
-    if (!(ofGlossy ? mayBeGlossy(material) : reflectsDiffusely(material))) return {};
+    const MaterialTraits& traits = scene.traits(surface.material);
+    if (!(ofGlossy ? traits.isGlossy : traits.isDiffuse)) return {};
     const Vec3f facing = dot(surface.geometricNormal, ray) < 0.0f ? surface.geometricNormal
                                                                   : -surface.geometricNormal;
     const Vec3f fromPoint = surface.position - gate.position;

@@ -179,8 +179,8 @@ float PhotonWalk::probabilityOfAll(const Bsdf& bsdf) {
 }
 
 bool PhotonWalk::isDiffuseOrStraight(const Bsdf& bsdf) {
-    return bsdf.isDiffuseOnly() || !(bsdf.has(bsdf.glossyLobe()) || bsdf.has(Lobe::kReflection) ||
-                                     bsdf.has(Lobe::kRefraction));
+    return bsdf.isDiffuseOnly() ||
+           !(bsdf.isShiny() || bsdf.has(Lobe::kReflection) || bsdf.has(Lobe::kRefraction));
 }
 
 bool PhotonWalk::aimScattered(const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
@@ -282,9 +282,8 @@ double PhotonWalk::land(Part& part, const Surface& surface, const Bsdf& bsdf, Sa
 double PhotonWalk::receive(const Part& part, const Surface& surface, const Bsdf& bsdf,
                            Batch& batch) {
     const Way& way = part.way;
-    const Lobe lobe = bsdf.glossyLobe();
-    if (way.stage != Stage::kSpecular || !bsdf.has(lobe)) return 0;
-    if (!bsdf.isWide(lobe) && !way.isUnmet) return 0;
+    if (way.stage != Stage::kSpecular || !bsdf.isShiny()) return 0;
+    if (!bsdf.has(Lobe::kWide) && !bsdf.has(Lobe::kBroad) && !way.isUnmet) return 0;
     batch.received.push_back(
         {{surface.position, part.flux, PackedNormal(bsdf.facingGeometricNormal())},
          PackedDirection(-part.ray.direction)});

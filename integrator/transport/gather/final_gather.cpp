@@ -2,6 +2,8 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "integrator/transport/gather/final_gather.h"
 
+#include <algorithm>
+
 #include "integrator/sampling/warps.h"
 #include "integrator/transport/path/direct_light.h"
 #include "integrator/transport/path/path_walk.h"
@@ -41,10 +43,16 @@ void addLampsMet(const Scene& scene, const GatherEnds& ends, const GatherWay& wa
 // By a sample of lamps, whether or not the lobe will be followed: else few rays would bring much.
 void addLampsSampled(const Scene& scene, const GatherEnds& ends, const GatherWay& way,
                      const Surface& surface, const Bsdf& bsdf, Sampler& sampler, Gathered& result) {
-    if (!bsdf.has(bsdf.glossyLobe()) || !GatherWay::isAsked(ends, bsdf.glossyLobe())) return;
+    const auto isAsked = [&](Lobe lobe) {
+        return bsdf.has(lobe) && GatherWay::isAsked(ends, lobe);
+    };
+    if (std::ranges::none_of(kShinyLobes, isAsked)) return;
     const DirectRadiance direct = estimateDirect(
         scene, *ends.lights, surface, bsdf, LampStrategy::kNone, false, 1, sampler, result.rays);
-    const Rgb light = way.path.throughput * direct.glossy;
+    Rgb sum;
+    for (const Lobe lobe : kShinyLobes)
+        if (isAsked(lobe)) sum += direct.of(lobe);
+    const Rgb light = way.path.throughput * sum;
     result.radiance += {light, light};
 }
 

@@ -66,7 +66,7 @@ DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, st
     if (bsdf.goesThrough() && !(dot(light.direction, asked.side) > 0.0f)) return result;
     if (asked.isSeen && !bsdf.goesThrough() && asked.diffuse != LampStrategy::kNone &&
         bsdf.has(Lobe::kDiffuse) && !(dot(light.direction, asked.side) > 0.0f)) {
-        result.diffuse = fromBeyondFace(asked, light, rays);
+        result.of(Lobe::kDiffuse) = fromBeyondFace(asked, light, rays);
         return result;
     }
     const auto contribution = [&](Lobe lobe) {
@@ -80,12 +80,14 @@ DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, st
                                                     bsdf.pdfSolidAngle(lobe, light.direction));
         return value * light.radiance * (weight / light.pdfSolidAngle);
     };
-    if (asked.diffuse != LampStrategy::kNone) result.diffuse = contribution(Lobe::kDiffuse);
-    result.glossy = contribution(bsdf.glossyLobe());
-    if (isBlack(result.diffuse) && isBlack(result.glossy)) return result;
+    if (asked.diffuse != LampStrategy::kNone)
+        result.of(Lobe::kDiffuse) = contribution(Lobe::kDiffuse);
+    for (const Lobe lobe : kShinyLobes) result.of(lobe) = contribution(lobe);
+    if (std::ranges::all_of(result.by, [](const Rgb& c) { return isBlack(c); })) return result;
     ++rays;
     const Rgb through = asked.scene.transmittance(light.shadowRay);
-    return {result.diffuse * through, result.glossy * through};
+    for (Rgb& c : result.by) c *= through;
+    return result;
 }
 
 // Sum over all samples, whose lamps are chosen kMost at a time.
@@ -99,8 +101,7 @@ DirectRadiance sumOfSamples(const Question& asked, const Sampler& sampler, std::
         asked.lights.choose(asked.surface, asked.side, turn);
         for (const ChosenLight& one : turn) {
             const DirectRadiance part = byLampSample(asked, one, rays);
-            sum.diffuse += part.diffuse;
-            sum.glossy += part.glossy;
+            for (std::size_t i = 0; i < sum.by.size(); ++i) sum.by[i] += part.by[i];
         }
     }
     return sum;
@@ -119,8 +120,7 @@ DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
         if (!lights.empty()) {
             const DirectRadiance found = samples == 1 ? sumOfSamples<1>(asked, sampler, rays)
                                                       : sumOfSamples<kAtOnce>(asked, sampler, rays);
-            sum.diffuse += found.diffuse;
-            sum.glossy += found.glossy;
+            for (std::size_t i = 0; i < sum.by.size(); ++i) sum.by[i] += found.by[i];
         }
         sampler.skip();
     };
@@ -130,7 +130,8 @@ DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
         add();
     }
     const auto number = static_cast<float>(samples);
-    return {sum.diffuse / number, sum.glossy / number};
+    for (Rgb& c : sum.by) c = c / number;
+    return sum;
 }
 
 Rgb weightedEmission(const LightSampler& lights, const Surface& surface, const LastScatter& last) {

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
 
 #include "integrator/light_sampling/light_sampler.h"
@@ -31,15 +33,14 @@ struct PathState {
     bool isPastWide = false;       // it has met a W, and no D
     bool isCausticOnWide = false;  // what light is found next the first W receives as a caustic
 
-    // isWide: a glossy lobe; broad ones are in any case.
-    void scatter(Lobe lobe, bool isWide = false) {
+    void scatter(Lobe lobe) {
         if (lobe == Lobe::kStraight) return;
         const bool diffuse = lobe == Lobe::kDiffuse;
         lastIsSpecular = !diffuse && lobe != Lobe::kBroad;
         anyDiffuse = anyDiffuse || diffuse;
         isCausticOnWide = isPastWide && lastIsSpecular;
-        isPastWide = !anyDiffuse && (isPastWide || isWide || lobe == Lobe::kBroad);
-        anyGlossy = anyGlossy || lobe == Lobe::kGlossy;
+        isPastWide = !anyDiffuse && (isPastWide || isWide(lobe));
+        anyGlossy = anyGlossy || lobe == Lobe::kGlossy || lobe == Lobe::kWide;
         if (since != Since::kNone)
             since = diffuse ? Since::kDiffuse : std::max(since, Since::kOthers);
         else if (!lastIsSpecular) {
@@ -89,9 +90,19 @@ struct SampleRadiance {
     }
 };
 
-// Radiance reflected by the diffuse and the Phong lobe, from one light sample.
+// Radiance reflected by each lobe that is not delta, from lamps.
 struct DirectRadiance {
-    Rgb diffuse, glossy;
+    std::array<Rgb, 1 + kShinyLobes.size()> by;
+
+    static_assert(static_cast<std::size_t>(Lobe::kDiffuse) == 0 &&
+                  static_cast<std::size_t>(kShinyLobes.back()) == kShinyLobes.size());
+    Rgb& of(Lobe lobe) { return by[static_cast<std::size_t>(lobe)]; }
+    const Rgb& of(Lobe lobe) const { return by[static_cast<std::size_t>(lobe)]; }
+    Rgb shiny() const {
+        Rgb sum;
+        for (const Lobe lobe : kShinyLobes) sum += of(lobe);
+        return sum;
+    }
 };
 
 // How light that a diffuse lobe receives straight from a lamp is found.

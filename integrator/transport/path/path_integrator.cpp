@@ -31,11 +31,12 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler,
             const DirectRadiance direct =
                 estimateDirect(m_scene, m_lights, surface, bsdf, LampStrategy::kBoth,
                                state.hasMetNoDiffuse(), 1, sampler, result.rays);
-            PathState byDiffuse = state, byGlossy = state;
-            byDiffuse.scatter(Lobe::kDiffuse);
-            byGlossy.scatter(bsdf.glossyLobe(), bsdf.isWide(bsdf.glossyLobe()));
-            result.of(byDiffuse.classify()) += path.throughput * direct.diffuse;
-            result.of(byGlossy.classify()) += path.throughput * direct.glossy;
+            for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kGlossy, Lobe::kWide, Lobe::kBroad}) {
+                if (!bsdf.has(lobe)) continue;
+                PathState by = state;
+                by.scatter(lobe);
+                result.of(by.classify()) += path.throughput * direct.of(lobe);
+            }
         }
         BsdfSample sample;
         const float uLobe = sampler.next1D();
@@ -45,7 +46,7 @@ SampleRadiance PathIntegrator::sample(const Ray& ray, Sampler& sampler,
             if (path.isCut()) result.addCut(path.amount());
             return result;
         }
-        state.scatter(sample.lobe, bsdf.isWide(sample.lobe));
+        state.scatter(sample.lobe);
         if (sample.lobe == Lobe::kStraight) continue;
         last = lastScatter(surface, sample);
         if (m_scene.viewersDiffer() && !isDelta(sample.lobe)) {

@@ -106,7 +106,7 @@ bool PhotonIntegrator::Branch::goOn(const Surface& surface, const Bsdf& bsdf,
                                     const BsdfSample& sample, bool isPart, Sampler& sampler) {
     if (!path.scatter(surface, bsdf, sample, sampler, isPart)) return false;
     if (sample.lobe == Lobe::kStraight) return true;
-    state.scatter(sample.lobe, bsdf.isWide(sample.lobe));
+    state.scatter(sample.lobe);
     last = lastScatter(surface, sample, lampSamples);
     return true;
 }
@@ -215,36 +215,41 @@ PhotonIntegrator::StillToFind PhotonIntegrator::addReflected(const Surface& surf
         const DirectRadiance direct = estimateDirect(
             m_scene, m_lights, surface, bsdf, still.lamps, branch.state.hasMetNoDiffuse(),
             branch.lampSamples, tree.sampler, tree.result.rays);
-        PathState byDiffuse = branch.state, byGlossy = branch.state;
-        byDiffuse.scatter(Lobe::kDiffuse);
-        byGlossy.scatter(bsdf.glossyLobe(), bsdf.isWide(bsdf.glossyLobe()));
-        tree.result.of(byDiffuse.classify()) += throughput * direct.diffuse;
-        if (!isOfMap(byGlossy)) tree.result.of(byGlossy.classify()) += throughput * direct.glossy;
+        for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kGlossy, Lobe::kWide, Lobe::kBroad}) {
+            if (!bsdf.has(lobe)) continue;
+            PathState by = branch.state;
+            by.scatter(lobe);
+            if (lobe == Lobe::kDiffuse || !isOfMap(by))
+                tree.result.of(by.classify()) += throughput * direct.of(lobe);
+        }
     }
     if (m_maps.received) addReceived(surface, bsdf, branch, tree);
     return still;
 }
 
-// Caustics by the lobe that is glossy or broad, where the path has met no wide one before. Narrow
-// ones follow the light of lamps that rays meet; of others they have what came by way of delta
-// lobes alone.
+// Caustics by the lobes around a direction, where the path has met no wide one before. Narrow ones
+// follow the light of lamps that rays meet; of others they have what came by way of delta lobes
+// alone.
 void PhotonIntegrator::addReceived(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
                                    const Tree& tree) const {
-    const Lobe lobe = bsdf.glossyLobe();
-    if (!bsdf.has(lobe) || branch.state.isPastWide) return;
+    if (branch.state.isPastWide) return;
     const Vec3f& ng = bsdf.facingGeometricNormal();
     const float pixelWidth = tree.view.beam.widthAfter(branch.way);
     const Rgb& throughput = branch.path.throughput;
-    // Photons tell of light for each area of the surface, by the cosine to the geometric normal.
-    constexpr float kLeastCosine = 1e-3f;
-    const auto value = [&](const Vec3f& from) {
-        return bsdf.evaluate(lobe, from) / std::max(kLeastCosine, std::abs(dot(from, ng)));
-    };
-    for (const float side : {1.0f, -1.0f}) {
-        if (side < 0.0f && !bsdf.goesThrough()) break;
-        const ReceivedMap::Place place{surface.position, ng * side, !bsdf.isWide(lobe), pixelWidth};
-        add(m_maps.received->radiance(place, value, tree.scratch), throughput, tree.result.caustic,
-            tree.result);
+    for (const Lobe lobe : kShinyLobes) {
+        if (!bsdf.has(lobe)) continue;
+        // Photons tell of light for each area of the surface, by the cosine to the geometric
+        // normal.
+        constexpr float kLeastCosine = 1e-3f;
+        const auto value = [&](const Vec3f& from) {
+            return bsdf.evaluate(lobe, from) / std::max(kLeastCosine, std::abs(dot(from, ng)));
+        };
+        for (const float side : {1.0f, -1.0f}) {
+            if (side < 0.0f && !bsdf.goesThrough()) break;
+            const ReceivedMap::Place place{surface.position, ng * side, !isWide(lobe), pixelWidth};
+            add(m_maps.received->radiance(place, value, tree.scratch), throughput,
+                tree.result.caustic, tree.result);
+        }
     }
 }
 

@@ -65,12 +65,12 @@ SceneTraits findTraits(const Scene& scene) {
     SceneTraits traits;
     for (const InstanceDescription& instance : scene.description().instances)
         for (const std::uint32_t index : instance.materials) {
-            const MaterialDescription& m = scene.material(index);
-            traits.diffuse |= reflectsDiffusely(m);
-            traits.glossy |= mayBeGlossy(m);
-            traits.wide |= mayBeGlossy(m) && isWide(m);
-            traits.specular |= castsCaustics(m);
-            traits.delta |= castsCaustics(m) && mayHaveDelta(m);
+            const MaterialTraits& m = scene.traits(index);
+            traits.diffuse |= m.isDiffuse;
+            traits.glossy |= m.isGlossy;
+            traits.wide |= m.isWide;
+            traits.specular |= m.castsCaustics;
+            traits.delta |= m.castsCaustics && m.hasDelta;
         }
     traits.lights = !scene.lights().empty();
     for (const Light& light : scene.lights())
@@ -226,7 +226,7 @@ void explainReceivedMap(const SceneTraits& traits, Plan& plan) {
             "caustics on glossy surfaces of roughness {:.2f} or more: by photons, which "
             "keep where they came from, as a ray along so wide a lobe seldom finds a "
             "lamp in a mirror or lens",
-            kLeastWideRoughness));
+            LobeRoles{}.wideRoughness));
     if (traits.glossy && traits.delta && traits.pointLights)
         plan.reasons.push_back(
             "caustics of lights that no ray meets, on glossy surfaces of any roughness: by photons "
@@ -235,7 +235,7 @@ void explainReceivedMap(const SceneTraits& traits, Plan& plan) {
         plan.reasons.push_back(fmt::format(
             "caustics on glossy surfaces of roughness below {:.2f}: by rays along their "
             "lobes, which find lamps well",
-            kLeastWideRoughness));
+            LobeRoles{}.wideRoughness));
 }
 
 // Why light goes from no surface to another; empty where it may.

@@ -37,10 +37,10 @@ Traits findTraits(const Scene& scene) {
     Traits traits;
     for (const InstanceDescription& instance : scene.description().instances)
         for (const std::uint32_t index : instance.materials) {
-            const MaterialDescription& m = scene.material(index);
-            if (isInvisible(m)) continue;
-            traits.divides |= mayTransmit(m);
-            traits.broad |= hasBroadNumbers(m);
+            const MaterialTraits& m = scene.traits(index);
+            if (m.isInvisible) continue;
+            traits.divides |= m.transmits;
+            traits.broad |= m.hasBroadNumbers;
         }
     return traits;
 }

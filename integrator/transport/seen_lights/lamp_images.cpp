@@ -114,7 +114,7 @@ struct Arrival {
     // footprint: of the ray. carried: becomes that of here.
     Arrival(const Scene& scene, const Ray& ray, const RayFootprint& from, Carried& carried)
         : footprint(from), isSurface(meet(scene, ray, surface, &footprint, carried.throughput)) {
-        if (isSurface && mayHaveDelta(scene.material(surface.material)))
+        if (isSurface && scene.traits(surface.material).hasDelta)
             bsdf.emplace(scene.materials(), surface, -ray.direction, Transport::kRadiance,
                          carried.throughput);
     }

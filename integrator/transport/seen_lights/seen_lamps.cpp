@@ -168,7 +168,7 @@ bool SeenLamps::step(Branch& branch, Waiting& waiting, Sampler& sampler, Rgb& fo
     const Vec3f out = -branch.ray.direction;
     if (surface.light != kNoLight)
         found += branch.carried.throughput * m_lights.emittedRadiance(surface, out);
-    if (!mayHaveDelta(m_scene.material(surface.material))) return false;
+    if (!m_scene.traits(surface.material).hasDelta) return false;
     const Bsdf bsdf(m_scene.materials(), surface, out, Transport::kRadiance,
                     branch.carried.throughput);
     if (bsdf.isBlackBody()) return false;

@@ -59,7 +59,7 @@ class GatherPilot {
         const Rgb direct =
             estimateDirect(m_scene, lights, m_stop.surface, m_stop.bsdf,
                            LampStrategy::kNextEventOnly, true, kLampSamples, m_stop.sampler, rays)
-                .diffuse;
+                .of(Lobe::kDiffuse);
         return m_stop.throughput * direct;
     }
 

@@ -41,7 +41,7 @@ Rgb estimate(const Scene& scene, const LightSampler& lights, const Surface& surf
     std::uint32_t rays = 0;
     const DirectRadiance direct = estimateDirect(scene, lights, surface, bsdf, LampStrategy::kBoth,
                                                  true, kSet, sampler, rays);
-    return direct.diffuse + direct.glossy;
+    return direct.of(Lobe::kDiffuse) + direct.shiny();
 }
 
 // At the first lobe of each path that is not delta; black where it meets none.

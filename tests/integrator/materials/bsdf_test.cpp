@@ -121,7 +121,7 @@ TEST(Bsdf, EveryRoughLobeIsReciprocal) {
             Vec3f b = above(random);
             for (const float side : {1.0f, -1.0f}) {
                 b.z = std::abs(b.z) * side;
-                for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kGlossy, Lobe::kBroad}) {
+                for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kGlossy, Lobe::kWide, Lobe::kBroad}) {
                     if (!bench.bsdf(a).has(lobe) || !bench.bsdf(b).has(lobe)) continue;
                     const float ab = bench.bsdf(a).evaluate(lobe, b).g / std::abs(b.z);
                     const float ba = bench.bsdf(b).evaluate(lobe, a).g / std::abs(a.z);

@@ -181,7 +181,7 @@ TEST(Warps, RoughSurfacesSampleTheirDensity) {
             const Vec3f out = normalize(Vec3f{0.6f, 0.3f, i == 3 || i == 10 ? -0.5f : 0.5f});
             const Bsdf bsdf(bench.scene->materials(), bench.surface, out, transport,
                             Rgb(0.7f, 1.0f, 0.4f));
-            for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kBroad, Lobe::kGlossy}) {
+            for (const Lobe lobe : {Lobe::kDiffuse, Lobe::kBroad, Lobe::kGlossy, Lobe::kWide}) {
                 if (!bsdf.has(lobe)) continue;
                 SCOPED_TRACE(testing::Message() << "material " << i);
                 EXPECT_GT(lobePValue(bench, bsdf, lobe, 0.0, ++seed), kSignificance) << seed;

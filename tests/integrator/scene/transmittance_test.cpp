@@ -22,6 +22,10 @@
 namespace pm::test {
 namespace {
 
+bool castsCaustics(const MaterialDescription& material) {
+    return traitsOf({&material, 1}, {})[0].castsCaustics;
+}
+
 MaterialDescription sheet(float transparency, float reflectance = 0.0f) {
     MaterialDescription m;
     m.diffuse = Rgb(reflectance);

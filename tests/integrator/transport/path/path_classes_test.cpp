@@ -13,11 +13,11 @@ namespace {
 PathClass classOf(const std::string& lobes) {
     PathState state;
     for (const char lobe : lobes)
-        state.scatter(lobe == 'D'                  ? Lobe::kDiffuse
-                      : lobe == 'B'                ? Lobe::kBroad
-                      : lobe == 'G' || lobe == 'W' ? Lobe::kGlossy
-                                                   : Lobe::kReflection,
-                      lobe == 'W');
+        state.scatter(lobe == 'D'   ? Lobe::kDiffuse
+                      : lobe == 'B' ? Lobe::kBroad
+                      : lobe == 'G' ? Lobe::kGlossy
+                      : lobe == 'W' ? Lobe::kWide
+                                    : Lobe::kReflection);
     return state.classify();
 }
 
