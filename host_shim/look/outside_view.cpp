@@ -16,6 +16,9 @@ using Point = std::array<double, 3>;
 // The front stays where it shows this share of what the best view does: half, as its floor and
 // ceiling, seen along them, are hidden by their own cells.
 constexpr double kGoodEnough = 0.5;
+// Another side that is looked at straight stays where it shows this share: as no steep view shares
+// it, what the slanting ones beside it show counts for more than beside the front.
+constexpr double kGoodEnoughStraight = 0.4;
 // Of the cells that hold surface, so many are looked at.
 constexpr std::size_t kLookedAt = 4096;
 // What is seen from behind says less.
@@ -135,6 +138,26 @@ std::vector<double> shownBy(const std::vector<std::vector<double>>& views, std::
     return sums;
 }
 
+// Of the views along some of kDirections the one that shows most; 0 where there is none. Of two
+// that show the same the first: rounding doesn't decide.
+template <typename IsCandidate>
+std::size_t mostShown(const std::vector<double>& shown, const IsCandidate& isCandidate) {
+    constexpr double kClearly = 1.05;
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < shown.size(); ++i)
+        if (isCandidate(kDirections[i - 1]) && (best == 0 || shown[i] > kClearly * shown[best]))
+            best = i;
+    return best;
+}
+
+// Whether two directions are within 60 degrees.
+bool isBeside(const Point& a, const Point& b) {
+    const auto dot = [](const Point& u, const Point& v) {
+        return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+    };
+    return dot(a, b) > 0.5 * std::sqrt(dot(a, a) * dot(b, b));
+}
+
 }  // namespace
 
 std::optional<Point> betterEye(const OccupancyGrid& grid, const OutsideView& view) {
@@ -146,22 +169,13 @@ std::optional<Point> betterEye(const OccupancyGrid& grid, const OutsideView& vie
     std::vector<std::vector<double>> views;
     for (const Point& eye : eyes) views.push_back(seenFrom(grid, cells, eye));
     const std::vector<double> shown = shownBy(views, cells.size());
-    // Of two that show the same the first: rounding doesn't decide.
-    constexpr double kClearly = 1.05;
-    std::size_t best = 0, straight = 0;
-    double most = 0, mostStraight = 0;
-    for (std::size_t i = 1; i < eyes.size(); ++i) {
-        if (kDirections[i - 1][1] == 0 && shown[i] > kClearly * mostStraight) {
-            mostStraight = shown[i];
-            straight = i;
-        }
-        if (!(shown[i] > kClearly * most)) continue;
-        most = shown[i];
-        best = i;
-    }
-    if (shown.front() >= kGoodEnough * most) return std::nullopt;
-    // As the front does, another side stays straight where it is nearly as good.
-    return eyes[mostStraight >= kGoodEnough * most ? straight : best];
+    const std::size_t best = mostShown(shown, [](const Point&) { return true; });
+    if (shown.front() >= kGoodEnough * shown[best]) return std::nullopt;
+    const Point& towards = kDirections[best - 1];
+    const std::size_t straight = mostShown(
+        shown, [&](const Point& other) { return other[1] == 0 && isBeside(towards, other); });
+    return eyes[straight != 0 && shown[straight] >= kGoodEnoughStraight * shown[best] ? straight
+                                                                                      : best];
 }
 
 namespace {

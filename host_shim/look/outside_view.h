@@ -19,7 +19,7 @@ struct OutsideView {
 // Where to stand instead, looking at the middle of the bounds, where from the front much less of
 // the scene's surface is seen than from elsewhere: a ground from the side, a box from straight
 // ahead, a room that is open above or at a side. Candidates are views from above to the right and
-// left and steeply, along x, and from behind. Nothing where the front shows at least two thirds as
+// left and steeply, along x, and from behind. Nothing where the front shows at least half as
 // much as the best of them.
 std::optional<std::array<double, 3>> betterEye(const OccupancyGrid& grid, const OutsideView& view);
 

@@ -142,16 +142,19 @@ void PluginScene::build(const Request& request, const ColourPipeline& colour,
     m_context.check(api.commitScene(m_handle), request.sceneName);
 }
 
-// Only what is used is built: libraries often hold more, with pictures that are not there.
-PluginScene::Materials PluginScene::buildMaterials(const SceneData& data,
-                                                   MaterialBuilder& materials) {
+std::vector<const MaterialData*> usedMaterials(const SceneData& data) {
     std::vector<bool> isUsed(data.materials.size());
     for (const InstanceData& instance : data.instances)
         for (const uint32_t material : data.materialsOf(instance)) isUsed[material] = true;
     std::vector<const MaterialData*> used;
     for (std::size_t i = 0; i < isUsed.size(); ++i)
         if (isUsed[i]) used.push_back(&data.materials[i]);
-    materials.prepare(used);
+    return used;
+}
+
+PluginScene::Materials PluginScene::buildMaterials(const SceneData& data,
+                                                   MaterialBuilder& materials) {
+    materials.prepare(usedMaterials(data));
     Materials built(data.materials.size());
     for (const InstanceData& instance : data.instances) {
         throwIfInterrupted();

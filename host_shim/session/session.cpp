@@ -281,7 +281,7 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
 int Session::renderBuilt(const ColourPipeline& colour, const PluginScene& scene) {
     std::optional<DisplayTransform> display;
     if (wantsDisplay(m_options)) display = colour.displayTransform();
-    if (!m_options.explain && !m_options.photonsOnly) expose(scene, colour, display);
+    expose(scene, colour, display);
     Progress progress(m_options.progress, m_options.quiet, m_log);
     RenderRun run(scene, m_options, colourIdentity(colour), m_log, progress,
                   timesBuckets(m_options) ? &m_report.bucketTimes() : nullptr);

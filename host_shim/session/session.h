@@ -62,8 +62,15 @@ class Session {
     CameraPose frameScene(const SceneData& data);
     void buildLit(SceneData& data, const CameraPose& camera, const ColourPipeline& colour,
                   MaterialBuilder& materials, std::optional<PluginScene>& scene);
+    // A pilot of the scene with unasked alpha taken, where there is any; what it built is gone.
+    void meterWithAlpha(SceneData& data, const std::function<void()>& build,
+                        const ColourPipeline& colour, MaterialBuilder& materials,
+                        std::optional<PluginScene>& scene);
+    // Whether its own light shows what is seen; tells where it does but little of it.
+    bool isLit(const Picture& seen, const ColourPipeline& colour);
     const Picture& pilot(const PluginScene& scene, const ColourPipeline& colour);
     bool measuresExposure(const ColourPipeline& colour) const;
+    bool exposes() const;
     void expose(const PluginScene& scene, const ColourPipeline& colour,
                 std::optional<DisplayTransform>& display);
     void exposeAsParts(const std::string& notes, const ColourPipeline& colour,

@@ -275,39 +275,46 @@ TEST(OutsideView, allCornersAreInThePicture) {
     }
 }
 
-// Floor, ceiling and back wall, all of some thickness, and blocks between them: seen from the open
-// side, whichever that is.
-TEST(OutsideView, shelvesAreSeenFromTheirOpenSide) {
-    for (const std::size_t axis : {0u, 2u})
-        for (const double sign : {-1.0, 1.0}) {
-            if (axis == 2 && sign < 0) continue;  // still seen from above, behind
-            Maker maker;
-            // As of a shelf that is open to +z.
-            const auto box = [&](Point a, Point b) {
-                if (sign < 0) {
-                    std::swap(a[2], b[2]);
-                    a[2] = -a[2];
-                    b[2] = -b[2];
-                }
-                if (axis == 0) {
-                    std::swap(a[0], a[2]);
-                    std::swap(b[0], b[2]);
-                }
-                maker.box(a, b);
-            };
-            box({-25, -5.05, -12.5}, {25, -4.95, 12.5});
-            box({-25, 4.95, -12.5}, {25, 5.05, 12.5});
-            box({-25, -5, -12.55}, {25, 5, -12.45});
-            for (const double x : {-18.0, -6.0, 6.0, 18.0}) box({x - 1, -4, -1}, {x + 1, -2, 1});
-            const SceneData scene = maker.scene();
-            CameraOptions camera;
-            const CameraPose front = frameCamera(camera, scene.bounds, 4.0 / 3);
-            const auto eye = betterEye(OccupancyGrid(scene),
-                                       {front.eye, scene.bounds, front.verticalFov, 4.0 / 3});
-            const Point at = eye.value_or(front.eye);
-            EXPECT_GT(sign * at[axis], 12.5) << axis << sign;
-            EXPECT_NEAR(at[1], 0, 1) << axis << sign;
+// Floor, ceiling and back wall, all of some thickness, and blocks between them; or with sides and
+// boards as well. Open to +z, turned to one side or another.
+Maker shelf(std::size_t axis, double sign, bool isCase) {
+    Maker maker;
+    const auto box = [&](Point a, Point b) {
+        if (sign < 0) {
+            std::swap(a[2], b[2]);
+            a[2] = -a[2];
+            b[2] = -b[2];
         }
+        std::swap(a[axis], a[2]);
+        std::swap(b[axis], b[2]);
+        maker.box(a, b);
+    };
+    const double high = isCase ? 30 : 5;
+    box({-25, -high - 0.05, -12.5}, {25, -high + 0.05, 12.5});
+    box({-25, high - 0.05, -12.5}, {25, high + 0.05, 12.5});
+    box({-25, -high, -12.55}, {25, high, -12.45});
+    for (const double x : {-18.0, -6.0, 6.0, 18.0}) box({x - 1, -4, -1}, {x + 1, -2, 1});
+    for (const double y : {-10.0, 10.0})
+        if (isCase) box({-25, y - 0.05, -12.5}, {25, y + 0.05, 12.5});
+    for (const double x : {-25.0, 25.0})
+        if (isCase) box({x - 0.05, -high, -12.5}, {x + 0.05, high, 12.5});
+    return maker;
+}
+
+TEST(OutsideView, shelvesAreSeenFromTheirOpenSide) {
+    for (const bool isCase : {false, true})
+        for (const std::size_t axis : {0u, 1u, 2u})
+            for (const double sign : {-1.0, 1.0}) {
+                if (axis == 1 && sign < 0) continue;  // from below nothing is seen
+                const Maker maker = shelf(axis, sign, isCase);
+                const SceneData scene = maker.scene();
+                const CameraPose front = frameCamera({}, scene.bounds, 4.0 / 3);
+                const Point at = better(maker).value_or(front.eye);
+                EXPECT_GT(sign * at[axis], 12.5) << isCase << axis << sign;
+                if (axis != 1) {
+                    EXPECT_NEAR(at[1], 0, 1) << isCase << axis << sign;
+                }
+            }
 }
 
 }  // namespace
