@@ -47,6 +47,28 @@ std::vector<Cell> someCells(const OccupancyGrid& grid) {
     return some;
 }
 
+// Corners of the cells that anything is in, within the bounds.
+std::vector<Point> cornersOf(const OccupancyGrid& grid, const Bounds& bounds) {
+    std::vector<Point> corners;
+    const Cell& size = grid.size();
+    Cell cell{};
+    for (cell[2] = 0; cell[2] < size[2]; ++cell[2])
+        for (cell[1] = 0; cell[1] < size[1]; ++cell[1])
+            for (cell[0] = 0; cell[0] < size[0]; ++cell[0]) {
+                if (!grid.reaches(cell)) continue;
+                for (unsigned corner = 0; corner < 8; ++corner) {
+                    Point at = grid.middleOf(cell);
+                    for (std::size_t axis = 0; axis < 3; ++axis) {
+                        const double half = grid.cellSize() / 2;
+                        at[axis] = std::clamp(at[axis] + ((corner >> axis & 1) != 0 ? half : -half),
+                                              bounds.low[axis], bounds.high[axis]);
+                    }
+                    corners.push_back(at);
+                }
+            }
+    return corners;
+}
+
 // Whether nothing stands between a cell and what lies in this direction (of unit length).
 bool isFree(const OccupancyGrid& grid, const Cell& from, const Point& along) {
     const Point middle = grid.middleOf(from);
@@ -160,22 +182,25 @@ bool isBeside(const Point& a, const Point& b) {
 
 }  // namespace
 
-std::optional<Point> betterEye(const OccupancyGrid& grid, const OutsideView& view) {
+std::optional<ViewPoint> betterView(const OccupancyGrid& grid, const OutsideView& view) {
     if (!(grid.cellSize() > 0)) return std::nullopt;
     const std::vector<Cell> cells = someCells(grid);
+    if (cells.empty()) return std::nullopt;
+    // Judged from as far as all of the bounds would be in the picture.
     std::vector<Point> eyes{view.frontEye};
     for (const Point& direction : kDirections)
         eyes.push_back(eyeFrom(direction, view.bounds, view.verticalFov, view.aspect));
-    std::vector<std::vector<double>> views;
-    for (const Point& eye : eyes) views.push_back(seenFrom(grid, cells, eye));
-    const std::vector<double> shown = shownBy(views, cells.size());
+    std::vector<std::vector<double>> areas;
+    for (const Point& eye : eyes) areas.push_back(seenFrom(grid, cells, eye));
+    const std::vector<double> shown = shownBy(areas, cells.size());
     const std::size_t best = mostShown(shown, [](const Point&) { return true; });
     if (shown.front() >= kGoodEnough * shown[best]) return std::nullopt;
     const Point& towards = kDirections[best - 1];
     const std::size_t straight = mostShown(
         shown, [&](const Point& other) { return other[1] == 0 && isBeside(towards, other); });
-    return eyes[straight != 0 && shown[straight] >= kGoodEnoughStraight * shown[best] ? straight
-                                                                                      : best];
+    const bool isStraight = straight != 0 && shown[straight] >= kGoodEnoughStraight * shown[best];
+    return viewOf(cornersOf(grid, view.bounds), kDirections[(isStraight ? straight : best) - 1],
+                  view.verticalFov, view.aspect);
 }
 
 namespace {

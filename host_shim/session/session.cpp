@@ -217,6 +217,8 @@ void Session::buildScene(const ColourPipeline& colour, TemporaryFolder& folder,
     m_bounds = data.bounds;
     m_hasLight = data.hasLight();
     m_hasSky = data.sky.has_value();
+    m_hasBackground = m_hasSky || data.environment.has_value();
+    m_isFramed = !m_options.camera.eye && data.cameras.empty();
     if (camera.upWasReplaced) {
         const bool isOfFile = !m_options.camera.up && !data.cameras.empty();
         warn(Warning::kCamera,

@@ -122,6 +122,8 @@ class Session {
     Bounds m_bounds;                     // of the scene
     bool m_hasLight{};                   // of its own
     bool m_hasSky{};
+    bool m_hasBackground{};  // what is seen where the scene is not
+    bool m_isFramed{};       // nobody said where the camera stands
     bool m_hasCameraLight{};
     bool m_isIncomplete{};  // on purpose: what can't be seen yet is no fault
     // Statistics and report; not before it is known that they overwrite no input.

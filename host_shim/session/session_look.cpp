@@ -57,10 +57,10 @@ Exposure exposureOf(std::string_view note, bool mayBeMeasured) {
 }
 
 // From which side a scene is seen: "+x, +y, -z", in its own axes.
-std::string seenFrom(const std::array<double, 3>& eye, const Bounds& bounds, bool upIsZ) {
+std::string seenFrom(const ViewPoint& view, bool upIsZ) {
     constexpr double kNoticeable = 0.2;  // of the largest part
-    std::array<double, 3> away = bounds.centre();
-    for (std::size_t i = 0; i < 3; ++i) away[i] = eye[i] - away[i];
+    std::array<double, 3> away{};
+    for (std::size_t i = 0; i < 3; ++i) away[i] = view.eye[i] - view.lookAt[i];
     if (upIsZ) away = backToZUp(away);
     const double most = std::max({std::abs(away[0]), std::abs(away[1]), std::abs(away[2])});
     std::vector<std::string> sides;
@@ -100,9 +100,13 @@ CameraPose Session::frameScene(const SceneData& data) {
             "the scene is closed all round and seen from inside (--eye puts the camera "
             "elsewhere)");
     } else if (!camera.lookAt) {
-        camera.eye = betterEye(grid, {front.eye, bounds, front.verticalFov, aspect});
-        if (camera.eye || camera.fromNegativeZ)
-            m_log.info(seenFrom(camera.eye.value_or(front.eye), bounds, upIsZ));
+        const auto better = betterView(grid, {front.eye, bounds, front.verticalFov, aspect});
+        if (better) {
+            camera.eye = better->eye;
+            camera.lookAt = better->lookAt;
+        }
+        if (better || camera.fromNegativeZ)
+            m_log.info(seenFrom(better.value_or(ViewPoint{front.eye, front.lookAt}), upIsZ));
     }
     if (upIsZ) {
         camera.eye = backToZUp(camera.eye.value_or(front.eye));
@@ -121,8 +125,7 @@ void Session::buildLit(SceneData& data, const CameraPose& camera, const ColourPi
     const bool isAuto = m_options.cameraLight == CameraLight::kAuto;
     const bool needsLight = isAuto && !data.hasLight();
     // Who says where to stand may want to see that it is dark there.
-    const bool isPlaced = m_options.camera.eye || !data.cameras.empty();
-    const bool judges = isAuto && !needsLight && !isPlaced;
+    const bool judges = isAuto && !needsLight && m_isFramed;
     const auto build = [&] {
         phase("buildSceneSeconds", [&] {
             const InterruptWatch watch([&] { context.api().cancelBuilds(context.handle(), 1); });

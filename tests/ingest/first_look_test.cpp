@@ -78,7 +78,7 @@ class Maker {
     MeshData m_mesh;
 };
 
-void expectInside(const std::optional<RoomView>& view, const Point& low, const Point& high) {
+void expectInside(const std::optional<ViewPoint>& view, const Point& low, const Point& high) {
     ASSERT_TRUE(view.has_value());
     for (std::size_t axis = 0; axis < 3; ++axis) {
         EXPECT_GT(view->eye[axis], low[axis]) << axis;
@@ -88,7 +88,7 @@ void expectInside(const std::optional<RoomView>& view, const Point& low, const P
 }
 
 // Cosine between the view and a direction.
-double along(const RoomView& view, const Point& direction) {
+double along(const ViewPoint& view, const Point& direction) {
     double dot = 0, squared = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double d = view.lookAt[axis] - view.eye[axis];
@@ -183,7 +183,8 @@ std::optional<Point> better(const Maker& maker) {
     const SceneData scene = maker.scene();
     const double fov = frameCamera({}, scene.bounds, 4.0 / 3).verticalFov;
     const Point front = frameCamera({}, scene.bounds, 4.0 / 3).eye;
-    return betterEye(maker.grid(), {front, scene.bounds, fov, 4.0 / 3});
+    const auto view = betterView(maker.grid(), {front, scene.bounds, fov, 4.0 / 3});
+    return view ? std::optional(view->eye) : std::nullopt;
 }
 
 TEST(OutsideView, theFrontIsKeptWhereItShowsTheScene) {
@@ -273,6 +274,41 @@ TEST(OutsideView, allCornersAreInThePicture) {
         }
         EXPECT_NEAR(most, 1 / 1.05, 1e-9);
     }
+}
+
+// All points, and no more: left and right, or above and below, they reach the margin.
+TEST(OutsideView, allIsJustInThePicture) {
+    const std::array<Point, 5> points{
+        {{1e5, 0, -3}, {1e5 + 2, 5, 1}, {1e5 - 1, 0, 1}, {1e5, 4, 4}, {1e5 + 1, 1, 0}}};
+    for (const Point& direction : {Point{0.7, 0.5, -1}, Point{0, 0, 1}, Point{-1, 0, 0}})
+        for (const double aspect : {0.5, 1.0, 3.0}) {
+            const ViewPoint view = viewOf(points, direction, 0.7, aspect);
+            CameraOptions options;
+            options.eye = view.eye;
+            options.lookAt = view.lookAt;
+            const CameraPose pose = frameCamera(options, Bounds{}, aspect);
+            std::array<double, 2> low{2, 2}, high{-2, -2};
+            for (const Point& point : points) {
+                Point local{};
+                for (std::size_t row = 0; row < 3; ++row)
+                    for (std::size_t column = 0; column < 3; ++column)
+                        local[column] +=
+                            pose.transform[row * 4 + column] * (point[row] - pose.eye[row]);
+                ASSERT_LT(local[2], 0);
+                const double tangent = std::tan(0.35) * -local[2];
+                for (const std::size_t i : {0u, 1u}) {
+                    const double at = local[i] / tangent / (i == 0 ? aspect : 1);
+                    low[i] = std::min(low[i], at);
+                    high[i] = std::max(high[i], at);
+                }
+            }
+            const std::size_t tight = high[0] - low[0] > high[1] - low[1] ? 0 : 1;
+            EXPECT_NEAR(high[tight], 1 / 1.05, 1e-6) << aspect;
+            EXPECT_NEAR(low[tight], -1 / 1.05, 1e-6) << aspect;
+            EXPECT_LE(std::max(high[1 - tight], -low[1 - tight]), 1 / 1.05 + 1e-6) << aspect;
+        }
+    const std::array<Point, 1> single{{{1, 2, 3}}};
+    EXPECT_EQ(viewOf(single, {0, 0, 1}, 0.7, 1).lookAt, single[0]);
 }
 
 // Floor, ceiling and back wall, all of some thickness, and blocks between them; or with sides and

@@ -214,6 +214,20 @@ TEST_F(FirstLook, ABlackPictureSaysWhy) {
                   {"all of it lies behind the camera", "--look-at"});
     expectWarning(small("cube.obj", {"-o", "a.exr", "--eye", "0,0,9", "--look-at", "9,0,8"}),
                   {"the camera looks past it", "--look-at"});
+    // Of what is mostly empty that is told, but not who chose where to stand, nor where a sky is
+    // seen.
+    write("pole.obj", "v 0 0 0\nv 2 0 0\nv 2 9 0\nv 0 9 0\nf 1 2 3 4\n");
+    const std::string empty = "of the picture is empty";
+    expectWarning(small("pole.obj", {"-o", "a.exr"}), {empty, "--environment"});
+    for (const std::vector<std::string>& more : {std::vector<std::string>{"--eye", "0,4,12"},
+                                                 {"--sun", "30,40"},
+                                                 {"--crop", "0,0,16,12"}}) {
+        std::vector<std::string> arguments{"-o", "a.exr"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Outcome outcome = small("pole.obj", arguments);
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        EXPECT_EQ(outcome.err.find(empty), std::string::npos) << outcome.err;
+    }
     expectWarning(small("cube.obj", {"-o", "a.png", "--exposure", "-15"}),
                   {"a.png: nothing of the picture can be seen at an exposure of -15 stops",
                    "--exposure STOPS|auto"});
