@@ -22,9 +22,11 @@ constexpr double kLeastMeteredShare = 0.1;
 const double kLeastShown = 0.01 * std::exp2(-kMostExposureStops);
 
 struct Seen {
-    // Luminance of each covered pixel, but for those of surfaces that reflect nothing: no exposure
-    // shows these, and no light.
+    // Luminance of each covered pixel, but for those of surfaces that reflect next to nothing: no
+    // exposure that suits others shows these. Where there are no others, those that do reflect.
     std::vector<double> surfaces, lamps;
+    double black{};  // how many pixels are of surfaces that reflect nothing in any light
+    double all{};    // covered, but for lamps
 };
 
 Seen seen(const Picture& picture, const std::array<double, 3>& weights) {
@@ -42,14 +44,23 @@ Seen seen(const Picture& picture, const std::array<double, 3>& weights) {
         return std::isfinite(sum) ? std::max(sum, 0.0) : 0.0;
     };
     Seen result;
+    std::vector<double> dim;
     const Channel* alpha = picture.find("A");
     if (alpha == nullptr) return result;
     for (std::size_t i = 0; i < alpha->values.size(); ++i) {
         if (!(alpha->values[i] > 0.0f)) continue;
         const bool isLamp = luminance(kEmission, i) > 0;
-        if (!isLamp && knowsAlbedo && luminance(kAlbedo, i) < kBlack) continue;
-        (isLamp ? result.lamps : result.surfaces).push_back(luminance(kBeauty, i));
+        const double albedo = knowsAlbedo ? luminance(kAlbedo, i) : 1;
+        const bool isBlack = !isLamp && !(albedo > 0);
+        result.all += isLamp ? 0 : 1;
+        result.black += isBlack ? 1 : 0;
+        if (isBlack) continue;
+        (isLamp            ? result.lamps
+         : albedo < kBlack ? dim
+                           : result.surfaces)
+            .push_back(luminance(kBeauty, i));
     }
+    if (result.surfaces.empty()) result.surfaces = std::move(dim);
     return result;
 }
 
@@ -101,6 +112,11 @@ double litShare(const Picture& picture, const std::array<double, 3>& luminance) 
     const auto lit =
         std::ranges::count_if(all.surfaces, [](double value) { return value >= kLeastShown; });
     return static_cast<double>(lit) / static_cast<double>(all.surfaces.size());
+}
+
+double blackShare(const Picture& picture, const std::array<double, 3>& luminance) {
+    const Seen all = seen(picture, luminance);
+    return all.all > 0 ? all.black / all.all : 0;
 }
 
 }  // namespace pm::host

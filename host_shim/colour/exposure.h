@@ -25,9 +25,10 @@ std::string exposureText(const Exposure& exposure);
 // What a camera's automatic exposure would take for a scene-linear picture (R, G, B, A and
 // emission.R ...): its log-average luminance becomes a middle grey of 0.18, unless that made more
 // than one metered pixel in fifty brighter than 2. Metered is what is covered, shows no lamp and,
-// where the picture has albedo.R ..., reflects anything; or, where that is less than a tenth of
-// this and of the lamps, both. Rounded to 1/100, so that the value as it is printed gives the same
-// picture. 0 where nothing metered has light. luminance: weights of R, G and B.
+// where the picture has albedo.R ..., reflects 1e-4 or more (any, where nothing does); or, where
+// that is less than a tenth of this and of the lamps, both. Rounded to 1/100, so that the value as
+// it is printed gives the same picture. 0 where nothing metered has light. luminance: weights of R,
+// G and B.
 double measuredExposureStops(const Picture& picture, const std::array<double, 3>& luminance);
 
 // How much of what is covered and shows no lamp, nor reflects nothing, has light that some exposure
@@ -38,5 +39,9 @@ double litShare(const Picture& picture, const std::array<double, 3>& luminance);
 // code 8 of 255 as sRGB) at the exposure that is measured, in [0,1]; 0 where nothing is covered but
 // by lamps.
 double darkShare(const Picture& picture, const std::array<double, 3>& luminance);
+
+// How much of what is covered and shows no lamp reflects nothing at all, as albedo.R ... say, in
+// [0,1].
+double blackShare(const Picture& picture, const std::array<double, 3>& luminance);
 
 }  // namespace pm::host

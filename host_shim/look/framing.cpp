@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "host_shim/formats/face_normal.h"
@@ -114,6 +115,45 @@ std::array<double, 3> eyeFrom(const std::array<double, 3>& direction, const Boun
     }
     if (!(distance > 0)) distance = 1;
     return {centre[0] + distance * z[0], centre[1] + distance * z[1], centre[2] + distance * z[2]};
+}
+
+// A point is in the picture where |x of it - x of the eye| is at most the tangent times its depth;
+// so of all points the largest and the smallest of x plus and minus that decide, and y likewise.
+ViewPoint viewOf(std::span<const Point> points, const Point& direction, double verticalFov,
+                 double aspect) {
+    const Point z = unit(direction);
+    const Point x = unit(cross({0, 1, 0}, z));
+    const Point y = cross(z, x);
+    const double vertical = std::tan(verticalFov / 2) / kMargin;
+    // Relative to the first, which costs no digits far from the origin.
+    const Point& origin = points.front();
+    double nearest = -std::numeric_limits<double>::infinity(), farthest = -nearest;
+    double back = nearest;  // of the eye along z
+    std::array<double, 2> middle{};
+    for (const std::size_t side : {0u, 1u}) {
+        const Point& across = side == 0 ? x : y;
+        const double tangent = side == 0 ? vertical * aspect : vertical;
+        double high = -std::numeric_limits<double>::infinity(), low = high;
+        for (const Point& point : points) {
+            const Point at = minus(point, origin);
+            const double depth = dot(at, z);
+            nearest = std::max(nearest, depth);
+            farthest = std::min(farthest, depth);
+            high = std::max(high, tangent * depth + dot(at, across));
+            low = std::max(low, tangent * depth - dot(at, across));
+        }
+        middle[side] = (high - low) / 2;
+        back = std::max(back, (high + low) / 2 / tangent);
+    }
+    if (!(back > nearest)) back = nearest + 1;  // of a single point
+    const double target = farthest + (nearest - farthest) / 2;
+    ViewPoint view;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const double beside = origin[axis] + middle[0] * x[axis] + middle[1] * y[axis];
+        view.eye[axis] = beside + back * z[axis];
+        view.lookAt[axis] = beside + target * z[axis];
+    }
+    return view;
 }
 
 CameraPose frameCamera(const CameraOptions& options, const Bounds& bounds, double aspect) {

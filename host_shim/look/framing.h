@@ -4,6 +4,7 @@
 
 #include <array>
 #include <optional>
+#include <span>
 
 #include "host_shim/formats/scene_data.h"
 
@@ -55,5 +56,15 @@ std::optional<std::array<double, 3>> placeOf(const CameraData& camera);
 // all of their corners in the picture, with the same margin.
 std::array<double, 3> eyeFrom(const std::array<double, 3>& direction, const Bounds& bounds,
                               double verticalFov, double aspect);
+
+// Where a camera stands and what it looks at.
+struct ViewPoint {
+    std::array<double, 3> eye{}, lookAt{};
+};
+
+// The view along a direction (from what is seen to the eye; not along y; any length) that has all
+// of these points just in the picture, with the same margin. points: not empty.
+ViewPoint viewOf(std::span<const std::array<double, 3>> points,
+                 const std::array<double, 3>& direction, double verticalFov, double aspect);
 
 }  // namespace pm::host

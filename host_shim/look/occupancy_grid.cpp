@@ -64,6 +64,7 @@ struct OccupancyGrid::Splat {
     Point normal;        // of length twice the area
     double longest;
     bool emits;
+    bool isClear;  // light passes it
 };
 
 Point asIfYWereUp(const Point& place) {
@@ -144,20 +145,19 @@ void OccupancyGrid::add(const InstanceData& instance, const SceneData& scene,
     for (std::size_t face = 0; face < mesh.faceSizes.size(); ++face) {
         const MaterialData& material = scene.materials[materials[mesh.faceSlots[face]]];
         const std::size_t size = mesh.faceSizes[face];
-        if (!letsLightThrough(material)) {
-            const Point a = place(first);
-            Point b = place(first + 1);
-            for (std::size_t i = 2; i < size; ++i) {
-                const Point c = place(first + i);
-                Splat triangle{a, {}, {}, {}, longestSide(a, b, c), material.emits()};
-                for (std::size_t axis = 0; axis < 3; ++axis) {
-                    triangle.u[axis] = b[axis] - a[axis];
-                    triangle.v[axis] = c[axis] - a[axis];
-                }
-                triangle.normal = cross(triangle.u, triangle.v);
-                splat(triangle, budget);
-                b = c;
+        const bool isClear = letsLightThrough(material);
+        const Point a = place(first);
+        Point b = place(first + 1);
+        for (std::size_t i = 2; i < size; ++i) {
+            const Point c = place(first + i);
+            Splat triangle{a, {}, {}, {}, longestSide(a, b, c), material.emits(), isClear};
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                triangle.u[axis] = b[axis] - a[axis];
+                triangle.v[axis] = c[axis] - a[axis];
             }
+            triangle.normal = cross(triangle.u, triangle.v);
+            splat(triangle, budget);
+            b = c;
         }
         first += size;
     }
@@ -184,7 +184,8 @@ void OccupancyGrid::splat(const Splat& triangle, std::int64_t& budget) {
         for (std::size_t axis = 0; axis < 3; ++axis)
             cell[axis] = std::clamp(cell[axis], kMargin, m_size[axis] - 1 - kMargin);
         const std::size_t index = indexOf(cell);
-        m_holds[index] = 1;
+        m_holds[index] = std::max(m_holds[index], triangle.isClear ? kClear : kSurface);
+        if (triangle.isClear) return;
         for (std::size_t side = 0; side < kSides; ++side) m_areas[index][side] += areas[side];
         if (!triangle.emits) return;
         if (m_lamps.empty() || m_lamps.back().cell != cell) m_lamps.push_back({cell, {}});

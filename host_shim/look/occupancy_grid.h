@@ -46,7 +46,9 @@ class OccupancyGrid {
     Cell cellOf(const std::array<double, 3>& place) const;  // may lie outside
     std::array<double, 3> middleOf(const Cell& cell) const;
 
-    bool holds(const Cell& cell) const { return m_holds[indexOf(cell)] != 0; }
+    bool holds(const Cell& cell) const { return m_holds[indexOf(cell)] == kSurface; }
+    // Whether anything is in it, be it glass or a cut-out.
+    bool reaches(const Cell& cell) const { return m_holds[indexOf(cell)] != 0; }
     // Area of the surface in a cell, as it is seen from a side; of lamps alone the second.
     float areaSeenFrom(std::size_t side, const Cell& cell) const {
         return m_areas[indexOf(cell)][side];
@@ -58,6 +60,7 @@ class OccupancyGrid {
     const std::vector<Lamp>& lamps() const { return m_lamps; }
 
   private:
+    static constexpr std::uint8_t kClear = 1, kSurface = 2;
     struct Splat;
     void add(const InstanceData& instance, const SceneData& scene, std::int64_t& budget);
     void splat(const Splat& triangle, std::int64_t& budget);

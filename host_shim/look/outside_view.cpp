@@ -16,6 +16,9 @@ using Point = std::array<double, 3>;
 // The front stays where it shows this share of what the best view does: half, as its floor and
 // ceiling, seen along them, are hidden by their own cells.
 constexpr double kGoodEnough = 0.5;
+// Another side that is looked at straight stays where it shows this share: as no steep view shares
+// it, what the slanting ones beside it show counts for more than beside the front.
+constexpr double kGoodEnoughStraight = 0.4;
 // Of the cells that hold surface, so many are looked at.
 constexpr std::size_t kLookedAt = 4096;
 // What is seen from behind says less.
@@ -42,6 +45,28 @@ std::vector<Cell> someCells(const OccupancyGrid& grid) {
     std::vector<Cell> some;
     for (std::size_t i = 0; i < kLookedAt; ++i) some.push_back(all[i * all.size() / kLookedAt]);
     return some;
+}
+
+// Corners of the cells that anything is in, within the bounds.
+std::vector<Point> cornersOf(const OccupancyGrid& grid, const Bounds& bounds) {
+    std::vector<Point> corners;
+    const Cell& size = grid.size();
+    Cell cell{};
+    for (cell[2] = 0; cell[2] < size[2]; ++cell[2])
+        for (cell[1] = 0; cell[1] < size[1]; ++cell[1])
+            for (cell[0] = 0; cell[0] < size[0]; ++cell[0]) {
+                if (!grid.reaches(cell)) continue;
+                for (unsigned corner = 0; corner < 8; ++corner) {
+                    Point at = grid.middleOf(cell);
+                    for (std::size_t axis = 0; axis < 3; ++axis) {
+                        const double half = grid.cellSize() / 2;
+                        at[axis] = std::clamp(at[axis] + ((corner >> axis & 1) != 0 ? half : -half),
+                                              bounds.low[axis], bounds.high[axis]);
+                    }
+                    corners.push_back(at);
+                }
+            }
+    return corners;
 }
 
 // Whether nothing stands between a cell and what lies in this direction (of unit length).
@@ -135,33 +160,47 @@ std::vector<double> shownBy(const std::vector<std::vector<double>>& views, std::
     return sums;
 }
 
+// Of the views along some of kDirections the one that shows most; 0 where there is none. Of two
+// that show the same the first: rounding doesn't decide.
+template <typename IsCandidate>
+std::size_t mostShown(const std::vector<double>& shown, const IsCandidate& isCandidate) {
+    constexpr double kClearly = 1.05;
+    std::size_t best = 0;
+    for (std::size_t i = 1; i < shown.size(); ++i)
+        if (isCandidate(kDirections[i - 1]) && (best == 0 || shown[i] > kClearly * shown[best]))
+            best = i;
+    return best;
+}
+
+// Whether two directions are within 60 degrees.
+bool isBeside(const Point& a, const Point& b) {
+    const auto dot = [](const Point& u, const Point& v) {
+        return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+    };
+    return dot(a, b) > 0.5 * std::sqrt(dot(a, a) * dot(b, b));
+}
+
 }  // namespace
 
-std::optional<Point> betterEye(const OccupancyGrid& grid, const OutsideView& view) {
+std::optional<ViewPoint> betterView(const OccupancyGrid& grid, const OutsideView& view) {
     if (!(grid.cellSize() > 0)) return std::nullopt;
     const std::vector<Cell> cells = someCells(grid);
+    if (cells.empty()) return std::nullopt;
+    // Judged from as far as all of the bounds would be in the picture.
     std::vector<Point> eyes{view.frontEye};
     for (const Point& direction : kDirections)
         eyes.push_back(eyeFrom(direction, view.bounds, view.verticalFov, view.aspect));
-    std::vector<std::vector<double>> views;
-    for (const Point& eye : eyes) views.push_back(seenFrom(grid, cells, eye));
-    const std::vector<double> shown = shownBy(views, cells.size());
-    // Of two that show the same the first: rounding doesn't decide.
-    constexpr double kClearly = 1.05;
-    std::size_t best = 0, straight = 0;
-    double most = 0, mostStraight = 0;
-    for (std::size_t i = 1; i < eyes.size(); ++i) {
-        if (kDirections[i - 1][1] == 0 && shown[i] > kClearly * mostStraight) {
-            mostStraight = shown[i];
-            straight = i;
-        }
-        if (!(shown[i] > kClearly * most)) continue;
-        most = shown[i];
-        best = i;
-    }
-    if (shown.front() >= kGoodEnough * most) return std::nullopt;
-    // As the front does, another side stays straight where it is nearly as good.
-    return eyes[mostStraight >= kGoodEnough * most ? straight : best];
+    std::vector<std::vector<double>> areas;
+    for (const Point& eye : eyes) areas.push_back(seenFrom(grid, cells, eye));
+    const std::vector<double> shown = shownBy(areas, cells.size());
+    const std::size_t best = mostShown(shown, [](const Point&) { return true; });
+    if (shown.front() >= kGoodEnough * shown[best]) return std::nullopt;
+    const Point& towards = kDirections[best - 1];
+    const std::size_t straight = mostShown(
+        shown, [&](const Point& other) { return other[1] == 0 && isBeside(towards, other); });
+    const bool isStraight = straight != 0 && shown[straight] >= kGoodEnoughStraight * shown[best];
+    return viewOf(cornersOf(grid, view.bounds), kDirections[(isStraight ? straight : best) - 1],
+                  view.verticalFov, view.aspect);
 }
 
 namespace {

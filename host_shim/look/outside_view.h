@@ -5,6 +5,7 @@
 #include <array>
 #include <optional>
 
+#include "host_shim/look/framing.h"
 #include "host_shim/look/occupancy_grid.h"
 
 namespace pm::host {
@@ -16,12 +17,12 @@ struct OutsideView {
     double aspect{};       // width / height
 };
 
-// Where to stand instead, looking at the middle of the bounds, where from the front much less of
+// Where to stand instead, with all surface just in the picture, where from the front much less of
 // the scene's surface is seen than from elsewhere: a ground from the side, a box from straight
 // ahead, a room that is open above or at a side. Candidates are views from above to the right and
-// left and steeply, along x, and from behind. Nothing where the front shows at least two thirds as
+// left and steeply, along x, and from behind. Nothing where the front shows at least half as
 // much as the best of them.
-std::optional<std::array<double, 3>> betterEye(const OccupancyGrid& grid, const OutsideView& view);
+std::optional<ViewPoint> betterView(const OccupancyGrid& grid, const OutsideView& view);
 
 // Whether the scene stands on the plane z = 0 as on a ground: of its lowest layers of cells the one
 // along z has several times as much level surface as the one along y, and much rises above it.

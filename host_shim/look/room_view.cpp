@@ -321,7 +321,7 @@ bool isClosedAround(const OccupancyGrid& grid, const std::array<double, 3>& plac
     return open <= 1;
 }
 
-std::optional<RoomView> viewOfRoom(const OccupancyGrid& grid) {
+std::optional<ViewPoint> viewOfRoom(const OccupancyGrid& grid) {
     const Space space = largestSpaceWithin(grid);
     if (space.cells == 0 || !isRoom(grid, space)) return std::nullopt;
     const std::vector<std::int32_t> distance = distances(grid, space);
@@ -343,7 +343,7 @@ std::optional<RoomView> viewOfRoom(const OccupancyGrid& grid) {
         best = along;
         behind = free;
     }
-    RoomView view;
+    ViewPoint view;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         view.eye[axis] = place[axis] - behind * grid.cellSize() * best[axis];
         view.lookAt[axis] = view.eye[axis] + longest * grid.cellSize() * best[axis];

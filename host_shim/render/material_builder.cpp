@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <initializer_list>
+#include <iterator>
 #include <limits>
 #include <utility>
 
@@ -226,6 +227,20 @@ void MaterialBuilder::tellNormals(const TextureUse& use, const std::string& of) 
            fmt::format("{}: {}: {} looks like a normal map and is taken as heights; in MTL a "
                        "normal map is called norm, and --bump-is-normal takes bump maps as such",
                        use.place, of, file));
+}
+
+std::vector<const MaterialData*> MaterialBuilder::cutUnasked(
+    const std::vector<const MaterialData*>& materials) {
+    std::vector<const MaterialData*> cut;
+    std::ranges::copy_if(materials, std::back_inserter(cut), [](const MaterialData* material) {
+        return material->diffuseTexture && !material->opacityTexture;
+    });
+    prepare(cut);
+    std::erase_if(cut, [this](const MaterialData* material) {
+        return firstWith(&TextureFacts::isCutOut, *material->diffuseTexture, TextureKind::kColour)
+            .empty();
+    });
+    return cut;
 }
 
 // A picture that says where it is to be seen through, of a material that doesn't ask for that.

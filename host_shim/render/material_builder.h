@@ -35,6 +35,9 @@ class MaterialBuilder {
     // What shines by a picture that can't be read gives no light: that is told and the lamp put
     // out.
     void putOutLights(SceneData& data);
+    // Those that have a diffuse picture whose alpha is the outline of something, and nothing that
+    // cuts them. Prepares these pictures.
+    std::vector<const MaterialData*> cutUnasked(const std::vector<const MaterialData*>& materials);
     // A picture that can't be had is warned of; what stands for it is taken. Errors: those of the
     // plugin; HostError kMemory for one that takes more memory than it may.
     PmrMaterial build(const MaterialData& material);

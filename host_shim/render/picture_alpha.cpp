@@ -10,7 +10,7 @@
 
 namespace pm::host {
 
-void takeAlphaOfPictures(std::vector<MaterialData>& materials) {
+void takeAlphaOfPictures(std::span<MaterialData> materials) {
     std::map<std::string, bool> known;  // many materials share a picture
     const auto isCut = [&](const std::string& file) {
         const auto [at, isNew] = known.try_emplace(file);

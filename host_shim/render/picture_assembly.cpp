@@ -170,9 +170,10 @@ bool isBlackThoughHit(const Picture& picture) {
     return covered > 0 && 100 * lit <= covered;
 }
 
-bool showsNothing(const Picture& picture) {
+double emptyShare(const Picture& picture) {
     const std::vector<float>& coverage = valuesOf(picture, "A");
-    return !coverage.empty() && std::ranges::none_of(coverage, [](float a) { return a > 0.0f; });
+    const auto empty = std::ranges::count_if(coverage, [](float a) { return !(a > 0.0f); });
+    return coverage.empty() ? 0 : static_cast<double>(empty) / static_cast<double>(coverage.size());
 }
 
 }  // namespace pm::host

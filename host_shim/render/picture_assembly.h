@@ -34,7 +34,7 @@ const std::string* renderingSpaceOf(const Picture& picture);
 // Whether something is covered (A above 0) and, but for one pixel in a hundred, exactly black.
 bool isBlackThoughHit(const Picture& picture);
 
-// Whether nothing is covered: A is there, and 0 everywhere.
-bool showsNothing(const Picture& picture);
+// How much of the picture nothing covers, in [0,1]; 0 where there is no A.
+double emptyShare(const Picture& picture);
 
 }  // namespace pm::host

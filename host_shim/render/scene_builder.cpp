@@ -142,31 +142,33 @@ void PluginScene::build(const Request& request, const ColourPipeline& colour,
     m_context.check(api.commitScene(m_handle), request.sceneName);
 }
 
-// Only what is used is built: libraries often hold more, with pictures that are not there.
-PluginScene::Materials PluginScene::buildMaterials(const SceneData& data,
-                                                   MaterialBuilder& materials) {
-    // Each after the parts that it names.
-    std::vector<std::uint32_t> order;
+std::vector<const MaterialData*> usedMaterials(const SceneData& data) {
+    std::vector<const MaterialData*> order;
     std::vector<bool> isTaken(data.materials.size());
-    const auto take = [&](const auto& self, std::uint32_t index) -> void {
+    const auto take = [&](const auto& self, std::size_t index) -> void {
         if (isTaken[index]) return;
         isTaken[index] = true;  // one that names itself is refused where it is built
         for (const std::string& name : data.materials[index].partNames()) {
             const auto part = std::ranges::find(data.materials, name, &MaterialData::name);
             if (part != data.materials.end())
-                self(self, static_cast<std::uint32_t>(part - data.materials.begin()));
+                self(self, static_cast<std::size_t>(part - data.materials.begin()));
         }
-        order.push_back(index);
+        order.push_back(&data.materials[index]);
     };
     for (const InstanceData& instance : data.instances)
         for (const uint32_t material : data.materialsOf(instance)) take(take, material);
-    std::vector<const MaterialData*> used;
-    for (const std::uint32_t index : order) used.push_back(&data.materials[index]);
+    return order;
+}
+
+PluginScene::Materials PluginScene::buildMaterials(const SceneData& data,
+                                                   MaterialBuilder& materials) {
+    const std::vector<const MaterialData*> used = usedMaterials(data);
     materials.prepare(used);
     Materials built(data.materials.size());
-    for (const std::uint32_t index : order) {
+    for (const MaterialData* const material : used) {
         throwIfInterrupted();
-        built[index] = materials.build(data.materials[index]);
+        built[static_cast<std::size_t>(material - data.materials.data())] =
+            materials.build(*material);
     }
     return built;
 }

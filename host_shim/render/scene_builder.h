@@ -11,6 +11,9 @@
 
 namespace pm::host {
 
+// Those that an instance has: libraries often hold more, with pictures that are not there.
+std::vector<const MaterialData*> usedMaterials(const SceneData& data);
+
 // A scene of the plugin; released with this.
 class PluginScene {
   public:

@@ -217,6 +217,8 @@ void Session::buildScene(const ColourPipeline& colour, TemporaryFolder& folder,
     m_bounds = data.bounds;
     m_hasLight = data.hasLight();
     m_hasSky = data.sky.has_value();
+    m_hasBackground = m_hasSky || data.environment.has_value();
+    m_isFramed = !m_options.camera.eye && data.cameras.empty();
     if (camera.upWasReplaced) {
         const bool isOfFile = !m_options.camera.up && !data.cameras.empty();
         warn(Warning::kCamera,
@@ -281,7 +283,7 @@ int Session::renderScene(const ColourPipeline& colour, const PluginContext& cont
 int Session::renderBuilt(const ColourPipeline& colour, const PluginScene& scene) {
     std::optional<DisplayTransform> display;
     if (wantsDisplay(m_options)) display = colour.displayTransform();
-    if (!m_options.explain && !m_options.photonsOnly) expose(scene, colour, display);
+    expose(scene, colour, display);
     Progress progress(m_options.progress, m_options.quiet, m_log);
     RenderRun run(scene, m_options, colourIdentity(colour), m_log, progress,
                   timesBuckets(m_options) ? &m_report.bucketTimes() : nullptr);

@@ -62,8 +62,15 @@ class Session {
     CameraPose frameScene(const SceneData& data);
     void buildLit(SceneData& data, const CameraPose& camera, const ColourPipeline& colour,
                   MaterialBuilder& materials, std::optional<PluginScene>& scene);
+    // A pilot of the scene with unasked alpha taken, where there is any; what it built is gone.
+    void meterWithAlpha(SceneData& data, const std::function<void()>& build,
+                        const ColourPipeline& colour, MaterialBuilder& materials,
+                        std::optional<PluginScene>& scene);
+    // Whether its own light shows what is seen; tells where it does but little of it.
+    bool isLit(const Picture& seen, const ColourPipeline& colour);
     const Picture& pilot(const PluginScene& scene, const ColourPipeline& colour);
     bool measuresExposure(const ColourPipeline& colour) const;
+    bool exposes() const;
     void expose(const PluginScene& scene, const ColourPipeline& colour,
                 std::optional<DisplayTransform>& display);
     void exposeAsParts(const std::string& notes, const ColourPipeline& colour,
@@ -115,6 +122,8 @@ class Session {
     Bounds m_bounds;                     // of the scene
     bool m_hasLight{};                   // of its own
     bool m_hasSky{};
+    bool m_hasBackground{};  // what is seen where the scene is not
+    bool m_isFramed{};       // nobody said where the camera stands
     bool m_hasCameraLight{};
     bool m_isIncomplete{};  // on purpose: what can't be seen yet is no fault
     // Statistics and report; not before it is known that they overwrite no input.

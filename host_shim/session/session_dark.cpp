@@ -42,7 +42,15 @@ float brightest(const Picture& picture) {
 void Session::lookForLight(const Picture& picture) {
     if (isBlackThoughHit(picture)) warnOfBlack();
     // A crop may well be of the background.
-    if (m_options.crop || !m_options.merge.empty() || !showsNothing(picture)) return;
+    if (m_options.crop || !m_options.merge.empty()) return;
+    constexpr double kMostlyEmpty = 0.6;
+    const double empty = emptyShare(picture);
+    if (empty > kMostlyEmpty && empty < 1 && m_isFramed && !m_hasBackground)
+        m_log.info(fmt::format(
+            "{:.0f} % of the picture is empty: the scene is not there, nor a sky (--sun "
+            "and --environment would be seen; --eye and --fov go closer)",
+            100 * empty));
+    if (empty < 1) return;
     warn(
         Warning::kBlackPicture,
         fmt::format("nothing of the scene is in the picture: {}; see --eye and --look-at",

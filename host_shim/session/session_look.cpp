@@ -3,16 +3,20 @@
 // What a Session does so that a first picture shows something: where the camera stands, a light to
 // see by, and exposure.
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "host_shim/cli/option_values.h"
 #include "host_shim/look/outside_view.h"
 #include "host_shim/look/room_view.h"
 #include "host_shim/process/interrupt.h"
+#include "host_shim/render/picture_alpha.h"
 #include "host_shim/render/pilot.h"
 #include "host_shim/session/read_rules.h"
 #include "host_shim/session/session.h"
+#include "host_shim/session/session_files.h"
 
 namespace pm::host {
 namespace {
@@ -52,6 +56,23 @@ Exposure exposureOf(std::string_view note, bool mayBeMeasured) {
             isMeasured ? Exposure::From::kMeasured : Exposure::From::kGiven};
 }
 
+// From which side a scene is seen: "+x, +y, -z", in its own axes.
+std::string seenFrom(const ViewPoint& view, bool upIsZ) {
+    constexpr double kNoticeable = 0.2;  // of the largest part
+    std::array<double, 3> away{};
+    for (std::size_t i = 0; i < 3; ++i) away[i] = view.eye[i] - view.lookAt[i];
+    if (upIsZ) away = backToZUp(away);
+    const double most = std::max({std::abs(away[0]), std::abs(away[1]), std::abs(away[2])});
+    std::vector<std::string> sides;
+    for (std::size_t i = 0; i < 3; ++i)
+        if (std::abs(away[i]) > kNoticeable * most)
+            sides.push_back(fmt::format("{}{}", away[i] < 0 ? '-' : '+', "xyz"[i]));
+    return fmt::format(
+        "the scene is seen from {}, where it shows more than from the front (--eye puts the camera "
+        "elsewhere)",
+        fmt::join(sides, ", "));
+}
+
 }  // namespace
 
 // What the options leave out is found from the scene.
@@ -79,7 +100,13 @@ CameraPose Session::frameScene(const SceneData& data) {
             "the scene is closed all round and seen from inside (--eye puts the camera "
             "elsewhere)");
     } else if (!camera.lookAt) {
-        camera.eye = betterEye(grid, {front.eye, bounds, front.verticalFov, aspect});
+        const auto better = betterView(grid, {front.eye, bounds, front.verticalFov, aspect});
+        if (better) {
+            camera.eye = better->eye;
+            camera.lookAt = better->lookAt;
+        }
+        if (better || camera.fromNegativeZ)
+            m_log.info(seenFrom(better.value_or(ViewPoint{front.eye, front.lookAt}), upIsZ));
     }
     if (upIsZ) {
         camera.eye = backToZUp(camera.eye.value_or(front.eye));
@@ -94,46 +121,75 @@ void Session::buildLit(SceneData& data, const CameraPose& camera, const ColourPi
                        MaterialBuilder& materials, std::optional<PluginScene>& scene) {
     const PluginContext& context = scene->context();
     const std::string name = m_options.scene.string();
-    const auto build = [&](bool withCameraLight) {
-        m_hasCameraLight = withCameraLight;
-        if (withCameraLight) data.lights.push_back(cameraLight(camera, data.bounds));
+    materials.putOutLights(data);
+    const bool isAuto = m_options.cameraLight == CameraLight::kAuto;
+    const bool needsLight = isAuto && !data.hasLight();
+    // Who says where to stand may want to see that it is dark there.
+    const bool judges = isAuto && !needsLight && m_isFramed;
+    const auto build = [&] {
         phase("buildSceneSeconds", [&] {
             const InterruptWatch watch([&] { context.api().cancelBuilds(context.handle(), 1); });
             scene->build({data, name, m_options.subdivide, camera}, colour, materials);
         });
     };
-    materials.putOutLights(data);
-    const bool isAuto = m_options.cameraLight == CameraLight::kAuto;
-    const bool needsLight = isAuto && !data.hasLight();
-    build(needsLight || m_options.cameraLight == CameraLight::kOn);
+    const auto buildWith = [&](bool withCameraLight) {
+        m_hasCameraLight = withCameraLight;
+        if (withCameraLight) data.lights.push_back(cameraLight(camera, data.bounds));
+        if (judges || (exposes() && measuresExposure(colour)))
+            meterWithAlpha(data, build, colour, materials, scene);
+        build();
+    };
+    buildWith(needsLight || m_options.cameraLight == CameraLight::kOn);
     if (needsLight)
         warn(Warning::kDefaultLight,
              name + ": no light (no material with Ke); a point light at the camera is added");
-    // Who says where to stand may want to see that it is dark there.
-    const bool isPlaced = m_options.camera.eye || !data.cameras.empty();
-    if (!isAuto || needsLight || isPlaced) return;
-    const Picture& seen = pilot(*scene, colour);
+    if (!judges || isLit(pilot(*scene, colour), colour)) return;
+    m_pilot.reset();
+    scene.emplace(context, m_log);
+    buildWith(true);
+}
+
+void Session::meterWithAlpha(SceneData& data, const std::function<void()>& build,
+                             const ColourPipeline& colour, MaterialBuilder& materials,
+                             std::optional<PluginScene>& scene) {
+    const std::vector<const MaterialData*> cut = materials.cutUnasked(usedMaterials(data));
+    if (cut.empty()) return;
+    std::vector<MaterialData> asShown = data.materials;
+    for (MaterialData& material : data.materials)
+        if (std::ranges::find(cut, &material) != cut.end()) takeAlphaOfPictures({&material, 1});
+    build();
+    pilot(*scene, colour);
+    const PluginContext& context = scene->context();
+    scene.emplace(context, m_log);
+    data.materials = std::move(asShown);
+}
+
+bool Session::isLit(const Picture& seen, const ColourPipeline& colour) {
+    const std::string name = m_options.scene.string();
     const auto& weights = colour.luminanceWeights();
-    const bool isLit = litShare(seen, weights) > kShowsNothing;
-    const double dark = darkShare(seen, weights);
-    if (isLit && dark <= kMisses) {
+    const bool reaches = litShare(seen, weights) > kShowsNothing;
+    const double dark = darkShare(seen, weights), black = blackShare(seen, weights);
+    if (black > kMostlyDark)
+        warn(Warning::kDefaultLight,
+             fmt::format("{}: {:.0f} % of what is seen reflects nothing, and is black in any light "
+                         "(see Kd and Ks of its materials; --aov albedo shows what they reflect)",
+                         name, 100 * black));
+    if (reaches && dark <= kMisses) {
         if (dark > kMostlyDark)
             warn(Warning::kDefaultLight,
                  fmt::format("{}: {:.0f} % of what is seen gets next to none of its own light; "
                              "--camera-light on adds a light at the camera",
                              name, 100 * dark));
-        return;
+        return true;
     }
     warn(Warning::kDefaultLight,
          name +
-             (isLit ? fmt::format(": its own light misses {:.0f} % of what the camera sees",
-                                  100 * dark)
-                    : std::string(": its own light reaches nothing that the camera sees: lamps "
-                                  "are closed away, too small, or shine to the other side")) +
+             (reaches ? fmt::format(": its own light misses {:.0f} % of what the camera sees",
+                                    100 * dark)
+                      : std::string(": its own light reaches nothing that the camera sees: lamps "
+                                    "are closed away, too small, or shine to the other side")) +
              "; a point light at the camera is added (--camera-light off leaves it out)");
-    m_pilot.reset();
-    scene.emplace(context, m_log);
-    build(true);
+    return false;
 }
 
 // Made once.
@@ -151,6 +207,12 @@ bool Session::measuresExposure(const ColourPipeline& colour) const {
            m_options.reference.empty() && colour.hasBuiltInConfig();
 }
 
+// Whether anything is written that is shown at an exposure.
+bool Session::exposes() const {
+    return !m_options.explain && !m_options.photonsOnly &&
+           (wantsDisplay(m_options) || !m_options.part.empty());
+}
+
 void Session::tellExposure() {
     m_statistics.exposureStops = m_exposure.stops;
     if (m_exposure.from == Exposure::From::kMeasured)
@@ -162,7 +224,7 @@ void Session::tellExposure() {
 
 void Session::expose(const PluginScene& scene, const ColourPipeline& colour,
                      std::optional<DisplayTransform>& display) {
-    if (!display && m_options.part.empty()) return;
+    if (!exposes()) return;
     if (measuresExposure(colour)) {
         m_exposure = {measuredExposureStops(pilot(scene, colour), colour.luminanceWeights()),
                       Exposure::From::kMeasured};

@@ -214,8 +214,9 @@ void PictureRows::lookForHoles(const T* texels, std::size_t count, std::size_t s
     constexpr double kOpaque = 0.9;
     const double full =
         std::numeric_limits<T>::is_integer ? static_cast<double>(std::numeric_limits<T>::max()) : 1;
-    for (std::size_t i = 0; i < count && !m_hasHoles; ++i)
-        m_hasHoles = static_cast<double>(texels[i * stride]) < kOpaque * full;
+    for (std::size_t i = 0; i < count && !isCutOut(); ++i)
+        (static_cast<double>(texels[i * stride]) < kOpaque * full ? m_hasHoles : m_hasOpaque) =
+            true;
 }
 
 template <typename T>

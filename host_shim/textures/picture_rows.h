@@ -59,6 +59,8 @@ class PictureRows {
     // Of colours that were read: the picture has an alpha, and it says that some are to be seen
     // through.
     bool hasHoles() const { return m_hasHoles; }
+    // And of others that they are not: it is the outline of something.
+    bool isCutOut() const { return m_hasHoles && m_hasOpaque; }
 
   private:
     template <typename T>
@@ -86,7 +88,7 @@ class PictureRows {
     std::vector<int> m_picks;              // of these
     bool m_divides{};                      // the last pick is alpha
     int m_alpha{-1};                       // of what is read, where it is looked at
-    bool m_hasHoles{};
+    bool m_hasHoles{}, m_hasOpaque{};
     int m_nextRow{};
     int m_bandRow{}, m_bandRows{};  // rows of the data window that are in memory
     std::vector<std::byte> m_band;

@@ -212,8 +212,9 @@ TextureFacts TextureBake::bake(CheckedFile& file, const std::filesystem::path& p
     writer.finish(goOn);
     bad.notFinite += m_rows.badTexels().notFinite;
     bad.negative += m_rows.badTexels().negative;
-    return {m_rows.width(),       m_rows.height(),        channels,         writer.texelHash(), bad,
-            m_rows.layout().note, m_rows.isLikeNormals(), m_rows.hasHoles()};
+    return {
+        m_rows.width(),       m_rows.height(),        channels,          writer.texelHash(), bad,
+        m_rows.layout().note, m_rows.isLikeNormals(), m_rows.hasHoles(), m_rows.isCutOut()};
 }
 
 }  // namespace pm::host

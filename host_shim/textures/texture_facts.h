@@ -31,6 +31,7 @@ struct TextureFacts {
     std::string note;                          // what was chosen of the picture; may be empty
     bool isLikeNormals{};  // colours, of which a number was made, of a normal map
     bool hasHoles{};       // colours, of a picture whose alpha has some seen through
+    bool isCutOut{};       // and some not
 };
 
 }  // namespace pm::host

@@ -78,6 +78,7 @@ Record toRecord(const TextureFacts& facts, const fs::path& file) {
     record.set("note", facts.note);
     record.setNumber("normals", facts.isLikeNormals ? 1 : 0);
     record.setNumber("holes", facts.hasHoles ? 1 : 0);
+    record.setNumber("cutOut", facts.isCutOut ? 1 : 0);
     return record;
 }
 
@@ -95,6 +96,7 @@ TextureFacts toFacts(const Record& record) {
     facts.note = record.get("note");
     facts.isLikeNormals = record.number("normals") != 0;
     facts.hasHoles = record.number("holes") != 0;
+    facts.isCutOut = record.number("cutOut") != 0;
     return facts;
 }
 

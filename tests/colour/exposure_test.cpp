@@ -108,6 +108,24 @@ TEST(Exposure, blackSurfacesAreNotMetered) {
     EXPECT_EQ(litShare(picture, kThirds), 1);
 }
 
+// Where nothing reflects more, little is enough to be metered; nothing is not.
+TEST(Exposure, dimSurfacesAreMeteredAmongThemselves) {
+    const auto withAlbedo = [](std::vector<float> radiances, const std::vector<float>& albedo) {
+        Picture picture = greys(radiances);
+        for (const char* name : {"albedo.R", "albedo.G", "albedo.B"})
+            picture.channels.push_back({name, true, albedo});
+        return picture;
+    };
+    const Picture dim = withAlbedo({0.09f, 0.09f, 0.0f, 0.0f}, {1e-5f, 1e-5f, 0.0f, 0.0f});
+    EXPECT_DOUBLE_EQ(measuredExposureStops(dim, kThirds), 1);
+    EXPECT_DOUBLE_EQ(litShare(dim, kThirds), 1);
+    EXPECT_DOUBLE_EQ(blackShare(dim, kThirds), 0.5);
+    EXPECT_DOUBLE_EQ(litShare(withAlbedo({0.0f, 0.0f}, {1e-5f, 0.0f}), kThirds), 0);
+    EXPECT_DOUBLE_EQ(litShare(withAlbedo({0.0f, 0.0f}, {0.0f, 0.0f}), kThirds), 1);
+    EXPECT_DOUBLE_EQ(blackShare(greys({0.0f}), kThirds), 0) << "not known";
+    EXPECT_DOUBLE_EQ(blackShare(greys({}, {9.0f}), kThirds), 0);
+}
+
 TEST(Exposure, multipliesBeforeTheView) {
     for (const char* view : {"", "untone-mapped"}) {
         const ColourPipeline colour({.view = view});

@@ -78,7 +78,7 @@ class Maker {
     MeshData m_mesh;
 };
 
-void expectInside(const std::optional<RoomView>& view, const Point& low, const Point& high) {
+void expectInside(const std::optional<ViewPoint>& view, const Point& low, const Point& high) {
     ASSERT_TRUE(view.has_value());
     for (std::size_t axis = 0; axis < 3; ++axis) {
         EXPECT_GT(view->eye[axis], low[axis]) << axis;
@@ -88,7 +88,7 @@ void expectInside(const std::optional<RoomView>& view, const Point& low, const P
 }
 
 // Cosine between the view and a direction.
-double along(const RoomView& view, const Point& direction) {
+double along(const ViewPoint& view, const Point& direction) {
     double dot = 0, squared = 0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
         const double d = view.lookAt[axis] - view.eye[axis];
@@ -183,7 +183,8 @@ std::optional<Point> better(const Maker& maker) {
     const SceneData scene = maker.scene();
     const double fov = frameCamera({}, scene.bounds, 4.0 / 3).verticalFov;
     const Point front = frameCamera({}, scene.bounds, 4.0 / 3).eye;
-    return betterEye(maker.grid(), {front, scene.bounds, fov, 4.0 / 3});
+    const auto view = betterView(maker.grid(), {front, scene.bounds, fov, 4.0 / 3});
+    return view ? std::optional(view->eye) : std::nullopt;
 }
 
 TEST(OutsideView, theFrontIsKeptWhereItShowsTheScene) {
@@ -275,39 +276,81 @@ TEST(OutsideView, allCornersAreInThePicture) {
     }
 }
 
-// Floor, ceiling and back wall, all of some thickness, and blocks between them: seen from the open
-// side, whichever that is.
-TEST(OutsideView, shelvesAreSeenFromTheirOpenSide) {
-    for (const std::size_t axis : {0u, 2u})
-        for (const double sign : {-1.0, 1.0}) {
-            if (axis == 2 && sign < 0) continue;  // still seen from above, behind
-            Maker maker;
-            // As of a shelf that is open to +z.
-            const auto box = [&](Point a, Point b) {
-                if (sign < 0) {
-                    std::swap(a[2], b[2]);
-                    a[2] = -a[2];
-                    b[2] = -b[2];
+// All points, and no more: left and right, or above and below, they reach the margin.
+TEST(OutsideView, allIsJustInThePicture) {
+    const std::array<Point, 5> points{
+        {{1e5, 0, -3}, {1e5 + 2, 5, 1}, {1e5 - 1, 0, 1}, {1e5, 4, 4}, {1e5 + 1, 1, 0}}};
+    for (const Point& direction : {Point{0.7, 0.5, -1}, Point{0, 0, 1}, Point{-1, 0, 0}})
+        for (const double aspect : {0.5, 1.0, 3.0}) {
+            const ViewPoint view = viewOf(points, direction, 0.7, aspect);
+            CameraOptions options;
+            options.eye = view.eye;
+            options.lookAt = view.lookAt;
+            const CameraPose pose = frameCamera(options, Bounds{}, aspect);
+            std::array<double, 2> low{2, 2}, high{-2, -2};
+            for (const Point& point : points) {
+                Point local{};
+                for (std::size_t row = 0; row < 3; ++row)
+                    for (std::size_t column = 0; column < 3; ++column)
+                        local[column] +=
+                            pose.transform[row * 4 + column] * (point[row] - pose.eye[row]);
+                ASSERT_LT(local[2], 0);
+                const double tangent = std::tan(0.35) * -local[2];
+                for (const std::size_t i : {0u, 1u}) {
+                    const double at = local[i] / tangent / (i == 0 ? aspect : 1);
+                    low[i] = std::min(low[i], at);
+                    high[i] = std::max(high[i], at);
                 }
-                if (axis == 0) {
-                    std::swap(a[0], a[2]);
-                    std::swap(b[0], b[2]);
-                }
-                maker.box(a, b);
-            };
-            box({-25, -5.05, -12.5}, {25, -4.95, 12.5});
-            box({-25, 4.95, -12.5}, {25, 5.05, 12.5});
-            box({-25, -5, -12.55}, {25, 5, -12.45});
-            for (const double x : {-18.0, -6.0, 6.0, 18.0}) box({x - 1, -4, -1}, {x + 1, -2, 1});
-            const SceneData scene = maker.scene();
-            CameraOptions camera;
-            const CameraPose front = frameCamera(camera, scene.bounds, 4.0 / 3);
-            const auto eye = betterEye(OccupancyGrid(scene),
-                                       {front.eye, scene.bounds, front.verticalFov, 4.0 / 3});
-            const Point at = eye.value_or(front.eye);
-            EXPECT_GT(sign * at[axis], 12.5) << axis << sign;
-            EXPECT_NEAR(at[1], 0, 1) << axis << sign;
+            }
+            const std::size_t tight = high[0] - low[0] > high[1] - low[1] ? 0 : 1;
+            EXPECT_NEAR(high[tight], 1 / 1.05, 1e-6) << aspect;
+            EXPECT_NEAR(low[tight], -1 / 1.05, 1e-6) << aspect;
+            EXPECT_LE(std::max(high[1 - tight], -low[1 - tight]), 1 / 1.05 + 1e-6) << aspect;
         }
+    const std::array<Point, 1> single{{{1, 2, 3}}};
+    EXPECT_EQ(viewOf(single, {0, 0, 1}, 0.7, 1).lookAt, single[0]);
+}
+
+// Floor, ceiling and back wall, all of some thickness, and blocks between them; or with sides and
+// boards as well. Open to +z, turned to one side or another.
+Maker shelf(std::size_t axis, double sign, bool isCase) {
+    Maker maker;
+    const auto box = [&](Point a, Point b) {
+        if (sign < 0) {
+            std::swap(a[2], b[2]);
+            a[2] = -a[2];
+            b[2] = -b[2];
+        }
+        std::swap(a[axis], a[2]);
+        std::swap(b[axis], b[2]);
+        maker.box(a, b);
+    };
+    const double high = isCase ? 30 : 5;
+    box({-25, -high - 0.05, -12.5}, {25, -high + 0.05, 12.5});
+    box({-25, high - 0.05, -12.5}, {25, high + 0.05, 12.5});
+    box({-25, -high, -12.55}, {25, high, -12.45});
+    for (const double x : {-18.0, -6.0, 6.0, 18.0}) box({x - 1, -4, -1}, {x + 1, -2, 1});
+    for (const double y : {-10.0, 10.0})
+        if (isCase) box({-25, y - 0.05, -12.5}, {25, y + 0.05, 12.5});
+    for (const double x : {-25.0, 25.0})
+        if (isCase) box({x - 0.05, -high, -12.5}, {x + 0.05, high, 12.5});
+    return maker;
+}
+
+TEST(OutsideView, shelvesAreSeenFromTheirOpenSide) {
+    for (const bool isCase : {false, true})
+        for (const std::size_t axis : {0u, 1u, 2u})
+            for (const double sign : {-1.0, 1.0}) {
+                if (axis == 1 && sign < 0) continue;  // from below nothing is seen
+                const Maker maker = shelf(axis, sign, isCase);
+                const SceneData scene = maker.scene();
+                const CameraPose front = frameCamera({}, scene.bounds, 4.0 / 3);
+                const Point at = better(maker).value_or(front.eye);
+                EXPECT_GT(sign * at[axis], 12.5) << isCase << axis << sign;
+                if (axis != 1) {
+                    EXPECT_NEAR(at[1], 0, 1) << isCase << axis << sign;
+                }
+            }
 }
 
 }  // namespace

@@ -106,6 +106,53 @@ TEST_F(FirstLook, ExposureIsInTheMetadataOfEveryFormat) {
     EXPECT_GT(meanCode("b.png"), meanCode("a.png") + 20);
 }
 
+// A leaf of which the picture says where it ends: white there doesn't count. Alpha that is no
+// outline, as how glossy a skin is, isn't taken as one.
+TEST_F(FirstLook, TexelsThatAreNotThereAreNotMetered) {
+    const auto picture = [&](const std::string& name, float leaf, float beside) {
+        constexpr int kSide = 32;
+        std::vector<float> values;
+        for (int i = 0; i < kSide * kSide; ++i) {
+            const bool isLeaf = i % kSide < kSide / 4;
+            const float value = isLeaf ? 0.2f : 1.0f;
+            values.insert(values.end(), {value, value, value, isLeaf ? leaf : beside});
+        }
+        const std::string file = path(name).string();
+        const auto output = OIIO::ImageOutput::create(file);
+        OIIO::ImageSpec spec(kSide, kSide, 4, OIIO::TypeUInt8);
+        spec.attribute("oiio:UnassociatedAlpha", 1);
+        ASSERT_TRUE(output && output->open(file, spec));
+        ASSERT_TRUE(output->write_image(OIIO::TypeFloat, values.data()) && output->close());
+        write(name + ".mtl", "newmtl m\nKd 1 1 1\nmap_Kd " + name + "\n");
+        write(name + ".obj", "mtllib " + name +
+                                 ".mtl\nv 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\n"
+                                 "vt 1 1\nvt 0 1\nusemtl m\nf 1/1 2/2 3/3 4/4\n");
+    };
+    picture("leaf.png", 1, 0);
+    picture("gloss.png", 0.3f, 0.2f);
+    picture("opaque.png", 1, 1);
+    const auto stops = [&](const std::string& scene, const std::vector<std::string>& more = {}) {
+        std::vector<std::string> arguments{"-o", "a.png", "-o", "a.exr"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        return told(small(scene, arguments));
+    };
+    const std::string right = stops("leaf.png.obj", {"--alpha-of-pictures"});
+    ASSERT_FALSE(right.empty());
+    EXPECT_EQ(stops("leaf.png.obj"), right);
+    ASSERT_EQ(small("leaf.png.obj", {"-o", "b.exr"}).exitCode, 0);
+    EXPECT_TRUE(readText(path("a.exr")) == readText(path("b.exr"))) << "what is rendered stays";
+    const std::string whole = stops("opaque.png.obj");
+    EXPECT_GT(std::stod(right), std::stod(whole) + 1);
+    EXPECT_EQ(stops("gloss.png.obj"), whole);
+    // And with the light at the camera that is added where the own one misses: behind the leaf.
+    write("away.png.mtl", readText(path("leaf.png.mtl")) + "newmtl light\nKe 5 5 5\n");
+    std::string scene = readText(path("leaf.png.obj"));
+    scene.replace(scene.find("leaf.png.mtl"), 12, "away.png.mtl");
+    write("away.png.obj",
+          scene + "v .05 .4 -.001\nv .05 .6 -.001\nv .2 .4 -.001\nusemtl light\nf 5 6 7\n");
+    EXPECT_NEAR(std::stod(stops("away.png.obj")), std::stod(right), 0.05);
+}
+
 // Lamps that shine to the other side, are closed away, or have next to no area.
 TEST_F(FirstLook, ALightToSeeByWhereTheOwnOnesShowNothing) {
     writeLit("lit.obj",
@@ -150,6 +197,15 @@ TEST_F(FirstLook, ABlackPictureSaysWhy) {
     expectWarning(
         small("lamp.obj", inside),
         {"the picture is black as the camera stands inside of something closed", "--eye"});
+    // No light at the camera would help: lit, unlit, or beside a lamp that is seen.
+    const std::string black =
+        "mtllib black.mtl\nmtllib box.mtl\nusemtl black\n" + readText(path("cube.obj"));
+    for (const char* lamp : {"f 9 10 11", "f 11 10 9"}) {
+        write("black_lit.obj", black + "v 0 1.5 0\nv .1 1.5 0\nv 0 1.5 .1\nusemtl light\n" + lamp);
+        const Outcome outcome = small("black_lit.obj", {"-o", "a.exr"});
+        expectWarning(outcome, {"100 % of what is seen reflects nothing", "--aov albedo"});
+        EXPECT_EQ(outcome.err.find("camera light"), std::string::npos) << outcome.err;
+    }
     expectWarning(small("black.obj", {"-o", "a.exr"}),
                   {"the picture is black", "reflect none of it", "--aov albedo"});
     expectWarning(small("cube.obj", {"-o", "a.exr", "--camera-light", "off"}),
@@ -158,6 +214,20 @@ TEST_F(FirstLook, ABlackPictureSaysWhy) {
                   {"all of it lies behind the camera", "--look-at"});
     expectWarning(small("cube.obj", {"-o", "a.exr", "--eye", "0,0,9", "--look-at", "9,0,8"}),
                   {"the camera looks past it", "--look-at"});
+    // Of what is mostly empty that is told, but not who chose where to stand, nor where a sky is
+    // seen.
+    write("pole.obj", "v 0 0 0\nv 2 0 0\nv 2 9 0\nv 0 9 0\nf 1 2 3 4\n");
+    const std::string empty = "of the picture is empty";
+    expectWarning(small("pole.obj", {"-o", "a.exr"}), {empty, "--environment"});
+    for (const std::vector<std::string>& more : {std::vector<std::string>{"--eye", "0,4,12"},
+                                                 {"--sun", "30,40"},
+                                                 {"--crop", "0,0,16,12"}}) {
+        std::vector<std::string> arguments{"-o", "a.exr"};
+        arguments.insert(arguments.end(), more.begin(), more.end());
+        const Outcome outcome = small("pole.obj", arguments);
+        EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+        EXPECT_EQ(outcome.err.find(empty), std::string::npos) << outcome.err;
+    }
     expectWarning(small("cube.obj", {"-o", "a.png", "--exposure", "-15"}),
                   {"a.png: nothing of the picture can be seen at an exposure of -15 stops",
                    "--exposure STOPS|auto"});
