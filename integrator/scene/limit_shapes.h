@@ -13,6 +13,7 @@
 #include "integrator/scene/scene_description.h"
 #include "integrator/tessellation/edge_rates.h"
 #include "integrator/tessellation/height_field.h"
+#include "integrator/tessellation/limit_groups.h"
 #include "integrator/values/box.h"
 #include "integrator/values/cancel_check.h"
 
@@ -34,9 +35,13 @@ class TextureHeights final : public HeightField {
     std::array<double, 2> m_range;
 };
 
-// Cuts whole those limit shapes that light leaves or that no ray is to meet: each of their
-// triangles has to be known. Throws as tessellate().
-void cutWhereNeeded(SceneDescription& description, const CancelCheck& cancel);
+// Whether light leaves what is of it, or no ray is to meet it: each of its triangles has to be
+// known before rays are traced.
+bool isCutWhole(const MaterialDescription& material);
+
+// All triangles of the groups, in the scene's own coordinates. isMirrored: the transform to there
+// turns the winding round; the mesh's fronts are out as the groups' are. Throws Error(kCancelled).
+TriangleMesh meshOf(const LimitGroups& groups, bool isMirrored, const CancelCheck& cancel);
 
 // A box that holds a shape, world space: its cage's, and as much as its materials may displace.
 Box3d boxAround(const LimitShape& shape, const Transform& transform, double highest);

@@ -20,10 +20,11 @@
 namespace pm {
 
 void Scene::Builder::run() {
-    cutWhereNeeded(m_scene.m_description, m_cancel);
     checkInstances();
     findHeights();
+    cutPlain();
     findBounds();
+    cutDisplaced();
     countUses();
     for (const InstanceDescription& instance : m_scene.m_description.instances) addShape(instance);
     shareGroupCache();
