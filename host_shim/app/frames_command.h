@@ -11,7 +11,8 @@ namespace pm::host {
 // of takeCopies.
 int runScene(Options options, Log& log);
 
-// pm_host SCENE --frames A-B: renders one frame after the other. One that fails does not end the
+// pm_host SCENE --frames A-B: renders one frame after the other; of those that are the same render
+// one, whose files the others get. One that fails does not end the
 // others, but a signal does; the exit code is that of the first that failed. Errors: kUsage.
 int runFrames(const Options& options, Log& log);
 

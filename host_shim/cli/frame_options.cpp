@@ -37,6 +37,17 @@ std::vector<std::filesystem::path> filesOf(const Options& options) {
     return files;
 }
 
+// But for names of files that are written.
+std::vector<std::pair<std::string, std::string>> settingsOf(const Options& options) {
+    std::vector<std::pair<std::string, std::string>> settings;
+    for (const GivenSetting& given : options.settings) {
+        const bool isWritten = given.name == "part" || given.name == "checkpoint" ||
+                               (given.name == "photonMap" && options.photonsOnly);
+        if (!isWritten) settings.emplace_back(given.name, given.value);
+    }
+    return settings;
+}
+
 }  // namespace
 
 std::vector<Options> perFrame(const Options& options) {
@@ -59,6 +70,11 @@ std::vector<Options> perFrame(const Options& options) {
         frames.push_back(std::move(one));
     }
     return frames;
+}
+
+bool areSameRender(const Options& frame, const Options& other) {
+    return frame.scene == other.scene && frame.merge == other.merge &&
+           settingsOf(frame) == settingsOf(other);
 }
 
 }  // namespace pm::host

@@ -12,4 +12,8 @@ namespace pm::host {
 // Errors: kUsage, also where two frames would write the same file.
 std::vector<Options> perFrame(const Options& options);
 
+// Whether two of these frames are one render whose files have other names: the number of a frame is
+// neither in what is read nor in a setting.
+bool areSameRender(const Options& frame, const Options& other);
+
 }  // namespace pm::host

@@ -39,10 +39,14 @@ bool timesBuckets(const Options& options) {
 
 }  // namespace
 
-Session::Session(const Options& options, Log& log) : m_options(options), m_log(log) {
+void Session::noteCommandLine(const Options& options) {
+    m_statistics.commandLine = {"pm_host"};
     for (const std::string& word : options.commandLine)
         m_statistics.commandLine.push_back(withoutPasswords(word));
-    m_statistics.commandLine.insert(m_statistics.commandLine.begin(), "pm_host");
+}
+
+Session::Session(const Options& options, Log& log) : m_options(options), m_log(log) {
+    noteCommandLine(options);
     m_statistics.scene = options.scene.string();
     if (m_options.onlyPixel) {
         const auto [x, y] = *m_options.onlyPixel;
@@ -79,6 +83,11 @@ int Session::run() {
         m_statistics.exitCode = static_cast<int>(ExitCode::kFile);
         m_statistics.error = m_options.log.string() + ": can't be written";
     }
+    const int written = writePages();
+    return m_statistics.exitCode != 0 ? m_statistics.exitCode : written;
+}
+
+int Session::writePages() {
     const bool toFile = m_options.statistics != "-";
     int written = 0;
     const auto write = [&](void (Session::*work)()) {
@@ -92,7 +101,7 @@ int Session::run() {
         write(&Session::writeStatistics);
     if (!m_options.report.empty() && m_mayWriteStatistics) write(&Session::writeReport);
     if (written == 0 && m_log.fileFailed()) written = static_cast<int>(ExitCode::kFile);
-    return m_statistics.exitCode != 0 ? m_statistics.exitCode : written;
+    return written;
 }
 
 int Session::render() {
@@ -210,7 +219,8 @@ void Session::buildScene(const ColourPipeline& colour, TemporaryFolder& folder,
     warnOfLampsWithoutArea(data, m_options.scene.string(), sink);
     addBackSides(data);
     m_mayWriteStatistics = false;
-    checkNotInputs(allOutputs(m_options), inputsOf(m_options, &data));
+    m_inputs = inputsOf(m_options, &data);
+    checkNotInputs(allOutputs(m_options), m_inputs);
     m_mayWriteStatistics = true;
     const CameraPose camera = frameScene(data);
     m_camera = camera;

@@ -32,6 +32,13 @@ class Session {
 
     // Renders or merges, and writes; returns the exit code. Statistics are written on failure too.
     int run();
+    // Whether writeAgain() may come in place of a render of a frame for which areSameRender():
+    // run() ended well, nothing but files came of it, and none of the frame's is to be looked into
+    // first.
+    bool canWriteAgain(const Options& frame) const;
+    // Writes the files of run() again under a frame's names, with its command line; returns the
+    // exit code. ofFrame: the number of the frame that run() was for.
+    int writeAgain(const Options& frame, std::int64_t ofFrame);
     // Of pm_host watch: writes the pictures with the buckets that are there; the others are
     // transparent black, and pm:complete is 0. isShown: the answer is the display picture, for a
     // page; else empty. Errors: as run's, thrown.
@@ -54,6 +61,12 @@ class Session {
     void writeSidecar(const SceneData& data);
     int renderScene(const ColourPipeline& colour, const PluginContext& context);
     int renderBuilt(const ColourPipeline& colour, const PluginScene& scene);
+    // For another frame, after the render (session_again.cpp).
+    void writeFilesAgain(const Options& frame);
+    void copyFiles(const Options& frame);
+    void noteCommandLine(const Options& options);
+    // Statistics and report; 0, or the exit code of the first that failed.
+    int writePages();
     int merge();
     void checkBeforeMerging();
     void warnOfVendors(const std::vector<std::string>& vendors);
@@ -102,6 +115,8 @@ class Session {
     int judgeAgainstLimit(const std::string& name, std::optional<double> value);
     // Tells of samples that are no light; the exit code, which is 3 with --strict.
     int judgeSamples();
+    // A result, to standard output.
+    void print(const std::string& result);
     void printPixel(const Picture& picture) const;
     void writeStatistics();
     void writeReport();
@@ -112,8 +127,10 @@ class Session {
     Options m_options;
     Log& m_log;
     Statistics m_statistics;
-    Report m_report;                     // gathers only where one is wanted
-    std::optional<HostMemory> m_memory;  // of a scene that is read
+    Report m_report;                              // gathers only where one is wanted
+    std::optional<HostMemory> m_memory;           // of a scene that is read
+    std::vector<std::filesystem::path> m_inputs;  // of the command line and of the scene
+    std::string m_results;                        // that were printed
     std::optional<Picture> m_reference;
     std::optional<DisplayPicture> m_displayReference;  // in place of it
     std::optional<Picture> m_pilot;      // of the scene as it is rendered; see pilot()

@@ -136,12 +136,12 @@ void Session::writeOutput(const fs::path& file, const Picture& picture,
 int Session::compareWithReference(const Picture& picture) {
     const ErrorReport report = compareRelMse(*m_reference, picture);
     if (!report.relMse) {
-        std::fputs("relMSE nan\n", stdout);
+        print("relMSE nan\n");
         warn(Warning::kOutput,
              fmt::format("{} values of the picture and {} of the reference are not finite",
                          report.badInPicture, report.badInReference));
     } else {
-        std::fputs(fmt::format("relMSE {}\n", *report.relMse).c_str(), stdout);
+        print(fmt::format("relMSE {}\n", *report.relMse));
         m_statistics.referenceRelMse = report.relMse;
     }
     return judgeAgainstLimit("relMSE", report.relMse);
@@ -151,7 +151,7 @@ int Session::compareWithDisplayReference(const Picture& picture, const DisplayTr
     const DisplayResult shown = makeDisplayPicture(picture, display);
     const DisplayDifference difference =
         compareDisplay(asCodes(*m_displayReference), asCodes(shown.picture));
-    std::fputs(fmt::format("code difference {}\n", describe(difference)).c_str(), stdout);
+    print(fmt::format("code difference {}\n", describe(difference)));
     m_statistics.referenceCodes = difference;
     const bool isBad = shown.cleaning.nanCount + shown.cleaning.infiniteCount > 0;
     return judgeAgainstLimit("rms code difference",
@@ -189,6 +189,11 @@ int Session::judgeSamples() {
     m_statistics.error = text;
     m_log.message(Level::kError, text);
     return static_cast<int>(ExitCode::kBadInput);
+}
+
+void Session::print(const std::string& result) {
+    std::fputs(result.c_str(), stdout);
+    m_results += result;
 }
 
 void Session::printPixel(const Picture& picture) const {

@@ -131,6 +131,7 @@ std::string Statistics::toJson(const Log& log) const {
     mine["colour"] = {{"config", colourConfig}, {"renderingSpace", renderingSpace}};
     if (exposureStops) mine["colour"]["exposureStops"] = *exposureStops;
     mine["scene"] = scene;
+    if (sameAsFrame) mine["sameAsFrame"] = *sameAsFrame;
     mine["materialFiles"] = Json::array();
     for (const MaterialFile& library : materialFiles)
         mine["materialFiles"].push_back(

@@ -27,6 +27,7 @@ struct BadSampleNote {
 struct Statistics {
     std::vector<std::string> commandLine;
     std::string scene;
+    std::optional<std::int64_t> sameAsFrame;  // whose render it is; the seconds are of that one
     std::vector<MaterialFile> materialFiles;
     std::string pluginFile;
     std::string pluginVersion;

@@ -4,9 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <variant>
-
-#include "integrator/geometry/subdivision.h"
+#include <utility>
 
 namespace pm {
 
@@ -18,6 +16,41 @@ constexpr double kPiecesOverHeight = 540;
 // The picture's width over its height is not known either; wider ones are as coarse at their sides
 // as what lies outside.
 constexpr double kWidestPicture = 2.4;
+
+// Where the surface has none, that of the triangle.
+void fillNormals(TriangleMesh& mesh) {
+    const TriangleMesh::Corners& triangle = mesh.triangles.back();
+    for (std::uint32_t& index : mesh.normalIndices.back()) {
+        if (!(mesh.normals[index] == Vec3f(0.0f))) continue;
+        const Vec3d a(mesh.positions[triangle[0]]);
+        const Vec3d out =
+            cross(Vec3d(mesh.positions[triangle[1]]) - a, Vec3d(mesh.positions[triangle[2]]) - a);
+        // Without area it is met by no ray.
+        const double size = length(out);
+        index = static_cast<std::uint32_t>(mesh.normals.size());
+        mesh.normals.push_back(size > 0 ? Vec3f(out / size) : Vec3f(0.0f, 0.0f, 1.0f));
+    }
+}
+
+void addGroup(TriangleMesh& mesh, const TriangleGroup& group, std::uint32_t slot, bool hasTexcoords,
+              bool isMirrored) {
+    const auto first = static_cast<std::uint32_t>(mesh.positions.size()),
+               firstNormal = static_cast<std::uint32_t>(mesh.normals.size());
+    for (const TriangleGroup::Point& point : group.points()) {
+        mesh.positions.push_back(point.position);
+        mesh.normals.push_back(point.normal);
+        if (hasTexcoords) mesh.texcoords.push_back(point.texcoord);
+    }
+    for (std::uint32_t i = 0; i < group.triangleCount(); ++i) {
+        auto [a, b, c] = group.cornersOf(i);
+        if (isMirrored) std::swap(b, c);
+        mesh.triangles.push_back({first + a, first + b, first + c});
+        if (hasTexcoords) mesh.texcoordIndices.push_back(mesh.triangles.back());
+        mesh.normalIndices.push_back({firstNormal + a, firstNormal + b, firstNormal + c});
+        fillNormals(mesh);
+        mesh.materials.push_back(slot);
+    }
+}
 
 }  // namespace
 
@@ -38,21 +71,13 @@ double TextureHeights::at(const std::array<double, 2>& texcoord) const {
     return std::clamp(height, m_range[0], m_range[1]);
 }
 
-void cutWhereNeeded(SceneDescription& description, std::span<const MaterialTraits> traits,
-                    const CancelCheck& cancel) {
-    for (InstanceDescription& instance : description.instances) {
-        const auto* const limit = std::get_if<std::shared_ptr<const LimitShape>>(&instance.shape);
-        if (!limit) continue;
-        const bool isNeeded = std::ranges::any_of(instance.materials, [&](std::uint32_t index) {
-            if (index >= traits.size()) return false;  // told later
-            return traits[index].emits || traits[index].isInvisible;
-        });
-        if (!isNeeded) continue;
-        const int rate = instance.tessellationRate > 0 ? static_cast<int>(instance.tessellationRate)
-                                                       : (*limit)->rate();
-        instance.shape =
-            std::make_shared<const TriangleMesh>(tessellate((*limit)->cage(), rate, cancel).mesh);
+TriangleMesh meshOf(const LimitGroups& groups, bool isMirrored, const CancelCheck& cancel) {
+    TriangleMesh mesh;
+    for (std::uint32_t group = 0; group < groups.groupCount(); ++group) {
+        cancel.throwIfSet("tessellating");
+        addGroup(mesh, *groups.make(group), groups.slot(group), groups.hasTexcoords(), isMirrored);
     }
+    return mesh;
 }
 
 Box3d boxAround(const LimitShape& shape, const Transform& transform, double highest) {

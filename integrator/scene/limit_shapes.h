@@ -8,13 +8,12 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
-#include "integrator/materials/material_traits.h"
 #include "integrator/scene/scene_description.h"
 #include "integrator/tessellation/edge_rates.h"
 #include "integrator/tessellation/height_field.h"
+#include "integrator/tessellation/limit_groups.h"
 #include "integrator/values/box.h"
 #include "integrator/values/cancel_check.h"
 
@@ -36,10 +35,9 @@ class TextureHeights final : public HeightField {
     std::array<double, 2> m_range;
 };
 
-// Cuts whole those limit shapes that light leaves or that no ray is to meet: each of their
-// triangles has to be known. Throws as tessellate().
-void cutWhereNeeded(SceneDescription& description, std::span<const MaterialTraits> traits,
-                    const CancelCheck& cancel);
+// All triangles of the groups, in the scene's own coordinates. isMirrored: the transform to there
+// turns the winding round; the mesh's fronts are out as the groups' are. Throws Error(kCancelled).
+TriangleMesh meshOf(const LimitGroups& groups, bool isMirrored, const CancelCheck& cancel);
 
 // A box that holds a shape, world space: its cage's, and as much as its materials may displace.
 Box3d boxAround(const LimitShape& shape, const Transform& transform, double highest);

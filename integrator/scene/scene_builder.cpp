@@ -22,10 +22,11 @@ namespace pm {
 void Scene::Builder::run() {
     completeMixtures(m_scene.m_description.materials);
     m_scene.m_traits = traitsOf(m_scene.m_description.materials, m_scene.m_materials.roles);
-    cutWhereNeeded(m_scene.m_description, m_scene.m_traits, m_cancel);
     checkInstances();
     findHeights();
+    cutPlain();
     findBounds();
+    cutDisplaced();
     countUses();
     for (const InstanceDescription& instance : m_scene.m_description.instances) addShape(instance);
     shareGroupCache();

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
 #include "integrator/materials/opacity.h"
@@ -54,6 +55,19 @@ class Scene::Builder {
     // Of a limit shape's slots; null where they are not displaced.
     std::vector<const HeightField*> heightsOf(const InstanceDescription& instance,
                                               const LimitShape& shape) const;
+
+    // Whether the material of each slot is cut whole; empty where none is.
+    std::vector<bool> slotsCutWhole(const InstanceDescription& instance) const;
+    bool isDisplaced(const InstanceDescription& instance, const LimitShape& shape) const;
+    // Those limit shapes of which some material is cut whole: all of what is not displaced; of what
+    // is, the faces of such materials, which go to a mesh of their own, where they would be anyway.
+    // The first before the bounds are known, the second after.
+    void cutPlain();
+    void cutDisplaced();
+    void cutDisplaced(std::size_t index);
+    std::unique_ptr<LimitGroups> groupsOf(const std::shared_ptr<const LimitShape>& shape,
+                                          const InstanceDescription& instance,
+                                          std::vector<bool> slotsLeftOut) const;
 
     // With the box of each triangle and sphere, world; of an instanced mesh with that of all.
     template <typename Visit>
@@ -103,6 +117,7 @@ class Scene::Builder {
     CancelCheck m_cancel;
     std::uint32_t m_steps = 0;
     std::unordered_map<const TriangleMesh*, std::size_t> m_uses;
+    std::unordered_set<const TriangleMesh*> m_placed;  // in the scene's own coordinates already
     // Of instanced ones, in their own space.
     std::unordered_map<const TriangleMesh*, double> m_areas, m_margins;
     std::size_t m_groupCount = 0;

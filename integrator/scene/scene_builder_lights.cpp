@@ -11,6 +11,7 @@ namespace pm {
 
 void Scene::Builder::findLights(std::uint32_t shape) {
     ShapeRecord& record = m_scene.m_shapes[shape];
+    if (record.groups) return;  // what of them shines is a mesh
     if (std::ranges::none_of(record.materials, [&](std::uint32_t material) {
             return m_scene.traits(material).emits;
         }))

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <optional>
 
+#include "integrator/geometry/subdivision.h"
 #include "integrator/materials/opacity.h"
 #include "integrator/scene/limit_shapes.h"
 #include "integrator/scene/scene_builder.h"
@@ -72,6 +73,61 @@ std::vector<const HeightField*> Scene::Builder::heightsOf(const InstanceDescript
     for (const std::uint32_t material : instance.materials)
         heights.push_back(m_scene.m_heights[material].get());
     return heights;
+}
+
+std::vector<bool> Scene::Builder::slotsCutWhole(const InstanceDescription& instance) const {
+    std::vector<bool> slots;
+    for (const std::uint32_t material : instance.materials)
+        slots.push_back(m_scene.traits(material).emits || m_scene.traits(material).isInvisible);
+    if (std::ranges::none_of(slots, [](bool isWhole) { return isWhole; })) slots.clear();
+    return slots;
+}
+
+bool Scene::Builder::isDisplaced(const InstanceDescription& instance,
+                                 const LimitShape& shape) const {
+    return std::ranges::any_of(heightsOf(instance, shape), [](const auto* h) { return h; });
+}
+
+void Scene::Builder::cutPlain() {
+    for (InstanceDescription& instance : m_scene.m_description.instances) {
+        const auto* const limit = std::get_if<std::shared_ptr<const LimitShape>>(&instance.shape);
+        if (!limit || slotsCutWhole(instance).empty() || isDisplaced(instance, **limit)) continue;
+        const int rate = instance.tessellationRate > 0 ? static_cast<int>(instance.tessellationRate)
+                                                       : (*limit)->rate();
+        instance.shape =
+            std::make_shared<const TriangleMesh>(tessellate((*limit)->cage(), rate, m_cancel).mesh);
+    }
+}
+
+void Scene::Builder::cutDisplaced() {
+    for (std::size_t i = m_scene.m_description.instances.size(); i-- > 0;)
+        if (!slotsCutWhole(m_scene.m_description.instances[i]).empty()) cutDisplaced(i);
+}
+
+void Scene::Builder::cutDisplaced(std::size_t index) {
+    InstanceDescription cut = m_scene.m_description.instances[index];
+    const auto* const limit = std::get_if<std::shared_ptr<const LimitShape>>(&cut.shape);
+    if (!limit) return;
+    const std::vector<bool> whole = slotsCutWhole(cut);
+    std::vector<bool> others = whole;
+    others.flip();
+    const auto groups = groupsOf(*limit, cut, others);
+    if (groups->groupCount() == 0) return;
+    const std::vector<std::uint32_t>& slots = (*limit)->cage().mesh.faceMaterials;
+    const bool isAll =
+        slots.empty() || std::ranges::all_of(slots, [&](std::uint32_t s) { return whole[s]; });
+    auto mesh = std::make_shared<const TriangleMesh>(
+        meshOf(*groups, determinant(cut.transform) < 0, m_cancel));
+    m_placed.insert(mesh.get());
+    cut.cutOf = *limit;
+    cut.shape = std::move(mesh);
+    const Vec3d& c = m_scene.m_centre;
+    cut.transform = {1, 0, 0, c.x, 0, 1, 0, c.y, 0, 0, 1, c.z};
+    auto& instances = m_scene.m_description.instances;
+    if (isAll)
+        instances[index] = std::move(cut);
+    else
+        instances.push_back(std::move(cut));
 }
 
 template <typename Visit>
@@ -156,14 +212,20 @@ void Scene::Builder::addShape(const InstanceDescription& instance) {
     m_scene.m_shapes.push_back(std::move(record));
 }
 
-void Scene::Builder::addLimit(const std::shared_ptr<const LimitShape>& shape,
-                              const InstanceDescription& instance, ShapeRecord& record) {
+std::unique_ptr<LimitGroups> Scene::Builder::groupsOf(
+    const std::shared_ptr<const LimitShape>& shape, const InstanceDescription& instance,
+    std::vector<bool> slotsLeftOut) const {
     Transform toScene = instance.transform;
     for (int axis = 0; axis < 3; ++axis)
         toScene[static_cast<std::size_t>(4 * axis + 3)] -= m_scene.m_centre[axis];
-    record.groups = std::make_unique<LimitGroups>(
-        shape, toScene, heightsOf(instance, *shape),
-        ruleOf(m_scene.m_description, instance, m_scene.m_centre), m_cancel);
+    return std::make_unique<LimitGroups>(shape, toScene, heightsOf(instance, *shape),
+                                         ruleOf(m_scene.m_description, instance, m_scene.m_centre),
+                                         m_cancel, std::move(slotsLeftOut));
+}
+
+void Scene::Builder::addLimit(const std::shared_ptr<const LimitShape>& shape,
+                              const InstanceDescription& instance, ShapeRecord& record) {
+    record.groups = groupsOf(shape, instance, slotsCutWhole(instance));
     m_groupCount += record.groups->groupCount();
     m_scene.m_triangleCount += record.groups->triangleCount();
     m_triangleCountOfGroups += record.groups->triangleCount();
@@ -235,10 +297,12 @@ std::shared_ptr<const SharedMesh> Scene::Builder::sharedMesh(const ShapeRecord& 
 void Scene::Builder::addMesh(const std::shared_ptr<const TriangleMesh>& mesh,
                              const Transform& transform, ShapeRecord& record) {
     record.mesh = mesh;
+    const bool isPlaced = m_placed.contains(mesh.get());
     record.positions.reserve(mesh->positions.size() + 1);
     for (const Vec3f& p : mesh->positions) {
         goOn();
-        record.positions.push_back(Vec3f(transformPoint(transform, Vec3d(p)) - m_scene.m_centre));
+        record.positions.push_back(
+            isPlaced ? p : Vec3f(transformPoint(transform, Vec3d(p)) - m_scene.m_centre));
     }
     record.positions.emplace_back();
     record.facets.reserve(mesh->triangles.size());

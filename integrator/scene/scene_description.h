@@ -34,6 +34,8 @@ struct InstanceDescription {
     std::uint32_t tessellationRate = 0;
     // For whoever makes a shape of a cage: which one.
     TessellationTime tessellation = TessellationTime::kAuto;
+    // Set by the scene on a mesh that it has cut of this, as the camera asks: what the host gave.
+    std::shared_ptr<const LimitShape> cutOf = nullptr;
 };
 
 struct SceneDescription {

@@ -158,7 +158,7 @@ struct Scene::ShapeRecord {
     }
     // Fills `visible`.
     void leaveOutInvisible(const Scene& scene) {
-        if (groups) return;  // what has such a material is cut as a whole
+        if (groups) return;  // what of them has such a material is a mesh
         const auto isOne = [&](std::uint32_t index) { return scene.traits(index).isInvisible; };
         if (std::ranges::none_of(materials, isOne)) return;
         if (mesh)

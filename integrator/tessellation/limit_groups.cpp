@@ -27,9 +27,10 @@ constexpr std::uint32_t kTrianglesOfGroup = 1024;
 
 LimitGroups::LimitGroups(std::shared_ptr<const LimitShape> shape, const Transform& toScene,
                          std::vector<const HeightField*> heights, const TessellationRule& rule,
-                         const CancelCheck& cancel)
+                         const CancelCheck& cancel, std::vector<bool> slotsLeftOut)
     : m_shape(std::move(shape)),
-      m_placed{*m_shape, toScene, std::move(heights), edgeRates(*m_shape, toScene, rule, cancel)} {
+      m_placed{*m_shape, toScene, std::move(heights), edgeRates(*m_shape, toScene, rule, cancel)},
+      m_slotsLeftOut(std::move(slotsLeftOut)) {
     listGroups(cancel);
     m_met = std::vector<MetBox>(m_groups.size());
     findBoxes(cancel);
@@ -56,7 +57,7 @@ std::vector<std::uint32_t> LimitGroups::facesInOrder(const CancelCheck& cancel) 
     const double widest = std::max(maxAbsComponent(box.size()), 1e-300);
     std::vector<std::tuple<std::uint32_t, std::uint64_t, std::uint32_t>> keys;
     for (std::uint32_t face = 0; face < middles.size(); ++face) {
-        if (!m_shape->surface().hasSurface(face)) continue;
+        if (!m_shape->surface().hasSurface(face) || isLeftOut(slotOf(face))) continue;
         const Vec3d at = (middles[face] - box.lo) * (65535.0 / widest);
         const auto cell = [](double v) { return static_cast<std::uint32_t>(v); };
         keys.emplace_back(slotOf(face), mortonKey({cell(at.x), cell(at.y), cell(at.z)}), face);
@@ -182,6 +183,7 @@ std::unique_ptr<const TriangleGroup> LimitGroups::make(std::uint32_t group) cons
 
 void LimitGroups::forEachCageTriangle(
     std::uint32_t slot, const std::function<void(const std::array<Vec3d, 3>&)>& visit) const {
+    if (isLeftOut(slot)) return;
     const PolygonMesh& mesh = m_shape->cage().mesh;
     std::size_t first = 0;
     for (std::uint32_t face = 0; face < mesh.faceCount(); first += mesh.faceVertexCounts[face++]) {

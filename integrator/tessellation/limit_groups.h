@@ -25,12 +25,13 @@ using GroupCache = BoundedCache<TriangleGroup>;
 class LimitGroups {
   public:
     // toScene: object to the scene's own coordinates. heights: of each slot of the cage, or empty.
-    // Looks at every face for its box; in parallel in the calling TBB arena. Throws
-    // Error(kInvalidScene) for more than 2^32 - 1 triangles or a surface beyond kMaxCoordinate;
-    // kCancelled.
+    // slotsLeftOut: whose faces are not in it, though the others are where they would be with them;
+    // of each slot, or empty. Looks at every face for its box; in parallel in the calling TBB
+    // arena. Throws Error(kInvalidScene) for more than 2^32 - 1 triangles or a surface beyond
+    // kMaxCoordinate; kCancelled.
     LimitGroups(std::shared_ptr<const LimitShape> shape, const Transform& toScene,
                 std::vector<const HeightField*> heights, const TessellationRule& rule,
-                const CancelCheck& cancel);
+                const CancelCheck& cancel, std::vector<bool> slotsLeftOut = {});
 
     std::uint32_t groupCount() const { return static_cast<std::uint32_t>(m_groups.size()); }
     std::uint64_t triangleCount() const { return m_triangleCount; }
@@ -106,11 +107,15 @@ class LimitGroups {
     void listGroups(const CancelCheck& cancel);
     std::vector<std::uint32_t> facesInOrder(const CancelCheck& cancel) const;
     std::uint32_t slotOf(std::uint32_t face) const;
+    bool isLeftOut(std::uint32_t slot) const {
+        return !m_slotsLeftOut.empty() && m_slotsLeftOut[slot];
+    }
     void findBoxes(const CancelCheck& cancel);
     Box3d boxOf(const Item& item, LimitPoints& points) const;
 
     std::shared_ptr<const LimitShape> m_shape;
     PlacedLimit m_placed;
+    std::vector<bool> m_slotsLeftOut;
     std::vector<Item> m_items;
     std::vector<Group> m_groups;
     mutable std::vector<MetBox> m_met;  // of each

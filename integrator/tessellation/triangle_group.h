@@ -32,6 +32,9 @@ class TriangleGroup {
     const Point& point(std::uint32_t triangle, std::size_t corner) const {
         return m_points[m_triangles[triangle][corner]];
     }
+    const PagedVector<Point>& points() const { return m_points; }
+    // Its points.
+    const Corners& cornersOf(std::uint32_t triangle) const { return m_triangles[triangle]; }
     std::uint64_t memoryBytes() const;
     // What walk() asks first of a ray: whether it meets the box of all.
     const Vec3f& lo() const { return m_nodes[0].lo; }

@@ -65,7 +65,8 @@ void addLimit(Hasher& hasher, const LimitShape& shape) {
 void addInstance(Hasher& hasher, const InstanceDescription& instance, const SceneTables& tables) {
     // As they were numbered before there were limit shapes: scenes keep the checksums that they
     // have had.
-    const std::size_t kind = instance.shape.index();
+    const Shape given = instance.cutOf ? Shape(instance.cutOf) : instance.shape;
+    const std::size_t kind = given.index();
     hasher.add(kind > 1 ? kind - 1 : 2 * kind);
     std::visit(
         [&](const auto& shape) {
@@ -77,7 +78,7 @@ void addInstance(Hasher& hasher, const InstanceDescription& instance, const Scen
             else
                 hashRows(hasher, rowsOf<Kind>(tables.shapes), shape);
         },
-        instance.shape);
+        given);
     hashRows(hasher, tables.instances, instance);
 }
 

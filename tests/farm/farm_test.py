@@ -59,6 +59,7 @@ class Farms(unittest.TestCase):
         commands = [line for line in lines if not line.startswith("#")]
         self.assertEqual(len(commands), 1 + 3 + 1)
         self.assertEqual(farm.job.attempts(), [], "nothing is started")
+        self.assertIn("4 tasks for machines that aren't known yet, instruction set ", farm.said())
         for command in commands:  # in any folder
             subprocess.run(command, shell=True, check=True, env=self.variables, capture_output=True)
         self.assertTrue((farm.output.read_bytes(), (self.folder / "farm.png").read_bytes()) == self.local())

@@ -62,21 +62,26 @@ Place placeOf(const Vec3f& p) {
 }
 
 // Edges that triangles on one side only have, by the bits of their ends; 0: there is no gap.
-std::size_t openEdges(const LimitGroups& groups) {
+std::size_t openEdges(const std::vector<const LimitGroups*>& all) {
     std::map<std::pair<Place, Place>, int> edges;
-    for (std::uint32_t g = 0; g < groups.groupCount(); ++g) {
-        const auto group = groups.make(g);
-        EXPECT_EQ(group->triangleCount(), groups.trianglesOf(g));
-        for (std::uint32_t t = 0; t < group->triangleCount(); ++t)
-            for (std::size_t k = 0; k < 3; ++k) {
-                const Place a = placeOf(group->point(t, k).position),
-                            b = placeOf(group->point(t, (k + 1) % 3).position);
-                if (a < b) ++edges[{a, b}];
-                if (b < a) --edges[{b, a}];
-            }
-    }
+    for (const LimitGroups* const groups : all)
+        for (std::uint32_t g = 0; g < groups->groupCount(); ++g) {
+            const auto group = groups->make(g);
+            EXPECT_EQ(group->triangleCount(), groups->trianglesOf(g));
+            for (std::uint32_t t = 0; t < group->triangleCount(); ++t)
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const Place a = placeOf(group->point(t, k).position),
+                                b = placeOf(group->point(t, (k + 1) % 3).position);
+                    if (a < b) ++edges[{a, b}];
+                    if (b < a) --edges[{b, a}];
+                }
+        }
     return static_cast<std::size_t>(
         std::ranges::count_if(edges, [](const auto& edge) { return edge.second != 0; }));
+}
+
+std::size_t openEdges(const LimitGroups& groups) {
+    return openEdges(std::vector{&groups});
 }
 
 bool isInBox(const LimitGroups& groups, std::uint32_t g) {
@@ -119,6 +124,30 @@ TEST(LimitGroups, FitWhereTheyAreDisplacedAcrossSeams) {
     const LimitGroups groups = groupsOf(withSeams(cubeCage()), closeBy({0.3, 0.5, 1.6}), {&waves});
     EXPECT_EQ(openEdges(groups), 0u);
     for (std::uint32_t g = 0; g < groups.groupCount(); ++g) EXPECT_TRUE(isInBox(groups, g)) << g;
+}
+
+// Two that each leave out what the other has are where one with all would be.
+TEST(LimitGroups, FitThoseThatTheyLeftOut) {
+    const Waves waves(0.1);
+    SubdivisionCage cage = withSeams(cubeCage());
+    for (std::uint32_t face = 0; face < 6; ++face) cage.mesh.faceMaterials.push_back(face % 2);
+    const auto shape = std::make_shared<const LimitShape>(cage, 4);
+    const TessellationRule rule = closeBy({0.3, 0.5, 1.6});
+    const auto without = [&](std::vector<bool> slots) {
+        return LimitGroups(shape, kIdentityTransform, {&waves, nullptr}, rule, {},
+                           std::move(slots));
+    };
+    const LimitGroups all = without({}), first = without({false, true}),
+                      second = without({true, false});
+    EXPECT_EQ(first.triangleCount() + second.triangleCount(), all.triangleCount());
+    EXPECT_EQ(first.slot(0), 0u);
+    EXPECT_EQ(second.slot(0), 1u);
+    EXPECT_GT(openEdges(first), 0u);
+    EXPECT_EQ(openEdges({&first, &second}), 0u);
+    std::size_t ofCage = 0;
+    for (std::uint32_t slot = 0; slot < 2; ++slot)
+        first.forEachCageTriangle(slot, [&](const auto&) { ++ofCage; });
+    EXPECT_EQ(ofCage, 6u);
 }
 
 TEST(LimitGroups, OfLargeFacesAreParts) {

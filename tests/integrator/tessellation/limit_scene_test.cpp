@@ -236,5 +236,124 @@ TEST(LimitScene, LimitSurfacesThatShineAreCutWhole) {
     EXPECT_EQ(scene->groupBudget(), 0u);
 }
 
+// Of a plane z = 0 of side x side faces; u and v grow along x and y from 0 to 1. The faces beyond
+// the middle of x are of slot 1.
+SubdivisionCage planeOfTwoSlots(int side) {
+    SubdivisionCage cage = gridCage(side);
+    cage.scheme = SubdivisionScheme::kBilinear;
+    PolygonMesh& mesh = cage.mesh;
+    const auto size = static_cast<float>(side);
+    for (const Vec3f& p : mesh.positions) mesh.texcoords.emplace_back(p.x / size, p.y / size);
+    mesh.texcoordIndices.assign(mesh.vertexIndices.begin(), mesh.vertexIndices.end());
+    for (std::size_t face = 0; face < mesh.faceCount(); ++face) {
+        float x = 0;
+        for (std::size_t k = 0; k < 4; ++k)
+            x += mesh.positions[mesh.vertexIndices[4 * face + k]].x / 4;
+        mesh.faceMaterials.push_back(x > size / 2 ? 1 : 0);
+    }
+    return cage;
+}
+
+// Heights that grow with u, or are 1 everywhere.
+class Slope final : public TextureSource {
+  public:
+    explicit Slope(float ofU) : m_ofU(ofU) {}
+    Texel lookUp(std::int32_t, Vec2f uv, const UvFootprint&) const override {
+        const float height = 1.0f - m_ofU * (1.0f - uv.x);
+        return {height, height, height};
+    }
+    std::array<std::uint32_t, 2> texels(std::int32_t) const override { return {64, 64}; }
+    std::uint64_t failureCount() const override { return 0; }
+
+  private:
+    float m_ofU;
+};
+
+constexpr float kHeight = 0.5f;
+
+// The first slot dark, the second shining with radiance 1; both displaced by kHeight.
+void addHalfShining(SceneMaker& maker, SubdivisionCage cage, std::uint32_t rate,
+                    const Transform& place = kIdentityTransform) {
+    MaterialDescription material;
+    material.displacementTexture = 0;
+    material.displacementScale = kHeight;
+    const std::uint32_t dark = maker.material(material);
+    material.emission = Rgb(1.0f);
+    const std::uint32_t shining = maker.material(material);
+    addLimit(maker, std::move(cage), rate, dark, place);
+    maker.description.instances.back().materials = {dark, shining};
+}
+
+TEST(LimitScene, IsDisplacedWhereItShinesAndBesideThat) {
+    SceneMaker maker;
+    maker.description.textures = std::make_shared<const Slope>(1.0f);
+    addHalfShining(maker, planeOfTwoSlots(4), 3);
+    const auto scene = maker.build();
+    EXPECT_EQ(scene->lights().size(), 8u * 18u);
+    double area = 0;
+    for (const Light& light : scene->lights()) area += static_cast<double>(light.surface()->area);
+    EXPECT_NEAR(area, 8.0 * std::hypot(1.0, kHeight / 4.0), 1e-5);
+    for (const Notice& notice : scene->notices()) ADD_FAILURE() << notice.text;
+    const Vec3f centre(scene->centre());
+    for (int i = 0; i < 400; ++i) {
+        const float x = 0.00737f + 0.01f * static_cast<float>(i);
+        Surface surface;
+        ASSERT_TRUE(scene->intersect({Vec3f{x, 1.3f, 5} - centre, {0, 0, -1}}, surface)) << x;
+        EXPECT_NEAR(surface.position.z + centre.z, kHeight * x / 4.0f, 1e-6) << x;
+        EXPECT_EQ(isBlack(scene->emission(surface.material, surface.uv)), x < 2.0f) << x;
+        EXPECT_NEAR(surface.uv.x, x / 4.0f, 1e-5);
+    }
+    // The dark half alone is cut on demand.
+    EXPECT_EQ(scene->groupCounts().misses, 1u);
+}
+
+// Of a point above the middle of a square lamp of which one half shines: by the integral over a
+// rectangle with a corner below the point (form factor of parallel rectangles).
+TEST(LimitScene, LightsFromWhereItIsDisplacedTo) {
+    constexpr double kPi = 3.14159265358979323846, kAbove = 3.0;
+    const double a = 2.0 / (kAbove - kHeight);
+    const double formFactor =
+        4.0 / kPi * a / std::hypot(1.0, a) * std::atan(a / std::hypot(1.0, a));
+    const Transform mirrored{-1, 0, 0, 4, 0, 1, 0, 0, 0, 0, 1, 0};
+    for (const Transform& place : {kIdentityTransform, mirrored}) {
+        SceneMaker maker;
+        maker.description.textures = std::make_shared<const Slope>(0.0f);
+        addHalfShining(maker, planeOfTwoSlots(4), 3, place);
+        maker.quad({1.9, 1.9, kAbove}, {0, 0.2, 0}, {0.2, 0, 0}, maker.diffuse(Rgb(0.5f)));
+        maker.camera({2, 2, 1}, {2, 2, kAbove}, {0, 1, 0}, 0.5);
+        const auto scene = maker.build();
+        const MeasuredLayers seen = measure(scene, smallFrame(8, 8, IntegratorKind::kPath, 16, 2));
+        EXPECT_TRUE(agrees(seen.beauty, Rgb(static_cast<float>(0.5 * formFactor / 2)), 1e-3));
+        EXPECT_GT(seen.beauty.mean[0], 0.05);
+    }
+}
+
+// Rays through the line where the two meet, to either side of it by up to a millionth of a face.
+TEST(LimitScene, HasNoCracksBesideWhatShines) {
+    const Transform far{1e4, 0, 0, 1e6, 0, 1e4, 0, 1e6, 0, 0, 1e4, -1e6};
+    const Transform mirrored{-1, 0, 0, 0.1, 0, 1, 0, 0.2, 0, 0, 1, 0.3};
+    for (const Transform& place : {kIdentityTransform, far, mirrored}) {
+        SceneMaker maker;
+        maker.description.textures = std::make_shared<const WavyTexture>();
+        addHalfShining(maker, planeOfTwoSlots(4), 0, place);
+        const double size = std::abs(place[0]);
+        for (std::uint32_t m = 0; m < 2; ++m)
+            maker.description.materials[m].displacementScale = static_cast<float>(0.1 * size);
+        const Vec3d middle = transformPoint(place, {2, 2, 0});
+        maker.camera(middle + Vec3d{0.4, 0.5, 4} * size, middle, {0, 1, 0}, 150);
+        const auto scene = maker.build();
+        EXPECT_GT(scene->lights().size(), 500u);
+        Sampler random(7, 0, 0, 0);
+        for (int i = 0; i < 10'000; ++i) {
+            const double y = 0.1 + 3.8 * static_cast<double>(random.next1D());
+            const double aside = 2e-6 * static_cast<double>(random.next1D() - 0.5f);
+            const Vec3f from(transformPoint(place, {2 + aside, y, 3}) - scene->centre());
+            Surface surface;
+            ASSERT_TRUE(scene->intersect({from, normalize(Vec3f{0, 0.03f, -1})}, surface))
+                << size << " " << y << " " << aside;
+        }
+    }
+}
+
 }  // namespace
 }  // namespace pm::test
