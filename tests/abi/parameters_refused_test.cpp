@@ -46,6 +46,39 @@ TEST_F(Described, OutOfRangeIsRefusedWithTheRange) {
     }
 }
 
+TEST_F(Described, PartsOfMixturesAreNamed) {
+    PmrMaterialDesc plain = PMR_INIT(PmrMaterialDesc), mixed = plain;
+    plain.name = "plain";
+    plain.diffuse[0] = 0.5f;
+    mixed.name = "mixed";
+    mixed.kind = PMR_MATERIAL_MIXTURE;
+    PmrMaterial part = nullptr;
+    ASSERT_EQ(PMR_OK, api().createMaterial(m_context, &plain, &part));
+    makeScene(mixed);
+    EXPECT_EQ(PMR_ERROR_NAME, setText(PMR_OBJECT_MATERIAL, "first", "none"));
+    EXPECT_EQ("material 'mixed': first is 'none', and no material of that name has been made",
+              lastError());
+    EXPECT_EQ(PMR_ERROR_ARGUMENT, setText(PMR_OBJECT_MATERIAL, "first", "mixed"));
+    EXPECT_NE(std::string::npos, lastError().find("a part of itself")) << lastError();
+    ASSERT_EQ(PMR_OK, setText(PMR_OBJECT_MATERIAL, "first", "plain"));
+    // It needs both, and holds them.
+    PmrSphereDesc sphere = PMR_INIT(PmrSphereDesc);
+    sphere.radius = 1;
+    PmrInstanceDesc instance = PMR_INIT(PmrInstanceDesc);
+    ASSERT_EQ(PMR_OK, api().createSphere(m_context, &sphere, &instance.mesh));
+    instance.materials = &m_material;
+    instance.materialCount = 1;
+    EXPECT_EQ(PMR_ERROR_ARGUMENT, api().addInstance(m_scene, &instance));
+    EXPECT_EQ("material 'mixed' is a mixture; its first and second have to be set", lastError());
+    EXPECT_EQ(PMR_OK, api().releaseMesh(instance.mesh));
+    makeScene(mixed);
+    ASSERT_EQ(PMR_OK, setText(PMR_OBJECT_MATERIAL, "first", "plain"));
+    ASSERT_EQ(PMR_OK, setText(PMR_OBJECT_MATERIAL, "second", "plain"));
+    EXPECT_EQ(PMR_OK, api().releaseMaterial(part));
+    fill(PMR_LIGHT_SPOT);
+    render();
+}
+
 TEST_F(Described, WhatDoesNotFitTogetherIsRefused) {
     fill(PMR_LIGHT_SPOT);
     EXPECT_EQ(PMR_OK, setNumbers(PMR_OBJECT_LIGHT, "coneAngle", {1}));

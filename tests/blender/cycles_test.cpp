@@ -65,7 +65,9 @@ TEST_P(Cycles, AgreesByRegionsWithBothExporters) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, Cycles, testing::Values("plastic", "metal", "screen", "leaves"),
+INSTANTIATE_TEST_SUITE_P(Scenes, Cycles,
+                         testing::Values("plastic", "metal", "screen", "leaves", "helmet",
+                                         "barrel"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: The pm authors
-"""Runs inside Blender: four scenes with textures, exported by both OBJ exporters, rendered by Cycles.
+"""Runs inside Blender: six scenes with textures, exported by both OBJ exporters, rendered by Cycles.
 
 Usage: blender -b --factory-startup -noaudio -P textured_scenes.py -- FOLDER SAMPLES SCENE...
 
@@ -121,6 +121,50 @@ def metal(folder):
     add_lamp()
 
 
+def squares(u, v):
+    return float((int(8 * u) + int(4 * v)) % 2)
+
+
+def helmet(folder):
+    """What is metal by a picture, as glTF has it, with another of the colour."""
+    material = principled("helmet", Roughness=0.4, Specular=0.5)
+    link_picture(material, save_picture(folder, "stripes", stripes), "Base Color")
+    link_picture(material, save_picture(folder, "metal", lambda u, v: (squares(u, v),) * 3, "Non-Color"), "Metallic")
+    add_room()
+    add_ball(material)
+    add_lamp()
+
+
+def barrel(folder):
+    """Roughness and what is metal in channels of one picture; no exporter writes it, export() does."""
+    orm = save_picture(folder, "orm", lambda u, v: (1.0, 0.35 + 0.3 * v, squares(u, v)), "Non-Color")
+    material = principled("barrel", Base_Color=(0.8, 0.5, 0.3, 1), Specular=0.5)
+    tree = material.node_tree
+    picture, parted = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeSeparateColor")
+    picture.image = orm
+    tree.links.new(picture.outputs["Color"], parted.inputs["Color"])
+    shader = tree.nodes["Principled BSDF"]
+    tree.links.new(parted.outputs["Green"], shader.inputs["Roughness"])
+    tree.links.new(parted.outputs["Blue"], shader.inputs["Metallic"])
+    add_room()
+    add_ball(material)
+    add_lamp()
+
+
+def add_channels(file):
+    """To the material 'barrel' of an MTL file, in place of the numbers that stand there."""
+    lines, is_in = [], False
+    for line in open(file, encoding="utf-8").read().splitlines():
+        if line.startswith("newmtl"):
+            is_in = line.split() == ["newmtl", "barrel"]
+            lines.append(line)
+            if is_in:
+                lines += ["map_Pr -imfchan g orm.png", "map_Pm -imfchan b orm.png"]
+        elif not (is_in and line.split()[:1] in (["Ns"], ["Pr"], ["Pm"], ["Ka"])):
+            lines.append(line)
+    open(file, "w", encoding="utf-8").write("\n".join(lines) + "\n")
+
+
 def screen(folder):
     """A picture that shines."""
     material = black("screen", Emission_Strength=1.0)
@@ -153,7 +197,7 @@ def leaves(folder):
     add_lamp()
 
 
-SCENES = {"plastic": plastic, "metal": metal, "screen": screen, "leaves": leaves}
+SCENES = {"plastic": plastic, "metal": metal, "screen": screen, "leaves": leaves, "helmet": helmet, "barrel": barrel}
 
 
 def add_camera():
@@ -192,6 +236,9 @@ def set_up(samples):
 def export(folder, name):
     bpy.ops.export_scene.obj(filepath=os.path.join(folder, f"{name}_old.obj"), path_mode="RELATIVE")
     bpy.ops.wm.obj_export(filepath=os.path.join(folder, f"{name}_new.obj"), path_mode="RELATIVE")
+    if name == "barrel":
+        for exporter in ("old", "new"):
+            add_channels(os.path.join(folder, f"{name}_{exporter}.mtl"))
 
 
 def main():

@@ -251,14 +251,47 @@ TEST(MtlDialect, KeysForPhysicallyBasedMaterialsInAnyFile) {
     EXPECT_EQ(glass.roughness, 0.25f);
 }
 
-TEST(MtlDialect, PicturesOfMetalAreToldAndThoseOfRoughnessTaken) {
+// The same surface once as what is no metal and once as metal, by the picture.
+TEST(MtlDialect, PicturesOfMetalMixBoth) {
     const Result r =
-        read(kBlender3, "Kd 1 1 1\nKs 0.5 0.5 0.5\nillum 2\nmap_Ns rough.png\nrefl metal.png\n");
-    ASSERT_TRUE(r.material.roughnessTexture);
-    EXPECT_EQ(r.material.roughnessTexture->file, "folder/rough.png");
-    EXPECT_TRUE(r.heard.has(Warning::kMaterialPart, "a.mtl:6: material m: refl is a picture of"));
-    EXPECT_FALSE(r.material.glossyExponentTexture);
-    EXPECT_EQ(r.material.roughness, 1.0f);
+        read(kBlender3,
+             "Kd 1 1 1\nKs 0.5 0.5 0.5\nillum 2\nmap_Ns rough.png\nrefl metal.png\n"
+             "map_d holes.png\nmap_Ke light.png\nnorm normals.png\nmap_Kd colour.png\n");
+    const MaterialData& m = r.material;
+    EXPECT_TRUE(r.heard.list.empty());
+    ASSERT_EQ(m.parts.size(), 2u);
+    ASSERT_TRUE(m.weightTexture);
+    EXPECT_EQ(m.weightTexture->file, "folder/metal.png");
+    EXPECT_TRUE(m.weightTexture->isData);
+    EXPECT_EQ(m.weight, 1.0f);
+    const MaterialData &surface = m.parts[0], &metal = m.parts[1];
+    EXPECT_EQ(surface.name, "m (no metal)");
+    EXPECT_EQ(surface.kind, MaterialKind::kSurface);
+    EXPECT_EQ(surface.diffuseTexture->file, "folder/colour.png");
+    EXPECT_NEAR(surface.glossy[0], 0.04f, 1e-6f);
+    EXPECT_EQ(metal.kind, MaterialKind::kMirror);
+    EXPECT_EQ(metal.glossyTexture->file, "folder/colour.png");
+    for (const MaterialData* part : {&surface, &metal}) {
+        EXPECT_EQ(part->roughnessTexture->file, "folder/rough.png");
+        EXPECT_EQ(part->roughness, 1.0f);
+        // What is the surface's whatever it is made of.
+        EXPECT_FALSE(part->opacityTexture || part->normalTexture || part->emissionTexture);
+        EXPECT_FALSE(part->emits());
+    }
+    EXPECT_TRUE(m.opacityTexture && m.normalTexture && m.emissionTexture && m.emits());
+}
+
+TEST(MtlDialect, PicturesOfMetalAndRoughnessMayBeChannelsOfOne) {
+    const Result r = read(MtlDialect::kGeneric,
+                          "Kd 0.5 0.4 0.3\nPm 0.5\nmap_Pm -imfchan b orm.png\n"
+                          "map_Pr -imfchan g orm.png\n");
+    ASSERT_EQ(r.material.parts.size(), 2u);
+    EXPECT_EQ(r.material.weightTexture->channel, 'b');
+    EXPECT_EQ(r.material.weight, 0.5f);
+    EXPECT_EQ(r.material.parts[0].roughnessTexture->channel, 'g');
+    EXPECT_EQ(r.material.parts[1].roughnessTexture->channel, 'g');
+    // Glass and mirrors by illum are none of it.
+    EXPECT_TRUE(read(MtlDialect::kGeneric, "illum 7\nmap_Pm metal.png\n").material.parts.empty());
 }
 
 TEST(MtlDialect, OlderBlendersHaveAnotherLargestExponent) {

@@ -44,7 +44,7 @@ class Ball {
             std::uint32_t rays = 0;
             const DirectRadiance direct = estimateDirect(
                 *m_scene, m_lights, surface, bsdf, LampStrategy::kBoth, isSeen, 1, sampler, rays);
-            visit(Point{surface, direct.diffuse.g,
+            visit(Point{surface, direct.of(Lobe::kDiffuse).g,
                         dot(surface.geometricNormal, towards(surface.position)) <= 0.0f});
         }
     }
