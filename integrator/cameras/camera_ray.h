@@ -6,6 +6,15 @@
 
 namespace pm {
 
+// What a ray of a camera is chosen by. A kind that has no lens or shutter asks for no more than the
+// place.
+struct CameraSample {
+    // On the frame, pixels; what is given to a kind is right of and above its middle.
+    double x = 0.0, y = 0.0;
+    Vec2f lens{0.5f, 0.5f};  // in [0, 1)^2
+    float time = 0.0f;       // within the shutter, in [0, 1]
+};
+
 // A ray in a camera's own space: x right, y up, z forward, from where it stands; scene units. The
 // direction has any length.
 struct CameraRay {

@@ -14,9 +14,8 @@ class Perspective {
     // (0, pi).
     Perspective(const CameraDescription& camera, double halfHeight);
 
-    // Through a place right of and above the frame's middle, pixels.
-    CameraRay ray(double right, double up) const {
-        return {{0.0, 0.0, 0.0}, {right * m_scale * m_aspect, up * m_scale, 1.0}};
+    CameraRay ray(const CameraSample& sample) const {
+        return {{0.0, 0.0, 0.0}, {sample.x * m_scale * m_aspect, sample.y * m_scale, 1.0}};
     }
     PixelWidth pixelWidth() const { return {0.0, m_scale}; }
 

@@ -148,6 +148,13 @@ bool LightSampler::sample(const Surface& surface, const Vec3f& side, Vec2f uPoin
 
 bool LightSampler::sample(const ChosenLight& chosen, const Surface& surface,
                           LightSample& sample) const {
+    const bool isFound = sampleOf(chosen, surface, sample);
+    sample.shadowRay.time = surface.time;
+    return isFound;
+}
+
+bool LightSampler::sampleOf(const ChosenLight& chosen, const Surface& surface,
+                            LightSample& sample) const {
     const float probability = chosen.probability;
     const Vec2f uPoint = chosen.u;
     if (const LampTriangle& lamp = m_scene.lampTriangle(chosen.light)) {

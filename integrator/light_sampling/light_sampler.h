@@ -120,6 +120,8 @@ class LightSampler {
     std::uint64_t memoryBytes() const;
 
   private:
+    // But for the shadow ray's time.
+    bool sampleOf(const ChosenLight& chosen, const Surface& surface, LightSample& sample) const;
     LightSampler(const Scene& scene, LightChoice choice);
     static Receiver receiverAt(const Surface& surface, const Vec3f& side);
 

@@ -92,7 +92,7 @@ float Environment::keptFromPoles(float up) const {
 Rgb Environment::texel(Vec2f uv) const {
     uv.y = keptFromPoles(uv.y);
     const Texel t = asLight(m_hasBadTexels ? m_textures->lookUpOfLight(m_texture, uv)
-                                           : m_textures->lookUp(m_texture, uv, {}));
+                                           : m_textures->lookUp(m_texture, {uv}));
     return m_scale * Rgb(t.r, t.g, t.b);
 }
 

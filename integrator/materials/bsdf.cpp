@@ -31,8 +31,8 @@ std::uint32_t aloneAt(const Materials& materials, const Surface& surface) {
     std::uint32_t index = surface.material;
     while (materials[index].kind == MaterialKind::kMixture) {
         const MaterialDescription& mixture = materials[index];
-        const float second = weightAt(materials, mixture, surface.uv, surface.footprint);
-        if ((second > 0.0f && second < 1.0f) || ownOpacityAt(materials, mixture, surface.uv) < 1.0f)
+        const float second = weightAt(materials, mixture, contextAt(surface));
+        if ((second > 0.0f && second < 1.0f) || ownOpacityAt(materials, mixture, contextAt(surface)) < 1.0f)
             break;
         index = second > 0.0f ? mixture.second : mixture.first;
     }
@@ -44,7 +44,7 @@ std::uint32_t aloneAt(const Materials& materials, const Surface& surface) {
 Bsdf::Bsdf(const Materials& materials, const Surface& surface, const Vec3f& out,
            Transport transport, const Rgb& carried)
     : m_at(out, surface.geometricNormal, surface.shadingNormal, transport) {
-    m_at.opacity = opacityAt(materials, surface.material, surface.uv);
+    m_at.opacity = opacityAt(materials, surface.material, contextAt(surface));
     m_at.straight = pm::straightShare(materials, surface, m_at.opacity, m_at.isFront);
     m_at.straightEtaSquared =
         pm::straightEtaSquared(materials[surface.material], surface, m_at.isFront);

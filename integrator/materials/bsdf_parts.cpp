@@ -35,10 +35,10 @@ bool Bsdf::Part::sample(Lobe lobe, Vec2f u, BsdfSample& sample) const {
 void Bsdf::addParts(const Materials& materials, std::uint32_t index, const Surface& surface,
                     float share) {
     const MaterialDescription& material = materials[index];
-    share *= ownOpacityAt(materials, material, surface.uv);
+    share *= ownOpacityAt(materials, material, contextAt(surface));
     if (!(share > 0.0f)) return;
     if (material.kind == MaterialKind::kMixture) {
-        const float second = weightAt(materials, material, surface.uv, surface.footprint);
+        const float second = weightAt(materials, material, contextAt(surface));
         if (second < 1.0f) addParts(materials, material.first, surface, share * (1.0f - second));
         if (second > 0.0f) addParts(materials, material.second, surface, share * second);
         return;

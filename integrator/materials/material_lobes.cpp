@@ -32,7 +32,7 @@ class Numbers {
     Texel lookUp(std::int32_t texture) const {
         return texture == kNoTexture
                    ? Texel{1.0f, 1.0f, 1.0f, 1.0f}
-                   : m_materials.textures->lookUp(texture, m_surface.uv, m_surface.footprint);
+                   : m_materials.textures->lookUp(texture, contextAt(m_surface));
     }
 
     const Materials& m_materials;

@@ -126,7 +126,7 @@ MaterialTraits traitsOfMixture(const MaterialDescription& own, const MaterialTra
     t.isInvisible = t.isInvisible && !isCut;
     t.emits = t.emits || !isBlack(own.emission);
     t.shinesUnevenly = t.shinesUnevenly || isCut || isTextured ||
-                       (t.emits && own.weight > 0.0f && own.weight < 1.0f) ||
+                       a.emits || b.emits ||
                        own.emissionTexture != kNoTexture;
     t.filtersTextures = t.filtersTextures || isTextured || filtersTexture(own);
     t.looksUpTextures = t.looksUpTextures || hasTexture(own);

@@ -32,7 +32,7 @@ inline Rgb tintAt(const Materials& materials, const MaterialDescription& materia
     Rgb tint = material.transmission;
     if (material.transmissionTexture != kNoTexture) {
         const Texel t =
-            materials.textures->lookUp(material.transmissionTexture, surface.uv, surface.footprint);
+            materials.textures->lookUp(material.transmissionTexture, contextAt(surface));
         tint *= Rgb(t.r, t.g, t.b);
     }
     const auto clamped = [](float v) { return v > 0.0f ? std::min(v, 1.0f) : 0.0f; };
@@ -55,13 +55,13 @@ inline Rgb unbentShare(const Materials& materials, std::uint32_t index, const Su
     if (material.kind == MaterialKind::kDielectric) {
         const Rgb tint = tintAt(materials, material, surface);
         return (surface.isPane ? tint * tint : tint) *
-               ownOpacityAt(materials, material, surface.uv);
+               ownOpacityAt(materials, material, contextAt(surface));
     }
     if (material.kind != MaterialKind::kMixture) return {};
-    const float second = weightAt(materials, material, surface.uv);
+    const float second = weightAt(materials, material, contextAt(surface).finest());
     return (unbentShare(materials, material.first, surface) * (1.0f - second) +
             unbentShare(materials, material.second, surface) * second) *
-           ownOpacityAt(materials, material, surface.uv);
+           ownOpacityAt(materials, material, contextAt(surface));
 }
 
 // Share of the radiance beyond that is seen straight on where a ray meets the surface; above 1

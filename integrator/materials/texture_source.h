@@ -49,21 +49,31 @@ inline float decodedNormal(float channel, float largestCode) {
     return std::clamp((channel * largestCode - zero) / (largestCode - zero), -1.0f, 1.0f);
 }
 
+// Where on a surface a texture is asked for.
+struct TextureContext {
+    Vec2f uv;
+    Vec3f place{};            // in the scene's own coordinates; 0 where only uv is known, as on lamps
+    UvFootprint footprint{};  // over which it is filtered
+
+    // The same at the finest level.
+    TextureContext finest() const { return {uv, place, {}}; }
+};
+
 // Where texture look-ups come from; the host side of the plugin implements it, so that the
 // integrator knows no picture files. Texels are in the rendering space, or data.
 class TextureSource {
   public:
     virtual ~TextureSource() = default;
 
-    // The value of texture `index` at uv, filtered over the footprint. Threads: any, at once; the
+    // The value of texture `index` there, filtered over the footprint. Threads: any, at once; the
     // value depends on the arguments only. Errors: a failed look-up returns 0 and counts; it never
     // throws.
-    virtual Texel lookUp(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const = 0;
+    virtual Texel lookUp(std::int32_t index, const TextureContext& at) const = 0;
 
     // The same of a normal map, as its components in [-1, 1]. A source that knows nothing of files
     // says what floats mean.
-    virtual Vec3f normalAt(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const {
-        const Texel texel = lookUp(index, uv, footprint);
+    virtual Vec3f normalAt(std::int32_t index, const TextureContext& at) const {
+        const Texel texel = lookUp(index, at);
         return {decodedNormal(texel.r, 1.0f), decodedNormal(texel.g, 1.0f),
                 decodedNormal(texel.b, 1.0f)};
     }
@@ -71,7 +81,7 @@ class TextureSource {
     // The finest level at uv, of a light: every texel as asLight() has it before anything is
     // interpolated. Threads and errors as above.
     virtual Texel lookUpOfLight(std::int32_t index, Vec2f uv) const {
-        return asLight(lookUp(index, uv, {}));
+        return asLight(lookUp(index, {uv}));
     }
 
     // How many texels of the finest level such a light has. Throws Error(kCancelled) soon after

@@ -45,7 +45,7 @@ void fill(RTCRay& out, const Ray& ray) {
     out.dir_x = ray.direction.x;
     out.dir_y = ray.direction.y;
     out.dir_z = ray.direction.z;
-    out.time = 0.0f;
+    out.time = ray.time;
     out.tfar = ray.tMax;
     out.mask = ray.viewer;
     out.id = 0;

@@ -49,9 +49,12 @@ Camera::Camera(const Scene& scene, std::int32_t width, std::int32_t height)
     m_pixel = std::visit([](const auto& model) { return model.pixelWidth(); }, m_model);
 }
 
-Camera::Line Camera::lineThrough(double x, double y) const {
-    const CameraRay own = std::visit(
-        [&](const auto& model) { return model.ray(x - m_halfWidth, m_halfHeight - y); }, m_model);
+Camera::Line Camera::lineThrough(const CameraSample& sample) const {
+    CameraSample fromMiddle = sample;
+    fromMiddle.x = sample.x - m_halfWidth;
+    fromMiddle.y = m_halfHeight - sample.y;
+    const CameraRay own =
+        std::visit([&](const auto& model) { return model.ray(fromMiddle); }, m_model);
     const Vec3d direction =
         normalize(m_forward * own.direction.z + m_right * own.direction.x + m_up * own.direction.y);
     const Vec3d eye =
@@ -59,11 +62,12 @@ Camera::Line Camera::lineThrough(double x, double y) const {
     return {eye, direction};
 }
 
-Ray Camera::ray(double x, double y) const {
-    const auto [eye, direction] = lineThrough(x, y);
+Ray Camera::ray(const CameraSample& sample) const {
+    const auto [eye, direction] = lineThrough(sample);
     Ray ray{Vec3f(eye), Vec3f(direction)};
     if (m_scene.hasCore()) ray = m_scene.rayFromAfar(eye, direction);
     ray.viewer = kCameraRays;
+    ray.time = sample.time;
     if (m_scene.hasCore() || !m_isFar) return ray;
     // Entry into a sphere slightly larger than the scene's.
     const double radius = m_sceneRadius * 1.01;
@@ -72,17 +76,20 @@ Ray Camera::ray(double x, double y) const {
     return ray;
 }
 
-RayFootprint Camera::footprint(double x, double y, const Ray& ray) const {
+RayFootprint Camera::footprint(const CameraSample& sample, const Ray& ray) const {
     RayFootprint footprint;
     if (!m_scene.filtersTextures()) return footprint;
-    const Line own = lineThrough(x, y);
+    const Line own = lineThrough(sample);
     const double way = length(Vec3d(ray.origin) - own.from);
     const auto sideTo = [&](const Line& other) -> RayFootprint::Side {
         const Vec3d turn = (other.along - own.along) / kPixelStep;
         return {Vec3f((other.from - own.from) / kPixelStep + turn * way), Vec3f(turn)};
     };
-    footprint.x = sideTo(lineThrough(x + kPixelStep, y));
-    footprint.y = sideTo(lineThrough(x, y + kPixelStep));
+    CameraSample right = sample, below = sample;
+    right.x += kPixelStep;
+    below.y += kPixelStep;
+    footprint.x = sideTo(lineThrough(right));
+    footprint.y = sideTo(lineThrough(below));
     footprint.isKnown = true;
     return footprint;
 }

@@ -31,10 +31,10 @@ class Camera {
     Camera(const Scene& scene, std::int32_t width, std::int32_t height);
 
     // A ray through frame coordinates (x, y), pixels, origin top left, y down. Unit direction.
-    Ray ray(double x, double y) const;
+    Ray ray(const CameraSample& sample) const;
 
-    // What the ray through (x, y) stands for: its pixel. Not known where no texture asks for it.
-    RayFootprint footprint(double x, double y, const Ray& ray) const;
+    // What that ray stands for: its pixel. Not known where no texture asks for it.
+    RayFootprint footprint(const CameraSample& sample, const Ray& ray) const;
 
     // Of a ray of this camera's.
     PixelBeam pixelBeam(const Ray& ray) const;
@@ -47,7 +47,7 @@ class Camera {
     struct Line {
         Vec3d from, along;
     };
-    Line lineThrough(double x, double y) const;
+    Line lineThrough(const CameraSample& sample) const;
 
     const Scene& m_scene;
     Vec3d m_eye;  // scene's own coordinates

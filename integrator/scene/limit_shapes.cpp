@@ -66,7 +66,7 @@ TextureHeights::TextureHeights(const TextureSource& textures, const MaterialDesc
 
 double TextureHeights::at(const std::array<double, 2>& texcoord) const {
     const Vec2f uv{static_cast<float>(texcoord[0]), static_cast<float>(texcoord[1])};
-    const double height = m_scale * static_cast<double>(m_textures.lookUp(m_texture, uv, {}).r);
+    const double height = m_scale * static_cast<double>(m_textures.lookUp(m_texture, {uv}).r);
     // What interpolation's roundings add.
     return std::clamp(height, m_range[0], m_range[1]);
 }

@@ -134,8 +134,9 @@ class Scene {
     Vec3f pointUnderRay(const Vec3f& position, const Ray& ray, const Vec3f& normal) const {
         return pm::pointUnderRay(position, ray, normal, 2.0f * liftOfPoints(position));
     }
-    Ray rayOnwards(const Vec3f& position, const Vec3f& normal, const Vec3f& direction) const {
-        return pm::rayOnwards(position, normal, direction, 2.0f * liftOfPoints(position));
+    Ray rayOnwards(const Vec3f& position, const Vec3f& normal, const Vec3f& direction,
+                   float time = 0.0f) const {
+        return pm::rayOnwards(position, normal, direction, 2.0f * liftOfPoints(position), time);
     }
 
     // Whether some material has a texture that is filtered, so that footprints are worth their

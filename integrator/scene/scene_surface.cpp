@@ -154,6 +154,7 @@ void Scene::surfaceAt(const RayHit& hit, Surface& surface, const Arrival& arriva
     const ShapeRecord& record = m_shapes[hit.shape];
     surface.shape = hit.shape;
     const Ray& ray = *arrival.ray;
+    surface.time = ray.time;
     if (!record.curved) {
         const Corner corner = record.corner(hit.primitive);
         double b1, b2;

@@ -50,16 +50,16 @@ void setTangent(const Vec3f& tangent, Surface& surface) {
 // half a texel behind: the difference of neighbouring texels, which between their middles changes
 // evenly.
 double slopeAlong(float Vec2f::*axis, std::uint32_t texels, const TextureSource& textures,
-                  const MaterialDescription& material, Vec2f uv, const UvFootprint& footprint) {
+                  const MaterialDescription& material, const TextureContext& at) {
     const float half = 0.5f / static_cast<float>(std::max(texels, 1u));
-    Vec2f before = uv, after = uv;
-    before.*axis -= half;
-    after.*axis += half;
+    TextureContext before = at, after = at;
+    before.uv.*axis -= half;
+    after.uv.*axis += half;
     // Not always a texel: far from 0 texture coordinates lie farther apart.
-    const float way = after.*axis - before.*axis;
+    const float way = after.uv.*axis - before.uv.*axis;
     if (!(way > 0.0f)) return 0.0;
-    const float rise = textures.lookUp(material.bumpTexture, after, footprint).r -
-                       textures.lookUp(material.bumpTexture, before, footprint).r;
+    const float rise = textures.lookUp(material.bumpTexture, after).r -
+                       textures.lookUp(material.bumpTexture, before).r;
     const double slope = static_cast<double>(rise) * static_cast<double>(material.bumpScale) /
                          static_cast<double>(way);
     return std::isfinite(slope) ? slope : 0.0;
@@ -125,7 +125,8 @@ void Scene::turnByNormalMap(const MaterialDescription& material, const Vec3f& ta
                             float normalLength, const UvFootprint& footprint,
                             Surface& surface) const {
     const Vec3f found =
-        m_materials.textures->normalAt(material.normalTexture, surface.uv, footprint);
+        m_materials.textures->normalAt(material.normalTexture,
+                                       {surface.uv, surface.position, footprint});
     const Vec3f mapped{found.x * material.normalScale, found.y * material.normalScale, found.z};
     const TangentFrame frame =
         tangentFrame(tangent, surface.shadingNormal * normalLength, surface.isTextureMirrored);
@@ -137,9 +138,10 @@ void Scene::turnByBumpMap(const MaterialDescription& material, const TexturedEdg
                           const UvFootprint& footprint, Surface& surface) const {
     const TextureSource& textures = *m_materials.textures;
     const auto [across, down] = textures.texels(material.bumpTexture);
+    const TextureContext at{surface.uv, surface.position, footprint};
     const HeightSlopes slopes{
-        slopeAlong(&Vec2f::x, across, textures, material, surface.uv, footprint),
-        slopeAlong(&Vec2f::y, down, textures, material, surface.uv, footprint)};
+        slopeAlong(&Vec2f::x, across, textures, material, at),
+        slopeAlong(&Vec2f::y, down, textures, material, at)};
     surface.shadingNormal =
         bumpedNormal(surface.shadingNormal, surface.geometricNormal, edges, slopes);
 }

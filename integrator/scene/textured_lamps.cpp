@@ -43,10 +43,10 @@ float sineOfRow(float v) {
 Rgb Scene::emission(std::uint32_t index, Vec2f uv) const {
     const MaterialDescription& material = this->material(index);
     // What is cut away doesn't shine.
-    const float share = ownOpacityAt(materials(), material, uv);
+    const float share = ownOpacityAt(materials(), material, {uv});
     Rgb ofParts;
     if (material.kind == MaterialKind::kMixture && m_traits[index].emits) {
-        const float second = weightAt(materials(), material, uv);
+        const float second = weightAt(materials(), material, {uv});
         ofParts = (emission(material.first, uv) * (1.0f - second) +
                    emission(material.second, uv) * second) *
                   share;
@@ -56,7 +56,7 @@ Rgb Scene::emission(std::uint32_t index, Vec2f uv) const {
     const auto texture = static_cast<std::size_t>(material.emissionTexture);
     const bool isBad = texture < m_hasBadTexels.size() && m_hasBadTexels[texture];
     const Texel t = asLight(isBad ? textures()->lookUpOfLight(material.emissionTexture, uv)
-                                  : textures()->lookUp(material.emissionTexture, uv, {}));
+                                  : textures()->lookUp(material.emissionTexture, {uv}));
     return ofParts + material.emission * Rgb(t.r, t.g, t.b) * share;
 }
 

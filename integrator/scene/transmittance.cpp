@@ -57,7 +57,7 @@ class Crossings {
 Rgb Scene::straightShare(const Surface& surface, const Vec3f& direction) const {
     if (!m_traits[surface.material].letsThrough() && !(surface.eta > 0.0f)) return {};
     return pm::straightShare(m_materials, surface,
-                             opacityAt(m_materials, surface.material, surface.uv),
+                             opacityAt(m_materials, surface.material, contextAt(surface)),
                              dot(direction, surface.geometricNormal) < 0.0f);
 }
 
@@ -65,13 +65,9 @@ Rgb Scene::straightShare(const Surface& surface, const Vec3f& direction) const {
 float Scene::openShare(const Ray& ray, const RayHit& hit) const {
     const std::uint32_t material = m_shapes[hit.shape].materialOf(hit.primitive);
     if (!m_traits[material].isCutAway) return 0.0f;
-    Vec2f uv;
-    if (m_traits[material].looksUpTextures) {
-        Surface surface;
-        surfaceAt(hit, surface, {&ray, nullptr, true});
-        uv = surface.uv;
-    }
-    return 1.0f - opacityAt(m_materials, material, uv);
+    Surface surface;
+    if (m_traits[material].looksUpTextures) surfaceAt(hit, surface, {&ray, nullptr, true});
+    return 1.0f - opacityAt(m_materials, material, contextAt(surface));
 }
 
 // Whether they are so close behind each other that a path which goes straight on from the first

@@ -40,6 +40,7 @@ struct Surface {
     // its own material and front say).
     std::int32_t medium = kNoMedium;
     float eta = 0.0f;
+    float time = 0.0f;  // of the ray that met it
     // Where there is a tangent: whether the bitangent, where v grows, is minus the cross product of
     // shading normal and tangent.
     bool isTextureMirrored = false;
@@ -64,7 +65,9 @@ inline Vec3f rayOrigin(const Surface& surface, const Vec3f& direction) {
 }
 
 inline Ray rayFrom(const Surface& surface, const Vec3f& direction) {
-    return {rayOrigin(surface, direction), direction};
+    Ray ray{rayOrigin(surface, direction), direction};
+    ray.time = surface.time;
+    return ray;
 }
 
 // The point beside a hit, on its surface's plane, over which the ray that led there passed at this
@@ -84,8 +87,10 @@ inline Vec3f pointUnderRay(const Vec3f& position, const Ray& ray, const Vec3f& n
 // A ray onwards from such a point, on the normal's side. It starts at that height, and then by half
 // of it behind: a wall so close that roundings lose it at a ray's beginning is met all the same.
 inline Ray rayOnwards(const Vec3f& position, const Vec3f& normal, const Vec3f& direction,
-                      float height) {
-    return {position + (normal - direction * 0.5f) * height, direction};
+                      float height, float time) {
+    Ray ray{position + (normal - direction * 0.5f) * height, direction};
+    ray.time = time;
+    return ray;
 }
 
 }  // namespace pm

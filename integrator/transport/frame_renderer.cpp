@@ -139,8 +139,8 @@ SampleRadiance FrameRenderer::Impl::sample(std::uint32_t pass, const PixelCell& 
                                            Sampler sampler, std::uint32_t index,
                                            NearestPhotons& scratch) const {
     const Place place = cell.place(settings.filter, sampler.next2D());
-    const Ray ray = camera.ray(place.x, place.y);
-    const RayFootprint footprint = camera.footprint(place.x, place.y, ray);
+    const Ray ray = camera.ray({place.x, place.y});
+    const RayFootprint footprint = camera.footprint({place.x, place.y}, ray);
     if (settings.integrator == IntegratorKind::kPath)
         return PathIntegrator(*scene, prepared->lights).sample(ray, sampler, footprint);
     const SeenLamps::Shown lamps = prepared->seenLamps.shown(cell.x, cell.y);

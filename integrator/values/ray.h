@@ -24,6 +24,7 @@ struct Ray {
     Vec3f direction;
     float tMax = std::numeric_limits<float>::infinity();
     Viewers viewer = kReflectionRays;  // meets what is seen by one of them
+    float time = 0.0f;                 // within the frame's shutter, in [0, 1]
 };
 
 // The primitive that a ray meets first. Where exactly it is met is computed again from the

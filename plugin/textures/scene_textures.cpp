@@ -66,18 +66,18 @@ std::uint64_t SceneTextures::texels() const {
     return sum;
 }
 
-Texel SceneTextures::lookUp(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const {
+Texel SceneTextures::lookUp(std::int32_t index, const TextureContext& at) const {
     Texel texel;
     const Texture& texture = *m_textures[static_cast<std::size_t>(index)];
-    const TexturePicture* const picture = texture.at(uv);
-    if (picture && !texture.system->lookUp(*picture, uv, footprint, texel))
+    const TexturePicture* const picture = texture.at(at.uv);
+    if (picture && !texture.system->lookUp(*picture, at.uv, at.footprint, texel))
         m_failures.fetch_add(1, std::memory_order_relaxed);
     return texel;
 }
 
-Vec3f SceneTextures::normalAt(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const {
-    const Texel texel = lookUp(index, uv, footprint);
-    const TexturePicture* const picture = m_textures[static_cast<std::size_t>(index)]->at(uv);
+Vec3f SceneTextures::normalAt(std::int32_t index, const TextureContext& at) const {
+    const Texel texel = lookUp(index, at);
+    const TexturePicture* const picture = m_textures[static_cast<std::size_t>(index)]->at(at.uv);
     const float largestCode = picture ? picture->largestCode : 1.0f;
     return {decodedNormal(texel.r, largestCode), decodedNormal(texel.g, largestCode),
             decodedNormal(texel.b, largestCode)};

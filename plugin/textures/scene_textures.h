@@ -34,9 +34,9 @@ class SceneTextures final : public TextureSource {
     TextureReads reads() const;
     std::uint64_t texels() const;
 
-    Texel lookUp(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const override;
+    Texel lookUp(std::int32_t index, const TextureContext& at) const override;
     // By what the codes of the file are.
-    Vec3f normalAt(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const override;
+    Vec3f normalAt(std::int32_t index, const TextureContext& at) const override;
     Texel lookUpOfLight(std::int32_t index, Vec2f uv) const override;
     BadTexels badTexels(std::int32_t index, const CancelCheck& cancel) const override;
     std::array<float, 2> extremes(std::int32_t index, const CancelCheck& cancel) const override;

@@ -184,7 +184,7 @@ SampleRadiance PlannedRender::sample(std::int32_t x, std::int32_t y, std::uint32
     const Vec2f jitter = sampler.next2D();
     const double onX = x + static_cast<double>(jitter.x), onY = y + static_cast<double>(jitter.y);
     return PhotonIntegrator(*m_scene, m_lights, maps)
-        .sample({{static_cast<float>(onX), static_cast<float>(onY)}, m_camera.ray(onX, onY)},
+        .sample({{static_cast<float>(onX), static_cast<float>(onY)}, m_camera.ray({onX, onY})},
                 sampler, scratch);
 }
 

@@ -11,9 +11,18 @@
 
 namespace pm {
 
+// Of which group of lights a photon is, and in which slice of the shutter's time.
+struct PhotonClass {
+    static constexpr unsigned kGroups = 16, kSlices = 8;
+    std::uint8_t group = 0;  // below kGroups
+    std::uint8_t slice = 0;  // below kSlices
+
+    bool operator==(const PhotonClass&) const = default;
+};
+
 // A unit normal to within half a degree, enough to tell one surface from another.
 struct PackedNormal {
-    std::array<std::int8_t, 4> components{};  // x, y, z, and the mark
+    std::array<std::int8_t, 4> components{};  // x, y, z, and marks: see below
 
     static constexpr float kScale = 1.0f / 127.0f;
 
@@ -21,9 +30,18 @@ struct PackedNormal {
     explicit PackedNormal(const Vec3f& n) : components{pack(n.x), pack(n.y), pack(n.z), 0} {}
     bool isNull() const { return components[0] == 0 && components[1] == 0 && components[2] == 0; }
     // A mark that whoever stores the normal gives a meaning.
-    void mark() { components[3] = 1; }
-    void unmark() { components[3] = 0; }
-    bool isMarked() const { return components[3] != 0; }
+    void mark() { setBits(bits() | kMark); }
+    void unmark() { setBits(bits() & ~kMark); }
+    bool isMarked() const { return (bits() & kMark) != 0; }
+    // Which lights a photon is of, and when it was met.
+    void setClass(const PhotonClass& of) {
+        setBits((bits() & kMark) | static_cast<unsigned>(of.group) << 1 |
+                static_cast<unsigned>(of.slice) << 5);
+    }
+    PhotonClass photonClass() const {
+        return {static_cast<std::uint8_t>(bits() >> 1 & (PhotonClass::kGroups - 1)),
+                static_cast<std::uint8_t>(bits() >> 5 & (PhotonClass::kSlices - 1))};
+    }
     float dotWith(const Vec3f& n) const {
         return (static_cast<float>(components[0]) * n.x + static_cast<float>(components[1]) * n.y +
                 static_cast<float>(components[2]) * n.z) *
@@ -36,6 +54,9 @@ struct PackedNormal {
     }
 
   private:
+    static constexpr unsigned kMark = 1;
+    unsigned bits() const { return static_cast<std::uint8_t>(components[3]); }
+    void setBits(unsigned bits) { components[3] = static_cast<std::int8_t>(bits); }
     static std::int8_t pack(float v) {
         return static_cast<std::int8_t>(v * 127.0f + (v < 0.0f ? -0.5f : 0.5f));
     }

@@ -73,7 +73,7 @@ double PhotonWalk::walk(const EmittedPhoton& photon, std::uint32_t index, Sample
 
 double PhotonWalk::walk(Part part, Sampler& sampler, Waiting& waiting, Batch& batch) const {
     PhotonBalance& balance = batch.balance;
-    auto& [ray, flux, chain, way, events, width] = part;
+    auto& [ray, flux, chain, way, events, width, of] = part;
     double landed = 0;
     while (true) {
         Surface surface;
@@ -133,7 +133,7 @@ double PhotonWalk::walk(Part part, Sampler& sampler, Waiting& waiting, Batch& ba
         const Viewers viewer = ray.viewer;
         ray = sample.lobe == Lobe::kDiffuse
                   ? m_scene.rayOnwards(surface.position, bsdf.facingGeometricNormal(),
-                                       sample.direction)
+                                       sample.direction, surface.time)
                   : rayFrom(surface, sample.direction);
         if (sample.lobe == Lobe::kStraight)
             ray.viewer = viewer;
@@ -269,7 +269,7 @@ double PhotonWalk::land(Part& part, const Surface& surface, const Bsdf& bsdf, Sa
     const Rgb& flux = part.flux;
     if (isCaustic(m_request.kind)) {
         if (way.stage == Stage::kSpecular)
-            store(surface, bsdf, flux, batch, batch.photons);
+            store(part, surface, bsdf, flux, batch, batch.photons);
         else if (way.stage != Stage::kStraight)
             landDescended(part, surface, bsdf, sampler, batch);
         return way.stage == Stage::kSpecular ? channelSum(flux) : 0;
@@ -299,25 +299,26 @@ void PhotonWalk::landDescended(Part& part, const Surface& surface, const Bsdf& b
         return storeOfChain(part, surface, bsdf, sampler, batch, batch.descended);
     const bool isStraight = way.stage == Stage::kDescended || way.stage == Stage::kBroadened;
     if (isStraight && !way.isFollowed) return;
-    store(surface, bsdf, isStraight ? part.flux * (1.0f / m_request.descent) : part.flux, batch,
+    store(part, surface, bsdf, isStraight ? part.flux * (1.0f / m_request.descent) : part.flux, batch,
           batch.descended);
     if (way.stage == Stage::kRefocused) batch.descended.back().normal.mark();
 }
 
 void PhotonWalk::storeOfChain(Part& part, const Surface& surface, const Bsdf& bsdf,
                               Sampler& sampler, Batch& batch, std::vector<Photon>& photons) const {
-    if (!m_chains.areOn()) return store(surface, bsdf, part.flux, batch, photons);
+    if (!m_chains.areOn()) return store(part, surface, bsdf, part.flux, batch, photons);
     const auto flux = static_cast<float>(channelSum(part.flux));
     LongChains::land(part.chain, flux);
     const float probability = m_chains.storing(part.chain, flux);
     if (probability < 1.0f && !(sampler.next1D() < probability)) return;
-    store(surface, bsdf, part.flux * (1.0f / probability), batch, photons);
+    store(part, surface, bsdf, part.flux * (1.0f / probability), batch, photons);
 }
 
-void PhotonWalk::store(const Surface& surface, const Bsdf& bsdf, const Rgb& flux, Batch& batch,
+void PhotonWalk::store(const Part& part, const Surface& surface, const Bsdf& bsdf, const Rgb& flux, Batch& batch,
                        std::vector<Photon>& photons) {
     photons.push_back({surface.position, flux * (bsdf.normalRatio() * bsdf.arrival()),
                        PackedNormal(bsdf.facingGeometricNormal())});
+    photons.back().normal.setClass(part.of);
     ++batch.balance.stored;
 }
 

@@ -87,6 +87,7 @@ class PhotonWalk {
         Way way{};
         EventCount events{};
         float width = 0.0f;  // of the footprint that the ray starts from, scene units
+        PhotonClass of{};    // of its light and time
     };
     // Parts of one photon that wait to be followed.
     struct Waiting {
@@ -150,7 +151,8 @@ class PhotonWalk {
     void storeOfChain(Part& part, const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
                       Batch& batch, std::vector<Photon>& photons) const;
 
-    static void store(const Surface& surface, const Bsdf& bsdf, const Rgb& flux, Batch& batch,
+    static void store(const Part& part, const Surface& surface, const Bsdf& bsdf,
+                      const Rgb& flux, Batch& batch,
                       std::vector<Photon>& photons);
 
     const Scene& m_scene;

@@ -128,9 +128,9 @@ void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
                     (start(cell.row) + jitter.y) * m_request.spacing};
     point.normal = Vec3f(0.0f);
     const auto x = static_cast<double>(point.screen.x), y = static_cast<double>(point.screen.y);
-    const Ray first = m_camera.ray(x, y);
+    const Ray first = m_camera.ray({x, y});
     followCameraPath(
-        m_scene, first, m_camera.footprint(x, y, first), sampler, [&](const PathStop& stop) {
+        m_scene, first, m_camera.footprint({x, y}, first), sampler, [&](const PathStop& stop) {
             const bool chosen = stop.bsdf.has(Lobe::kDiffuse) && stop.sampler.next1D() < 0.5f;
             if (!stop.isGathered() && !chosen) return stop.goesOn();
             const std::optional<Admission> admission = stop.bsdf.admission();

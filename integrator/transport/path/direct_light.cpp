@@ -31,9 +31,9 @@ struct Question {
 
 // A shadow ray to the same light from another place.
 Ray shadowRayFrom(const Vec3f& origin, const Ray& ray) {
-    if (!std::isfinite(ray.tMax)) return {origin, ray.direction, ray.tMax, ray.viewer};
+    if (!std::isfinite(ray.tMax)) return {origin, ray.direction, ray.tMax, ray.viewer, ray.time};
     const Vec3f end = ray.origin + ray.direction * ray.tMax;
-    return {origin, (end - origin) * (1.0f / ray.tMax), ray.tMax, ray.viewer};
+    return {origin, (end - origin) * (1.0f / ray.tMax), ray.tMax, ray.viewer, ray.time};
 }
 
 // Light from beyond the horizon of a face that stands for part of a curved surface, which sees it.

@@ -320,7 +320,8 @@ void PhotonIntegrator::followDiffuse(const Surface& surface, const Bsdf& bsdf, c
         const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle,
                                branch.lampSamples};
         const Ray ray =
-            m_scene.rayOnwards(surface.position, bsdf.facingGeometricNormal(), sample.direction);
+            m_scene.rayOnwards(surface.position, bsdf.facingGeometricNormal(), sample.direction,
+                               surface.time);
         gatherAlong(ray, last, still, share * sample.weight / density, rays,
                     dot(sample.direction, bsdf.facingShadingNormal()), part, tree.result);
     }

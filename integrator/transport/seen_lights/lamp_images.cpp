@@ -136,8 +136,8 @@ struct Arrival {
 // The ray that these lobes lead to, from a place of the frame.
 std::optional<Ray> rayBy(const Scene& scene, const Camera& camera, std::uint64_t lobes, double x,
                          double y) {
-    Ray ray = camera.ray(x, y);
-    RayFootprint footprint = camera.footprint(x, y, ray);
+    Ray ray = camera.ray({x, y});
+    RayFootprint footprint = camera.footprint({x, y}, ray);
     Carried carried;
     int shift = 0;
     while (lobes >> (shift + 2)) shift += 2;
@@ -299,8 +299,8 @@ Rgb followLobes(const Scene& scene, const LightSampler& lights, const Camera& ca
         int count = 0;
     };
     Rgb found;
-    const Ray first = camera.ray(x, y);
-    std::vector<Branch> waiting{{first, camera.footprint(x, y, first)}};
+    const Ray first = camera.ray({x, y});
+    std::vector<Branch> waiting{{first, camera.footprint({x, y}, first)}};
     while (!waiting.empty()) {
         Branch branch = waiting.back();
         waiting.pop_back();

@@ -128,8 +128,8 @@ Rgb SeenLamps::sample(const Shown& shown, std::uint32_t pass, const PixelCell& c
                 if (image.holds(place.x, place.y)) all += kPathsOfImage / image.area();
             weight = density / all;
         }
-        const Ray ray = m_camera.ray(place.x, place.y);
-        sum += along(ray, m_camera.footprint(place.x, place.y, ray), sampler, rays, effort) *
+        const Ray ray = m_camera.ray({place.x, place.y});
+        sum += along(ray, m_camera.footprint({place.x, place.y}, ray), sampler, rays, effort) *
                static_cast<float>(weight);
     };
     const std::uint64_t stream = cell.stream(pass) + 8;

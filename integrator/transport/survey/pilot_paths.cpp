@@ -38,8 +38,8 @@ void followPilotPaths(const Scene& scene, const Camera& camera, const FrameLatti
         const double x = static_cast<double>(i % lattice.columns) + static_cast<double>(jitter.x);
         const double y = static_cast<double>(i / lattice.columns) + static_cast<double>(jitter.y);
         const double atX = x * lattice.cellWidth, atY = y * lattice.cellHeight;
-        const Ray first = camera.ray(atX, atY);
-        followCameraPath(scene, first, camera.footprint(atX, atY, first), sampler,
+        const Ray first = camera.ray({atX, atY});
+        followCameraPath(scene, first, camera.footprint({atX, atY}, first), sampler,
                          [&](const PathStop& stop) { return visit(i, stop); });
     });
 }

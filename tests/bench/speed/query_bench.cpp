@@ -98,7 +98,7 @@ class QueryBench {
         const Camera camera(*m_scene, kFrame, kFrame);
         for (const std::uint32_t pixel : hilbertOrder(kFrame, kFrame)) {
             Surface seen;
-            const Ray ray = camera.ray(pixel % kFrame + 0.5, pixel / kFrame + 0.5);
+            const Ray ray = camera.ray({pixel % kFrame + 0.5, pixel / kFrame + 0.5});
             // Photons lie, and are asked for, on diffuse surfaces alone.
             if (!m_scene->intersect(ray, seen) ||
                 m_scene->material(seen.material).kind != MaterialKind::kSurface)

@@ -30,7 +30,7 @@ RaySets makeRays(const Scene& scene) {
             Sampler sampler(1, 0, static_cast<std::uint64_t>(y * kSize + x), 0);
             const Vec2f jitter = sampler.next2D();
             rays.camera.push_back(
-                camera.ray(x + static_cast<double>(jitter.x), y + static_cast<double>(jitter.y)));
+                camera.ray({x + static_cast<double>(jitter.x), y + static_cast<double>(jitter.y)}));
             Surface surface;
             if (!scene.intersect(rays.camera.back(), surface)) continue;
             const float side =

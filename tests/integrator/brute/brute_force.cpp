@@ -201,7 +201,7 @@ std::array<double, 3> BruteForce::mean(const Rect& area, std::uint32_t samples,
     for (std::uint32_t i = 0; i < samples; ++i) {
         const double x = area.x0 + uniform() * area.width(),
                      y = area.y0 + uniform() * area.height();
-        const std::array<double, 3> found = Path(*this, random).follow(camera.ray(x, y));
+        const std::array<double, 3> found = Path(*this, random).follow(camera.ray({x, y}));
         for (std::size_t c = 0; c < 3; ++c) sum[c] += found[c];
     }
     for (double& s : sum) s /= samples;

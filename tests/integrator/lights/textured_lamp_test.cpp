@@ -46,7 +46,7 @@ std::shared_ptr<const SkyPicture> halves() {
 LampTexture lookAt(Domain domain, const std::shared_ptr<const SkyPicture>& of, double texels) {
     LampTexture::Lamp lamp{domain, texels, std::size_t{1} << 20, {}};
     lamp.look = [&](Vec2f uv) {
-        const Texel t = of->lookUp(0, uv, {});
+        const Texel t = of->lookUp(0, {uv});
         return LampTexture::Look{(static_cast<double>(t.r) + t.g + t.b) / 3};
     };
     return LampTexture(lamp);
@@ -113,7 +113,7 @@ TEST(LampTexture, LeavesLittleVariance) {
             const Moments found = momentsOf(20'000, [&](auto) {
                 float density;
                 const Vec2f at = texture.sample(random.next2D(), density);
-                return static_cast<double>(of->lookUp(0, at, {}).r / density);
+                return static_cast<double>(of->lookUp(0, {at}).r / density);
             });
             const double expected = (domain == Domain::kTriangle ? 2.0 : 1.0) / side / side;
             EXPECT_NEAR(found.mean, expected, 4 * found.standardError) << side;
@@ -398,11 +398,11 @@ TEST(TexturedLamp, AimedPhotonsLandTheFluxOfTheUnaimed) {
 class BadPicture final : public TextureSource {
   public:
     explicit BadPicture(const SkyPicture& clean) : m_clean(clean) {}
-    Texel lookUp(std::int32_t, Vec2f uv, const UvFootprint&) const override {
-        const Texel t = m_clean.lookUp(0, uv, {});
+    Texel lookUp(std::int32_t, const TextureContext& at) const override { const Vec2f uv = at.uv;
+        const Texel t = m_clean.lookUp(0, {uv});
         return {t.r - 0.5f, t.g - 0.5f, t.b - 0.5f};
     }
-    Texel lookUpOfLight(std::int32_t, Vec2f uv) const override { return m_clean.lookUp(0, uv, {}); }
+    Texel lookUpOfLight(std::int32_t, Vec2f uv) const override { return m_clean.lookUp(0, {uv}); }
     BadTexels badTexels(std::int32_t, const CancelCheck&) const override { return {7, 2}; }
     std::string name(std::int32_t) const override { return "lamp.exr"; }
     std::array<std::uint32_t, 2> texels(std::int32_t i) const override { return m_clean.texels(i); }

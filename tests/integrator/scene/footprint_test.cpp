@@ -32,7 +32,7 @@ class Checker : public TextureSource {
           m_filters(filters),
           m_read(static_cast<std::size_t>(textures) * kLevels * kTilesOfLevel) {}
 
-    Texel lookUp(std::int32_t index, Vec2f uv, const UvFootprint& footprint) const override {
+    Texel lookUp(std::int32_t index, const TextureContext& at) const override { const Vec2f uv = at.uv; const UvFootprint& footprint = at.footprint;
         const float longest = std::max(std::hypot(footprint.x.x, footprint.x.y),
                                        std::hypot(footprint.y.x, footprint.y.y));
         const int level =
@@ -111,8 +111,8 @@ constexpr std::int32_t kWidth = 40, kHeight = 30;
 End endOf(const Scene& scene, const Camera& camera, double x, double y, std::uint32_t index) {
     End end;
     Sampler sampler(1, 0, index, 0);
-    const Ray first = camera.ray(x, y);
-    followCameraPath(scene, first, camera.footprint(x, y, first), sampler,
+    const Ray first = camera.ray({x, y});
+    followCameraPath(scene, first, camera.footprint({x, y}, first), sampler,
                      [&](const PathStop& stop) {
                          end.isThere = stop.bsdf.has(Lobe::kDiffuse);
                          end.uv = stop.surface.uv;
@@ -239,9 +239,9 @@ Horizon floorToTheHorizon(bool filters) {
             const Vec2f at = sampler.next2D();
             const double x = column + static_cast<double>(at.x),
                          y = row + static_cast<double>(at.y);
-            const Ray ray = camera.ray(x, y);
+            const Ray ray = camera.ray({x, y});
             const SampleRadiance seen =
-                PathIntegrator(*scene, lights).sample(ray, sampler, camera.footprint(x, y, ray));
+                PathIntegrator(*scene, lights).sample(ray, sampler, camera.footprint({x, y}, ray));
             if (seen.coverage > 0.0f && row < kDown / 2 + kFarRows)
                 found.greatestError = std::max(found.greatestError,
                                                std::abs(static_cast<double>(seen.albedo.g) - 0.5));

@@ -86,7 +86,7 @@ TEST(NormalMap, StaysAboveTheSurface) {
 class OneTexel : public TextureSource {
   public:
     explicit OneTexel(const Texel& texel) : m_texel(texel) {}
-    Texel lookUp(std::int32_t, Vec2f, const UvFootprint&) const override { return m_texel; }
+    Texel lookUp(std::int32_t, const TextureContext&) const override { return m_texel; }
     std::array<std::uint32_t, 2> texels(std::int32_t) const override { return {1, 1}; }
     std::uint64_t failureCount() const override { return 0; }
 

@@ -218,7 +218,7 @@ double discShare(double distance) {
     Surface surface;
     for (int y = 0; y < 512; ++y)
         for (int x = 0; x < 512; ++x)
-            covered += scene->intersect(camera.ray(x + 0.5, y + 0.5), surface);
+            covered += scene->intersect(camera.ray({x + 0.5, y + 0.5}), surface);
     return covered / (512.0 * 512.0);
 }
 
@@ -253,7 +253,7 @@ std::vector<float> picture(Vec3d shift, double ground = 4, bool indirectToo = tr
     for (std::uint64_t i = 0; i < 32 * 24; ++i) {
         Sampler sampler(1, 0, i, 0);
         const Ray ray =
-            camera.ray(static_cast<double>(i % 32) + 0.5, static_cast<double>(i / 32) + 0.5);
+            camera.ray({static_cast<double>(i % 32) + 0.5, static_cast<double>(i / 32) + 0.5});
         const SampleRadiance s = PathIntegrator(*scene, lights).sample(ray, sampler);
         pixels.push_back((indirectToo ? s.direct + s.indirect + s.emission : s.direct).g);
     }

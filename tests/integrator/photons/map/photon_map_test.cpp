@@ -69,6 +69,24 @@ void expectNearest(const PhotonMap& map, const PhotonQuery& query, NearestPhoton
     }
 }
 
+// The mark and the class of a photon don't disturb each other, nor the normal.
+TEST(PhotonMap, PhotonsKnowTheirClass) {
+    for (unsigned group = 0; group < PhotonClass::kGroups; ++group)
+        for (unsigned slice = 0; slice < PhotonClass::kSlices; ++slice) {
+            PackedNormal normal(Vec3f{0, 0, -1});
+            const PhotonClass of{static_cast<std::uint8_t>(group),
+                                 static_cast<std::uint8_t>(slice)};
+            normal.mark();
+            normal.setClass(of);
+            EXPECT_EQ(normal.photonClass(), of);
+            EXPECT_TRUE(normal.isMarked());
+            normal.unmark();
+            EXPECT_EQ(normal.photonClass(), of);
+            EXPECT_FALSE(normal.isMarked());
+            EXPECT_EQ(normal.unpack(), (Vec3f{0, 0, -1}));
+        }
+}
+
 TEST(PhotonMap, FindsTheNearest) {
     NearestPhotons scratch;
     for (const std::uint32_t count : {1u, 2u, 15u, 16u, 17u, 33u, 1000u, 20'000u})

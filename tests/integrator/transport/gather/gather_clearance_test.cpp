@@ -36,7 +36,7 @@ TEST(GatherPoints, PlacesInAGapKnowItsHeight) {
     const auto floor = static_cast<float>(-scene->centre().z);
     const float edge = static_cast<float>(-scene->centre().x);
     const auto clearanceAt = [&](Vec2f screen, float x) {
-        const Ray ray = camera.ray(static_cast<double>(screen.x), static_cast<double>(screen.y));
+        const Ray ray = camera.ray({static_cast<double>(screen.x), static_cast<double>(screen.y)});
         const float along = (floor - ray.origin.z) / ray.direction.z;
         Vec3f position = ray.origin + ray.direction * along;
         position.x = edge + x;

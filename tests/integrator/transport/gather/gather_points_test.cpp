@@ -157,7 +157,7 @@ TEST(GatherPoints, RaysFollowTheCosine) {
                     const Vec2f screen{static_cast<float>(x) + 0.5f, static_cast<float>(y) + 0.5f};
                     Surface surface;
                     ASSERT_TRUE(scene->intersect(
-                        camera.ray(static_cast<double>(screen.x), static_cast<double>(screen.y)),
+                        camera.ray({static_cast<double>(screen.x), static_cast<double>(screen.y)}),
                         surface));
                     GatherPoints::Estimate found;
                     ASSERT_TRUE(points.estimate({screen, surface.position, Vec3f(normal),
@@ -204,7 +204,7 @@ TEST(GatherPoints, FewSamplesBesideAWallAreWithout) {
         const Vec2f screen{kPixels * random.next(), kPixels * random.next()};
         Surface surface;
         if (!scene->intersect(
-                camera.ray(static_cast<double>(screen.x), static_cast<double>(screen.y)),
+                camera.ray({static_cast<double>(screen.x), static_cast<double>(screen.y)}),
                 surface) ||
             surface.shape != 0)
             continue;

@@ -158,7 +158,7 @@ std::vector<double> directSeen(const SceneMaker& maker) {
     for (std::uint32_t i = 0; i < 256; ++i) {
         Sampler sampler(1, 0, 0, i);
         const Vec2f screen{static_cast<float>(i % 16) + 0.5f, static_cast<float>(i / 16) + 0.5f};
-        const Ray ray = camera.ray(static_cast<double>(screen.x), static_cast<double>(screen.y));
+        const Ray ray = camera.ray({static_cast<double>(screen.x), static_cast<double>(screen.y)});
         seen.push_back(
             static_cast<double>(integrator.sample({screen, ray}, sampler, scratch).direct.g));
     }

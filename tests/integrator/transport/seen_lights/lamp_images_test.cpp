@@ -68,7 +68,7 @@ TEST(LampImages, AreFoundWhereTheyAre) {
             Sampler sampler(1, 0, 0, 0);
             std::uint32_t rays = 0;
             const Rgb seen =
-                lamps.along(camera.ray(image.centre[0], image.centre[1]), sampler, rays);
+                lamps.along(camera.ray({image.centre[0], image.centre[1]}), sampler, rays);
             EXPECT_NEAR(static_cast<double>(seen.g), radiance, 1e-3 * radiance);
         }
         EXPECT_EQ(found, 1);

@@ -15,8 +15,8 @@ class Orthographic {
         : m_scale(0.5 * camera.height / halfHeight),
           m_aspect(camera.pixelAspect > 0 ? camera.pixelAspect : 1.0) {}
 
-    CameraRay ray(double right, double up) const {
-        return {{right * m_scale * m_aspect, up * m_scale, 0.0}, {0.0, 0.0, 1.0}};
+    CameraRay ray(const CameraSample& sample) const {
+        return {{sample.x * m_scale * m_aspect, sample.y * m_scale, 0.0}, {0.0, 0.0, 1.0}};
     }
     PixelWidth pixelWidth() const { return {m_scale, 0.0}; }
 
