@@ -32,7 +32,8 @@ std::uint32_t aloneAt(const Materials& materials, const Surface& surface) {
     while (materials[index].kind == MaterialKind::kMixture) {
         const MaterialDescription& mixture = materials[index];
         const float second = weightAt(materials, mixture, contextAt(surface));
-        if ((second > 0.0f && second < 1.0f) || ownOpacityAt(materials, mixture, contextAt(surface)) < 1.0f)
+        if ((second > 0.0f && second < 1.0f) ||
+            ownOpacityAt(materials, mixture, contextAt(surface)) < 1.0f)
             break;
         index = second > 0.0f ? mixture.second : mixture.first;
     }

@@ -30,9 +30,8 @@ class Numbers {
     static Rgb clamped(const Rgb& c) { return {clamp01(c.r), clamp01(c.g), clamp01(c.b)}; }
 
     Texel lookUp(std::int32_t texture) const {
-        return texture == kNoTexture
-                   ? Texel{1.0f, 1.0f, 1.0f, 1.0f}
-                   : m_materials.textures->lookUp(texture, contextAt(m_surface));
+        return texture == kNoTexture ? Texel{1.0f, 1.0f, 1.0f, 1.0f}
+                                     : m_materials.textures->lookUp(texture, contextAt(m_surface));
     }
 
     const Materials& m_materials;

@@ -125,8 +125,7 @@ MaterialTraits traitsOfMixture(const MaterialDescription& own, const MaterialTra
     t.isBlack = t.isBlack && !isCut;
     t.isInvisible = t.isInvisible && !isCut;
     t.emits = t.emits || !isBlack(own.emission);
-    t.shinesUnevenly = t.shinesUnevenly || isCut || isTextured ||
-                       a.emits || b.emits ||
+    t.shinesUnevenly = t.shinesUnevenly || isCut || isTextured || a.emits || b.emits ||
                        own.emissionTexture != kNoTexture;
     t.filtersTextures = t.filtersTextures || isTextured || filtersTexture(own);
     t.looksUpTextures = t.looksUpTextures || hasTexture(own);

@@ -33,8 +33,7 @@ inline float ownOpacityAt(const Materials& materials, const MaterialDescription&
 
 // Share of the surface that is there at a point, in [0, 1]. Always by the finest level: shadow
 // rays, which have no footprint, are to meet what all others meet.
-inline float opacityAt(const Materials& materials, std::uint32_t index,
-                       const TextureContext& at) {
+inline float opacityAt(const Materials& materials, std::uint32_t index, const TextureContext& at) {
     const MaterialDescription& material = materials[index];
     const float own = ownOpacityAt(materials, material, at);
     if (material.kind != MaterialKind::kMixture || own == 0.0f) return own;

@@ -52,7 +52,7 @@ inline float decodedNormal(float channel, float largestCode) {
 // Where on a surface a texture is asked for.
 struct TextureContext {
     Vec2f uv;
-    Vec3f place{};            // in the scene's own coordinates; 0 where only uv is known, as on lamps
+    Vec3f place{};  // in the scene's own coordinates; 0 where only uv is known, as on lamps
     UvFootprint footprint{};  // over which it is filtered
 
     // The same at the finest level.

@@ -124,9 +124,8 @@ void Scene::applyMaps(const ShapeRecord& record, std::uint32_t primitive,
 void Scene::turnByNormalMap(const MaterialDescription& material, const Vec3f& tangent,
                             float normalLength, const UvFootprint& footprint,
                             Surface& surface) const {
-    const Vec3f found =
-        m_materials.textures->normalAt(material.normalTexture,
-                                       {surface.uv, surface.position, footprint});
+    const Vec3f found = m_materials.textures->normalAt(material.normalTexture,
+                                                       {surface.uv, surface.position, footprint});
     const Vec3f mapped{found.x * material.normalScale, found.y * material.normalScale, found.z};
     const TangentFrame frame =
         tangentFrame(tangent, surface.shadingNormal * normalLength, surface.isTextureMirrored);
@@ -139,9 +138,8 @@ void Scene::turnByBumpMap(const MaterialDescription& material, const TexturedEdg
     const TextureSource& textures = *m_materials.textures;
     const auto [across, down] = textures.texels(material.bumpTexture);
     const TextureContext at{surface.uv, surface.position, footprint};
-    const HeightSlopes slopes{
-        slopeAlong(&Vec2f::x, across, textures, material, at),
-        slopeAlong(&Vec2f::y, down, textures, material, at)};
+    const HeightSlopes slopes{slopeAlong(&Vec2f::x, across, textures, material, at),
+                              slopeAlong(&Vec2f::y, down, textures, material, at)};
     surface.shadingNormal =
         bumpedNormal(surface.shadingNormal, surface.geometricNormal, edges, slopes);
 }

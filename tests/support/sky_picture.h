@@ -26,7 +26,8 @@ class SkyPicture final : public TextureSource {
             for (std::uint32_t x = 0; x < width; ++x) m_texels.push_back(texel(x, y));
     }
 
-    Texel lookUp(std::int32_t, const TextureContext& asked) const override { const Vec2f uv = asked.uv;
+    Texel lookUp(std::int32_t, const TextureContext& asked) const override {
+        const Vec2f uv = asked.uv;
         const float x = uv.x * static_cast<float>(m_width) - 0.5f;
         const float y = uv.y * static_cast<float>(m_height) - 0.5f;
         const float x0 = std::floor(x), y0 = std::floor(y);

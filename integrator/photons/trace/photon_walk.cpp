@@ -299,8 +299,8 @@ void PhotonWalk::landDescended(Part& part, const Surface& surface, const Bsdf& b
         return storeOfChain(part, surface, bsdf, sampler, batch, batch.descended);
     const bool isStraight = way.stage == Stage::kDescended || way.stage == Stage::kBroadened;
     if (isStraight && !way.isFollowed) return;
-    store(part, surface, bsdf, isStraight ? part.flux * (1.0f / m_request.descent) : part.flux, batch,
-          batch.descended);
+    store(part, surface, bsdf, isStraight ? part.flux * (1.0f / m_request.descent) : part.flux,
+          batch, batch.descended);
     if (way.stage == Stage::kRefocused) batch.descended.back().normal.mark();
 }
 
@@ -314,8 +314,8 @@ void PhotonWalk::storeOfChain(Part& part, const Surface& surface, const Bsdf& bs
     store(part, surface, bsdf, part.flux * (1.0f / probability), batch, photons);
 }
 
-void PhotonWalk::store(const Part& part, const Surface& surface, const Bsdf& bsdf, const Rgb& flux, Batch& batch,
-                       std::vector<Photon>& photons) {
+void PhotonWalk::store(const Part& part, const Surface& surface, const Bsdf& bsdf, const Rgb& flux,
+                       Batch& batch, std::vector<Photon>& photons) {
     photons.push_back({surface.position, flux * (bsdf.normalRatio() * bsdf.arrival()),
                        PackedNormal(bsdf.facingGeometricNormal())});
     photons.back().normal.setClass(part.of);

@@ -151,9 +151,8 @@ class PhotonWalk {
     void storeOfChain(Part& part, const Surface& surface, const Bsdf& bsdf, Sampler& sampler,
                       Batch& batch, std::vector<Photon>& photons) const;
 
-    static void store(const Part& part, const Surface& surface, const Bsdf& bsdf,
-                      const Rgb& flux, Batch& batch,
-                      std::vector<Photon>& photons);
+    static void store(const Part& part, const Surface& surface, const Bsdf& bsdf, const Rgb& flux,
+                      Batch& batch, std::vector<Photon>& photons);
 
     const Scene& m_scene;
     const LightSampler& m_lights;

@@ -319,9 +319,8 @@ void PhotonIntegrator::followDiffuse(const Surface& surface, const Bsdf& bsdf, c
         if (!bsdf.follow(Lobe::kDiffuse, sample, u)) continue;
         const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle,
                                branch.lampSamples};
-        const Ray ray =
-            m_scene.rayOnwards(surface.position, bsdf.facingGeometricNormal(), sample.direction,
-                               surface.time);
+        const Ray ray = m_scene.rayOnwards(surface.position, bsdf.facingGeometricNormal(),
+                                           sample.direction, surface.time);
         gatherAlong(ray, last, still, share * sample.weight / density, rays,
                     dot(sample.direction, bsdf.facingShadingNormal()), part, tree.result);
     }

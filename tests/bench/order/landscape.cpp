@@ -18,7 +18,8 @@ constexpr std::uint32_t kRate = 16;  // pieces of an edge
 // Heights in [0, 1]: octaves of value noise.
 class Hills final : public TextureSource {
   public:
-    Texel lookUp(std::int32_t, const TextureContext& at) const override { const Vec2f uv = at.uv;
+    Texel lookUp(std::int32_t, const TextureContext& at) const override {
+        const Vec2f uv = at.uv;
         float height = 0, size = 0.5f, frequency = 3.0f;
         for (std::uint32_t octave = 0; octave < 8; ++octave) {
             height += size * noise(uv.x * frequency, uv.y * frequency, octave);

@@ -39,7 +39,9 @@ class ToldTextures final : public TextureSource {
     }
     void holdAtMost(std::uint64_t bytes) { m_system->holdAtMost(bytes); }
 
-    Texel lookUp(std::int32_t index, const TextureContext& at) const override { const Vec2f uv = at.uv; const UvFootprint& footprint = at.footprint;
+    Texel lookUp(std::int32_t index, const TextureContext& at) const override {
+        const Vec2f uv = at.uv;
+        const UvFootprint& footprint = at.footprint;
         if (CacheWatch* const watch = CacheWatch::current()) tell(*watch, index, uv);
         return m_textures->lookUp(index, at);
     }

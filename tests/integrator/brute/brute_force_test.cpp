@@ -21,7 +21,8 @@ constexpr std::int32_t kWidth = 12, kHeight = 8;
 // Texture 0: a normal that leans to and fro along u. Texture 1: holes.
 class Pictures final : public TextureSource {
   public:
-    Texel lookUp(std::int32_t index, const TextureContext& at) const override { const Vec2f uv = at.uv;
+    Texel lookUp(std::int32_t index, const TextureContext& at) const override {
+        const Vec2f uv = at.uv;
         const auto square = [](float x) { return static_cast<int>(std::floor(4.0f * x)); };
         if (index == 0) return {square(uv.x) % 2 == 0 ? 0.58f : 0.42f, 128.0f / 255, 0.97f, 1.0f};
         const float value = (square(uv.x) + square(uv.y)) % 2 == 0 ? 0.0f : 1.0f;

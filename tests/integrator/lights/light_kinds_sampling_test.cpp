@@ -287,7 +287,8 @@ class RepeatedPicture final : public TextureSource {
   public:
     RepeatedPicture(std::uint32_t rows, std::function<float(std::int64_t)> row)
         : m_rows(rows), m_row(std::move(row)) {}
-    Texel lookUp(std::int32_t, const TextureContext& asked) const override { const Vec2f uv = asked.uv;
+    Texel lookUp(std::int32_t, const TextureContext& asked) const override {
+        const Vec2f uv = asked.uv;
         const float y = uv.y * static_cast<float>(m_rows) - 0.5f, y0 = std::floor(y);
         const auto at = [&](float row) {
             const std::int64_t n = m_rows;

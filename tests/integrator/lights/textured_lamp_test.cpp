@@ -398,7 +398,8 @@ TEST(TexturedLamp, AimedPhotonsLandTheFluxOfTheUnaimed) {
 class BadPicture final : public TextureSource {
   public:
     explicit BadPicture(const SkyPicture& clean) : m_clean(clean) {}
-    Texel lookUp(std::int32_t, const TextureContext& at) const override { const Vec2f uv = at.uv;
+    Texel lookUp(std::int32_t, const TextureContext& at) const override {
+        const Vec2f uv = at.uv;
         const Texel t = m_clean.lookUp(0, {uv});
         return {t.r - 0.5f, t.g - 0.5f, t.b - 0.5f};
     }

@@ -32,7 +32,9 @@ class Checker : public TextureSource {
           m_filters(filters),
           m_read(static_cast<std::size_t>(textures) * kLevels * kTilesOfLevel) {}
 
-    Texel lookUp(std::int32_t index, const TextureContext& at) const override { const Vec2f uv = at.uv; const UvFootprint& footprint = at.footprint;
+    Texel lookUp(std::int32_t index, const TextureContext& at) const override {
+        const Vec2f uv = at.uv;
+        const UvFootprint& footprint = at.footprint;
         const float longest = std::max(std::hypot(footprint.x.x, footprint.x.y),
                                        std::hypot(footprint.y.x, footprint.y.y));
         const int level =

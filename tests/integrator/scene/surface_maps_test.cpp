@@ -27,7 +27,10 @@ class Function : public TextureSource {
   public:
     explicit Function(std::function<Texel(Vec2f)> value, std::uint32_t texels = 64)
         : m_value(std::move(value)), m_texels(texels) {}
-    Texel lookUp(std::int32_t, const TextureContext& at) const override { const Vec2f uv = at.uv; return m_value(uv); }
+    Texel lookUp(std::int32_t, const TextureContext& at) const override {
+        const Vec2f uv = at.uv;
+        return m_value(uv);
+    }
     std::array<std::uint32_t, 2> texels(std::int32_t) const override {
         return {m_texels, m_texels};
     }

@@ -180,7 +180,8 @@ TEST(LimitScene, HasNoCracks) {
 // A height for each place, of any texture coordinates.
 class WavyTexture final : public TextureSource {
   public:
-    Texel lookUp(std::int32_t, const TextureContext& at) const override { const Vec2f uv = at.uv;
+    Texel lookUp(std::int32_t, const TextureContext& at) const override {
+        const Vec2f uv = at.uv;
         const float height = 0.5f + 0.5f * std::sin(400.0f * uv.x) * std::cos(300.0f * uv.y);
         return {height, height, height};
     }
@@ -258,7 +259,8 @@ SubdivisionCage planeOfTwoSlots(int side) {
 class Slope final : public TextureSource {
   public:
     explicit Slope(float ofU) : m_ofU(ofU) {}
-    Texel lookUp(std::int32_t, const TextureContext& at) const override { const Vec2f uv = at.uv;
+    Texel lookUp(std::int32_t, const TextureContext& at) const override {
+        const Vec2f uv = at.uv;
         const float height = 1.0f - m_ofU * (1.0f - uv.x);
         return {height, height, height};
     }

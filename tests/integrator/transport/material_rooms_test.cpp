@@ -22,7 +22,8 @@ namespace {
 class Chequers final : public TextureSource {
   public:
     Chequers(float dark, float bright) : m_dark(dark), m_bright(bright) {}
-    Texel lookUp(std::int32_t index, const TextureContext& at) const override { const Vec2f uv = at.uv;
+    Texel lookUp(std::int32_t index, const TextureContext& at) const override {
+        const Vec2f uv = at.uv;
         const auto square = [](float x) { return static_cast<int>(std::floor(4.0f * x)); };
         if (index == 1) return {square(uv.x) % 2 == 0 ? 0.58f : 0.42f, 128.0f / 255, 0.97f, 1.0f};
         const float value = (square(uv.x) + square(uv.y)) % 2 == 0 ? m_dark : m_bright;

@@ -34,7 +34,8 @@ struct View {
 
     Ray ray(Sampler& sampler) const {
         const Vec2f place = sampler.next2D();
-        return camera.ray({kSize * static_cast<double>(place.x), kSize * static_cast<double>(place.y)});
+        return camera.ray(
+            {kSize * static_cast<double>(place.x), kSize * static_cast<double>(place.y)});
     }
 };
 
