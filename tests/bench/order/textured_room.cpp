@@ -40,9 +40,7 @@ class ToldTextures final : public TextureSource {
     void holdAtMost(std::uint64_t bytes) { m_system->holdAtMost(bytes); }
 
     Texel lookUp(std::int32_t index, const TextureContext& at) const override {
-        const Vec2f uv = at.uv;
-        const UvFootprint& footprint = at.footprint;
-        if (CacheWatch* const watch = CacheWatch::current()) tell(*watch, index, uv);
+        if (CacheWatch* const watch = CacheWatch::current()) tell(*watch, index, at.uv);
         return m_textures->lookUp(index, at);
     }
     std::array<std::uint32_t, 2> texels(std::int32_t index) const override {
