@@ -71,12 +71,11 @@ bool wrapOccluded(const RayTracer* tracer, const Ray& ray) {
     return realOccluded(tracer, ray);
 }
 
-static_assert(
-    std::is_same_v<decltype(&Camera::ray), Ray (Camera::*)(const CameraSample&) const>);
-Ray realCameraRay(const Camera*, const CameraSample&) __asm__(
-    "__real__ZNK2pm6Camera3rayERKNS_12CameraSampleE");
-Ray wrapCameraRay(const Camera*, const CameraSample&) __asm__(
-    "__wrap__ZNK2pm6Camera3rayERKNS_12CameraSampleE");
+static_assert(std::is_same_v<decltype(&Camera::ray), Ray (Camera::*)(const CameraSample&) const>);
+Ray realCameraRay(const Camera*,
+                  const CameraSample&) __asm__("__real__ZNK2pm6Camera3rayERKNS_12CameraSampleE");
+Ray wrapCameraRay(const Camera*,
+                  const CameraSample&) __asm__("__wrap__ZNK2pm6Camera3rayERKNS_12CameraSampleE");
 Ray wrapCameraRay(const Camera* camera, const CameraSample& sample) {
     if (recorded) {
         cameraRayComes = true;

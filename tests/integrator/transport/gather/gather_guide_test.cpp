@@ -128,7 +128,7 @@ Spot irradianceOfTheFloor(const Scene& scene, const IrradianceSites& sites,
             for (int x = 2; x < 32; x += 4) {
                 const Vec2f screen{static_cast<float>(x), static_cast<float>(y)};
                 Surface surface;
-                const Ray ray = camera.ray({x, y});
+                const Ray ray = camera.ray({static_cast<double>(x), static_cast<double>(y)});
                 if (!scene.intersect(ray, surface) || surface.geometricNormal.y < 0.9f) continue;
                 GatherPoints::Estimate found;
                 const Vec3f& normal = surface.geometricNormal;

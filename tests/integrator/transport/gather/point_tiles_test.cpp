@@ -75,7 +75,9 @@ std::vector<float> found(const GatherPoints& points, const Scene& scene, const C
         for (std::int32_t y = region.y0; y < region.y1; y += 16)
             for (std::int32_t x = region.x0; x < region.x1; x += 16) {
                 Surface surface;
-                if (!scene.intersect(camera.ray({x, y}), surface)) continue;
+                if (!scene.intersect(camera.ray({static_cast<double>(x), static_cast<double>(y)}),
+                                     surface))
+                    continue;
                 GatherPoints::Estimate estimate;
                 const Vec3f normal = surface.geometricNormal;
                 points.estimate({{static_cast<float>(x), static_cast<float>(y)},
