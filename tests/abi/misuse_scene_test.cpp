@@ -270,7 +270,7 @@ TEST_F(MisuseScene, Materials) {
     }
     refused([](auto& desc) { desc.diffuse[0] = 1.5f; });
     refused([](auto& desc) { desc.transparency = 1.5f; });
-    refused([](auto& desc) { desc.kind = 3; });
+    refused([](auto& desc) { desc.kind = 4; });
     refused([](auto& desc) { desc.fresnel = 2; });
     PmrMaterialDesc desc = PMR_INIT(PmrMaterialDesc);
     desc.diffuseTexture = reinterpret_cast<PmrTexture>(host.scene());

@@ -127,7 +127,7 @@ def squares(u, v):
 
 def helmet(folder):
     """What is metal by a picture, as glTF has it, with another of the colour."""
-    material = principled("helmet", Roughness=0.4, Specular=0.5)
+    material = principled("helmet", Roughness=0.5, Specular=0.0)
     link_picture(material, save_picture(folder, "stripes", stripes), "Base Color")
     link_picture(material, save_picture(folder, "metal", lambda u, v: (squares(u, v),) * 3, "Non-Color"), "Metallic")
     add_room()
@@ -138,7 +138,7 @@ def helmet(folder):
 def barrel(folder):
     """Roughness and what is metal in channels of one picture; no exporter writes it, export() does."""
     orm = save_picture(folder, "orm", lambda u, v: (1.0, 0.35 + 0.3 * v, squares(u, v)), "Non-Color")
-    material = principled("barrel", Base_Color=(0.8, 0.5, 0.3, 1), Specular=0.5)
+    material = principled("barrel", Base_Color=(0.8, 0.5, 0.3, 1), Specular=0.0)
     tree = material.node_tree
     picture, parted = tree.nodes.new("ShaderNodeTexImage"), tree.nodes.new("ShaderNodeSeparateColor")
     picture.image = orm

@@ -281,6 +281,15 @@ TEST(MtlDialect, PicturesOfMetalMixBoth) {
     EXPECT_TRUE(m.opacityTexture && m.normalTexture && m.emissionTexture && m.emits());
 }
 
+// The key of the exporter since Blender 3.2.
+TEST(MtlDialect, APictureOfMetalHasThreeNames) {
+    for (const char* key : {"refl", "map_refl", "map_Pm"})
+        EXPECT_EQ(read(kBlender3, "Kd 1 1 1\nillum 2\n" + std::string(key) + " metal.png\n")
+                      .material.parts.size(),
+                  2u)
+            << key;
+}
+
 TEST(MtlDialect, PicturesOfMetalAndRoughnessMayBeChannelsOfOne) {
     const Result r = read(MtlDialect::kGeneric,
                           "Kd 0.5 0.4 0.3\nPm 0.5\nmap_Pm -imfchan b orm.png\n"

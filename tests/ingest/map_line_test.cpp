@@ -46,7 +46,7 @@ TEST(MapLine, NumbersThatAreNotWritten) {
 
 // -cc and its like are no part of the name.
 TEST(MapLine, WhatIsNotDoneIsNamed) {
-    for (const char* text : {"-cc on a.png", "a.png -cc on", "-imfchan r a.png", "-t 1 a.png",
+    for (const char* text : {"-cc on a.png", "a.png -cc on", "-imfchan q a.png", "-t 1 a.png",
                              "-boost 2 a.png", "-type sphere a.png", "-shade 3 a.png"}) {
         const MapLine line = parse(text);
         EXPECT_EQ(line.name, "a.png") << text;
@@ -58,6 +58,13 @@ TEST(MapLine, WhatIsNotDoneIsNamed) {
         EXPECT_EQ(line.name, "a.png") << text;
         EXPECT_TRUE(line.leftOut.empty()) << text;
     }
+}
+
+TEST(MapLine, OneChannelMayBeAskedFor) {
+    EXPECT_EQ(parse("-imfchan G a.png").channel, 'g');
+    EXPECT_EQ(parse("a.png -imfchan l").channel, 'l');
+    EXPECT_EQ(parse("-imfchan m a.png").channel, '\0');
+    EXPECT_EQ(parse("a.png").channel, '\0');
 }
 
 TEST(MapLine, NamesThatLookLikeOptionsAreNamesWhereTheyAreFiles) {

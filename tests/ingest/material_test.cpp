@@ -228,12 +228,14 @@ TEST(Material, mapsKnowWhereTheyStand) {
 }
 
 TEST(Material, mapsWithoutAFileAndOptionsLeftOutAreWarnedOf) {
-    const Result r =
-        read("map_Kd\nmap_Ks -s 2 2\nmap_d -imfchan r -t 1 a.png\nmap_Ke -t 0 a.png\n");
-    EXPECT_EQ(r.heard.list.size(), 4u);
+    const Result r = read(
+        "map_Kd\nmap_Ks -s 2 2\nmap_d -t 1 a.png\nmap_Ke -imfchan r a.png\n"
+        "norm -imfchan r a.png\nmap_Pr -imfchan g a.png\n");
+    EXPECT_EQ(r.heard.list.size(), 5u);
     for (const char* text :
          {"a.mtl:2: material m: map_Kd names no file", "a.mtl:3: material m: map_Ks names no file",
-          "a.mtl:4: material m: the option -imfchan of map_d", "the option -t of map_d"})
+          "a.mtl:5: material m: the option -imfchan of map_Ke", "the option -t of map_d",
+          "a.mtl:6: material m: the option -imfchan of norm"})
         EXPECT_TRUE(r.heard.has(Warning::kTexture, text)) << text;
 }
 

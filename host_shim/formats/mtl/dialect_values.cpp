@@ -294,7 +294,7 @@ std::optional<MetalMap> metalMapOf(MtlDialect dialect, const MtlSection& section
     const double illum = section.number("illum").value_or(2);
     if (illum == 4 || illum == 5 || illum == 7) return std::nullopt;
     if (mean(section.colour("Tf").value_or(Colour{})) >= 0.5) return std::nullopt;
-    for (const char* key : {"map_Pm", "refl"}) {
+    for (const char* key : {"map_Pm", "refl", "map_refl"}) {
         if (!section.hasMap(key) || (!isBlenders && key != std::string_view("map_Pm"))) continue;
         const double factor = std::clamp(section.number("Pm").value_or(1), 0.0, 1.0);
         return MetalMap{key, picturesStandAlone(dialect) ? 1 : factor};

@@ -3,6 +3,7 @@
 #include "host_shim/formats/mtl/map_line.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 
 #include "host_shim/formats/mtl/mtl_keys.h"
@@ -29,13 +30,25 @@ std::vector<double> takeNumbers(std::string_view& rest, std::size_t most) {
 // Of what is not rendered: whether it asks for something all the same.
 bool asksForSomething(std::string_view option, const std::vector<double>& numbers,
                       std::string_view word) {
-    if (equalInAnyCase(option, "-imfchan")) return !equalInAnyCase(word, "m");
     if (equalInAnyCase(option, "-cc")) return equalInAnyCase(word, "on");
     if (equalInAnyCase(option, "-t") || equalInAnyCase(option, "-boost"))
         return std::ranges::any_of(numbers, [](double number) { return number != 0; });
     if (equalInAnyCase(option, "-blendu") || equalInAnyCase(option, "-blendv"))
         return false;  // how texels are filtered is the renderer's own choice
     return equalInAnyCase(option, "-type");
+}
+
+// m is what is taken without it, too.
+void takeChannel(std::string_view value, MapLine& line) {
+    constexpr std::string_view kChannels = "rgblz";
+    const char letter = value.size() == 1
+                            ? static_cast<char>(std::tolower(static_cast<unsigned char>(value[0])))
+                            : '\0';
+    if (letter == 'm') return;
+    if (letter != '\0' && kChannels.find(letter) != kChannels.npos)
+        line.channel = letter;
+    else
+        line.leftOut.emplace_back("-imfchan");
 }
 
 void setNumbers(std::string_view option, const std::vector<double>& numbers, MapLine& line) {
@@ -69,6 +82,8 @@ bool takeOption(std::string_view& rest, MapLine& line) {
         line.clamp = equalInAnyCase(value, "on");
     } else if (equalInAnyCase(word, "-colorspace")) {
         line.colourSpace = value;
+    } else if (equalInAnyCase(word, "-imfchan")) {
+        takeChannel(value, line);
     } else if (asksForSomething(word, numbers, value)) {
         line.leftOut.emplace_back(option->option);
     }

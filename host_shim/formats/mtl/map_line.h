@@ -20,6 +20,7 @@ struct MapLine {
     double strength{1};  // of a normal map or heights
     bool clamp{};
     std::string colourSpace;
+    char channel{};                    // of -imfchan: r g b l z, or 0
     std::vector<std::string> leftOut;  // options that ask for something that is not done
 };
 

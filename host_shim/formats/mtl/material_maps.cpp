@@ -43,6 +43,11 @@ MaterialMap readMap(const std::string& text, const fs::path& folder, bool isData
     use.colourSpace = isData ? "" : map.line.colourSpace;
     use.isData = isData;
     use.clamp = map.line.clamp;
+    // Of one number: colours have three.
+    if (isData)
+        use.channel = map.line.channel;
+    else if (map.line.channel != '\0')
+        map.line.leftOut.emplace_back("-imfchan");
     for (std::size_t axis = 0; axis < 2; ++axis) {
         use.scale[axis] = static_cast<float>(map.line.scale[axis]);
         use.offset[axis] = static_cast<float>(map.line.offset[axis]);

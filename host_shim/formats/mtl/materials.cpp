@@ -106,7 +106,7 @@ class MaterialReader {
         constexpr float kUsualGrey = 0.8f, kUsual = 0.5f;
         if (key == "map_Ke") return 0;
         // As if nobody had spoken of a picture.
-        if (key == "map_Pm" || key == "refl")
+        if (key == "map_Pm" || key == "refl" || key == "map_refl")
             return static_cast<float>(std::clamp(number("Pm", 0), 0.0, 1.0));
         const bool isBase = m_section.maps.at(key) == m_diffuseMap;
         const std::string number = isBase ? "Kd" : key.substr(std::string_view("map_").size());
@@ -155,6 +155,11 @@ class MaterialReader {
         m_material.opacityTexture = map("map_d", true);
         m_material.emissionTexture = map("map_Ke", false);
         m_material.normalTexture = map("norm", true);
+        if (m_material.normalTexture && m_material.normalTexture->channel != '\0') {
+            note(Warning::kTexture, "norm",
+                 "the option -imfchan of norm is left out: a normal has three channels");
+            m_material.normalTexture->channel = '\0';
+        }
         m_material.bumpTexture = map("map_bump", true);
         m_material.displacementTexture = map("disp", true);
         m_material.transmissionTexture = map("map_Tf", false);
