@@ -41,6 +41,7 @@ Log::~Log() {
 }
 
 void Log::openFile(const std::filesystem::path& file) {
+    if (m_file >= 0) ::close(m_file);  // that of the frame before
     m_fileName = file;
     m_file = ::open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_APPEND | O_CLOEXEC, 0666);
     if (m_file < 0) {

@@ -31,7 +31,10 @@ constexpr Place<M> kDisplacementScale = {memberPlace<&M::displacementScale>().pu
 // Which materials they are, the scene knows.
 template <std::uint32_t M::*Part>
 constexpr Place<M> partPlace() {
-    return {nullptr, [](Hasher& hasher, const M& material) {
+    constexpr auto kUnknown = [](M& material, const ParameterValue&, std::int32_t) {
+        material.*Part = ~std::uint32_t{0};
+    };
+    return {kUnknown, [](Hasher& hasher, const M& material) {
                 if (material.kind == MaterialKind::kMixture) hasher.add(material.*Part);
             }};
 }
@@ -318,13 +321,16 @@ constexpr std::array kMaterialRows = {
     MaterialParameter{{.name = "first",
                        .help = "Mixture: the name of one of its two materials, which was made "
                                "before. It may be a mixture.",
-                       .type = Type::kText},
+                       .type = Type::kText,
+                       .isLater = true},
                       {},
                       {partPlace<&M::first>()}},
-    MaterialParameter{
-        {.name = "second", .help = "Mixture: the name of the other.", .type = Type::kText},
-        {},
-        {partPlace<&M::second>()}},
+    MaterialParameter{{.name = "second",
+                       .help = "Mixture: the name of the other.",
+                       .type = Type::kText,
+                       .isLater = true},
+                      {},
+                      {partPlace<&M::second>()}},
     MaterialParameter{{.name = "weight",
                        .help = "Mixture: share of the second.",
                        .defaultText = "0",

@@ -38,7 +38,7 @@ RENDERS = {
     1001: ({"room.obj": "mtllib room.mtl\n" + FLOOR}, []),
     1002: ({**room(), "room.mtl": "newmtl light\nKe 5 5 5\n"}, []),
     1003: (room("Kd 204 120 40\n"), []),
-    1004: (room("Kd .5 .5 .5\nPr .5\nPm 1\nmap_Pm metal.png\n"), []),
+    1004: (room("Kd .5 .5 .5\nPr .5\nPm 1\nmap_Ps sheen.png\n"), []),
     1005: (room("map_Kd wood.png\n"), []),
     1006: (room(more="l 1 2\n"), []),
     1007: (room(more="t crop 0/0/0\n"), []),

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "integrator/light_sampling/light_choice.h"
@@ -60,11 +61,12 @@ std::vector<LobeCase> lobeCases(double cosine) {
     const double s = (cosine - 1.5 * inside) / (cosine + 1.5 * inside);
     const auto r = static_cast<float>(0.5 * (p * p + s * s));
     const Rgb none;
-    return {{"sheet",
-             sheet,
-             {sheet.diffuse * 0.75f, none, sheet.glossy * 0.75f, none, none, Rgb(0.25f)}},
-            {"half a mirror", half, {none, none, none, half.glossy * 0.5f, none, Rgb(0.5f)}},
-            {"glass", tinted, {none, none, none, Rgb(r), tinted.transmission * (1 - r), none}}};
+    return {
+        {"sheet",
+         sheet,
+         {sheet.diffuse * 0.75f, none, none, sheet.glossy * 0.75f, none, none, Rgb(0.25f)}},
+        {"half a mirror", half, {none, none, none, none, half.glossy * 0.5f, none, Rgb(0.5f)}},
+        {"glass", tinted, {none, none, none, none, Rgb(r), tinted.transmission * (1 - r), none}}};
 }
 
 // Lobes are chosen by what they would carry on; photons end with the rest.
@@ -87,10 +89,9 @@ TEST(SamplingRoutines, LobesAreChosenByWhatTheyCarry) {
             for (std::size_t i = 0; i < kLobeCount; ++i) {
                 right.expect(i, probability[i] / total);
                 // Twin: as if it carried the same in all channels.
-                wrong.expect(i,
-                             meanOf(c.reflectance[i]) * (sum / total) /
-                                 (meanOf(c.reflectance[0] + c.reflectance[1] + c.reflectance[2] +
-                                         c.reflectance[3] + c.reflectance[4] + c.reflectance[5])));
+                wrong.expect(i, meanOf(c.reflectance[i]) * (sum / total) /
+                                    meanOf(std::accumulate(c.reflectance.begin(),
+                                                           c.reflectance.end(), Rgb())));
             }
             for (int n = 0; n < 400'000; ++n) {
                 // The square's centre: directions of no value are not what is tested here.
