@@ -40,10 +40,10 @@ MaterialDescription mixture(std::uint32_t first, std::uint32_t second, float wei
     return m;
 }
 
-// Two glossy, one with sheen over a diffuse one, one more diffuse and one smooth.
+// Two glossy of one role, one with sheen over a diffuse one, one more diffuse and one smooth.
 std::uint32_t ofFive(SceneMaker& maker, Rgb colour) {
-    const auto wide = maker.material(metal(0.3f, colour)),
-               narrow = maker.material(metal(0.15f, colour));
+    const auto wide = maker.material(metal(0.36f, colour)),
+               narrow = maker.material(metal(0.26f, colour));
     const auto cloth = maker.material(surface(colour, Rgb(0.5f)));
     const auto smooth = maker.material(metal(0, colour)), plain = maker.material(surface(colour));
     const auto shiny = maker.material(mixture(wide, narrow, 0.4f));
@@ -85,7 +85,7 @@ class Board {
 };
 
 const Vec3f kOut = normalize(Vec3f{0.3f, 0.2f, 0.8f});
-constexpr Lobe kRough[] = {Lobe::kDiffuse, Lobe::kGlossy, Lobe::kWide};
+constexpr Lobe kRough[] = {Lobe::kDiffuse, Lobe::kWide, Lobe::kBroad};
 
 TEST(Mixture, IsReciprocal) {
     const Board board;
@@ -103,7 +103,8 @@ TEST(Mixture, IsReciprocal) {
                     3e-3f * here.evaluate(lobe, in).g);
 }
 
-// The density integrates to the choice's probability, and samples weigh what is reflected.
+// The density integrates to the choice's probability, but for facets' directions below the surface,
+// and samples weigh what is reflected.
 TEST(Mixture, SamplesWhatItEvaluates) {
     const Bsdf bsdf = Board().seenFrom(kOut);
     constexpr int kSteps = 400;
@@ -122,7 +123,7 @@ TEST(Mixture, SamplesWhatItEvaluates) {
             }
         const double cell = 4 * 3.14159265358979 / (kSteps * kSteps);
         EXPECT_NEAR(density * cell, static_cast<double>(bsdf.probability(lobe)),
-                    0.01 * density * cell)
+                    0.03 * density * cell)
             << static_cast<int>(lobe);
         EXPECT_NEAR(sampled / (kSteps * kSteps), reflected * cell, 0.01 * reflected * cell)
             << static_cast<int>(lobe);
