@@ -77,9 +77,10 @@ Rgb Bsdf::evaluateParts(Lobe lobe, const Vec3f& in) const {
 Rgb Bsdf::evaluatePartsSmooth(const Vec3f& in) const {
     Rgb sum;
     for (const Part& part : m_parts.all()) {
+        if (!part.has(Lobe::kDiffuse)) continue;
         Part smooth = part;
         smooth.at.ng = smooth.at.nd;
-        if (part.has(Lobe::kDiffuse)) sum += smooth.evaluate(Lobe::kDiffuse, in);
+        sum += smooth.evaluate(Lobe::kDiffuse, in);
     }
     return sum;
 }

@@ -63,11 +63,13 @@ Rgb Scene::straightShare(const Surface& surface, const Vec3f& direction) const {
 
 // Of what is no glass.
 float Scene::openShare(const Ray& ray, const RayHit& hit) const {
-    const std::uint32_t material = m_shapes[hit.shape].materialOf(hit.primitive);
-    if (!m_traits[material].isCutAway) return 0.0f;
+    const std::uint32_t index = m_shapes[hit.shape].materialOf(hit.primitive);
+    if (!m_traits[index].isCutAway) return 0.0f;
+    const MaterialDescription& material = m_materials[index];
     Surface surface;
-    if (m_traits[material].looksUpTextures) surfaceAt(hit, surface, {&ray, nullptr, true});
-    return 1.0f - opacityAt(m_materials, material, contextAt(surface));
+    if (material.opacityTexture != kNoTexture || material.kind == MaterialKind::kMixture)
+        surfaceAt(hit, surface, {&ray, nullptr, true});
+    return 1.0f - opacityAt(m_materials, index, contextAt(surface));
 }
 
 // Whether they are so close behind each other that a path which goes straight on from the first

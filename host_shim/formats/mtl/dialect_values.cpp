@@ -21,6 +21,17 @@ double mean(const Colour& colour) {
     return (colour[0] + colour[1] + colour[2]) / 3;
 }
 
+// Never written by Blender: somebody made glass or a mirror of it, and means what it says.
+bool isByHand(double illum) {
+    return illum == 4 || illum == 5 || illum == 7;
+}
+
+// How much of a surface is glass; from this share on all of it is taken as glass.
+constexpr double kLeastGlass = 0.5;
+double glassShare(const MtlSection& section) {
+    return mean(section.colour("Tf").value_or(Colour{}));
+}
+
 // Blender's Principled BSDF as its exporters write it.
 class PrincipledSection {
     // What is smoother is a mirror's; 0 would mean that an exponent says it.
@@ -37,8 +48,7 @@ class PrincipledSection {
         if (m_isBlenders && m_section.hasMap("map_bump") && !m_section.hasMap("norm"))
             moveMap("map_bump", "norm");
         const double illum = m_section.number("illum").value_or(2);
-        // Never written by Blender: somebody made glass or a mirror of it, and means what it says.
-        if (illum == 4 || illum == 5 || illum == 7) return {};
+        if (isByHand(illum)) return {};
         if (picturesStandAlone(m_dialect)) dropReplacedNumbers();
         m_isMetalOn = illum == 3 || illum == 6 || illum == 8;
         if (illum != 0) m_section.numbers["illum"] = 2;
@@ -139,12 +149,12 @@ class PrincipledSection {
 
     // Tf is how much of it lets light through as glass does.
     bool isGlass() {
-        const double share = mean(m_section.colour("Tf").value_or(Colour{}));
-        if (share > 0 && share < 0.5)
+        const double share = glassShare(m_section);
+        if (share > 0 && share < kLeastGlass)
             note("Tf", fmt::format("{:g} of it would be glass, which is not rendered together with "
                                    "what is none; all is taken as none",
                                    share));
-        return share >= 0.5;
+        return share >= kLeastGlass;
     }
 
     void makeGlass() {
@@ -291,9 +301,8 @@ void translateRhino(MtlSection& section) {
 std::optional<MetalMap> metalMapOf(MtlDialect dialect, const MtlSection& section) {
     const bool isBlenders = emitsFromBothSides(dialect);
     if (!isBlenders && dialect != MtlDialect::kGeneric) return std::nullopt;
-    const double illum = section.number("illum").value_or(2);
-    if (illum == 4 || illum == 5 || illum == 7) return std::nullopt;
-    if (mean(section.colour("Tf").value_or(Colour{})) >= 0.5) return std::nullopt;
+    if (isByHand(section.number("illum").value_or(2)) || glassShare(section) >= kLeastGlass)
+        return std::nullopt;
     for (const char* key : {"map_Pm", "refl", "map_refl"}) {
         if (!section.hasMap(key) || (!isBlenders && key != std::string_view("map_Pm"))) continue;
         const double factor = std::clamp(section.number("Pm").value_or(1), 0.0, 1.0);
