@@ -10,6 +10,7 @@
 #include <cmath>
 #include <memory>
 
+#include "tests/support/mixture.h"
 #include "tests/support/rooms.h"
 #include "tests/support/scene_maker.h"
 
@@ -170,27 +171,20 @@ Room underSky() {
 // A ball that is metal in squares, and one of five lobes.
 Room mixtures() {
     SceneMaker maker = withBalls(rough(mirror(), 0.3f), MaterialDescription{});
-    const auto mix = [&](std::uint32_t first, std::uint32_t second, float weight) {
-        MaterialDescription m;
-        m.kind = MaterialKind::kMixture;
-        m.first = first;
-        m.second = second;
-        m.weight = weight;
-        return m;
-    };
     const auto plain = maker.diffuse({0.6f, 0.4f, 0.3f}),
                wide = maker.material(rough(mirror(), 0.3f)),
                narrow = maker.material(rough(mirror(), 0.12f)), window = maker.material(glass());
     MaterialDescription cloth;
     cloth.sheen = Rgb(0.8f);
     cloth.diffuse = {0.2f, 0.3f, 0.5f};
-    MaterialDescription squares = mix(plain, wide, 1);
+    MaterialDescription squares = mixture(plain, wide, 1);
     squares.weightTexture = 1;
     const auto count = maker.description.instances.size();
     maker.description.instances[count - 2].materials = {maker.material(squares)};
-    const auto soft = maker.material(mix(plain, maker.material(cloth), 0.5f)),
-               shiny = maker.material(mix(wide, narrow, 0.5f)),
-               five = maker.material(mix(maker.material(mix(soft, shiny, 0.5f)), window, 0.4f));
+    const auto soft = maker.material(mixture(plain, maker.material(cloth), 0.5f)),
+               shiny = maker.material(mixture(wide, narrow, 0.5f)),
+               five = maker.material(
+                   mixture(maker.material(mixture(soft, shiny, 0.5f)), window, 0.4f));
     maker.description.instances[count - 1].materials = {five};
     maker.description.textures = std::make_shared<Pictures>();
     return {"mixtures of mixtures", maker};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Materials that are mixed of others.
+#include "tests/support/mixture.h"
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -28,15 +30,6 @@ MaterialDescription surface(Rgb diffuse, Rgb sheen = {}) {
     MaterialDescription m;
     m.diffuse = diffuse;
     m.sheen = sheen;
-    return m;
-}
-
-MaterialDescription mixture(std::uint32_t first, std::uint32_t second, float weight) {
-    MaterialDescription m;
-    m.kind = MaterialKind::kMixture;
-    m.first = first;
-    m.second = second;
-    m.weight = weight;
     return m;
 }
 
