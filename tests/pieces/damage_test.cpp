@@ -67,7 +67,8 @@ TEST_F(Damage, CutAnywhere) {
     std::mt19937 random(1);
     int resumedOnes = 0;
     for (int i = 0; i < 12; ++i) {
-        writeFile(path("c"), m_bytes.substr(0, random() % m_bytes.size()));
+        const std::size_t among = i % 2 == 0 ? m_bytes.size() : 8000;
+        writeFile(path("c"), m_bytes.substr(0, m_bytes.size() - 1 - random() % among));
         const Outcome resumed = resume();
         if (resumed.isOk()) {
             expectSameBits(m_whole, resumed);
@@ -85,7 +86,9 @@ TEST_F(Damage, AFlippedByteAnywhere) {
     int refused = 0, resumedOnes = 0;
     for (int i = 0; i < 16; ++i) {
         std::string bytes = m_bytes;
-        bytes[random() % bytes.size()] ^= static_cast<char>(1u << (random() % 8));
+        // Every other one in the last record or two, which are dropped; most bytes are sums.
+        const std::size_t among = i % 2 == 0 ? bytes.size() : 8000;
+        bytes[bytes.size() - 1 - random() % among] ^= static_cast<char>(1u << (random() % 8));
         writeFile(path("c"), bytes);
         const Outcome resumed = resume();
         if (resumed.isOk()) {
