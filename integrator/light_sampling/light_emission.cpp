@@ -62,6 +62,7 @@ bool LightSampler::emit(float uLight, Vec2f uPoint, Vec2f uDirection, EmittedPho
     if (empty()) return false;
     float probability;
     const std::size_t index = m_choice.choose(uLight, probability);
+    photon.light = static_cast<std::uint32_t>(index);
     const LampTriangle& lamp = m_scene.lampTriangle(index);
     // Area density 1/A and direction density cos/pi leave the radiance times pi A.
     const auto emitFrom = [&](const LampPoint& point, const Rgb& radiance, float area) {

@@ -61,7 +61,8 @@ void LightSampler::learnLights(std::span<const LitPlace> places,
     m_guide = std::make_unique<const LightGuide>(
         *m_tree, receivers, [&](std::size_t place, std::uint32_t node, std::uint32_t number) {
             cancel.throwIfSet(kLooking);
-            return lookFrom(places[place], node, Sampler(key, node, place, number).next2D());
+            return lookFrom(places[place], node,
+                            Sampler(key, node, place, number).get2D(Purpose::kDirect));
         });
 }
 
@@ -78,8 +79,8 @@ bool LightSampler::isSkyHidden(std::span<const LitPlace> places,
     const std::size_t step = std::max<std::size_t>(1, places.size() / kPlacesOfSky);
     SkyLooks looks;
     for (std::size_t place = 0; place < places.size(); place += step) {
-        Sampler sampler(key, kNoNode - 1, place, 0);
-        const Vec2f start = sampler.next2D();
+        const Sampler sampler(key, kNoNode - 1, place, 0);
+        const Vec2f start = sampler.get2D(Purpose::kDirect);
         for (std::uint32_t i = 0; i < kSightingsOfSky; ++i) {
             float pdf;
             const Vec3f direction = m_scene.environment().sample(spreadPoint(i, start), pdf);
@@ -98,8 +99,8 @@ std::vector<Sighting> LightSampler::look(std::span<const LitPlace> places, std::
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
         cancel.throwIfSet(kLooking);
         const std::size_t place = i % places.size(), number = i / places.size();
-        Sampler sampler(key, kNoNode, place, static_cast<std::uint32_t>(number));
-        found[i] = lookFrom(places[place], LightTree::kRoot, sampler.next2D());
+        const Sampler sampler(key, kNoNode, place, static_cast<std::uint32_t>(number));
+        found[i] = lookFrom(places[place], LightTree::kRoot, sampler.get2D(Purpose::kDirect));
     });
     std::vector<Sighting> sightings;
     for (const auto& sighting : found)

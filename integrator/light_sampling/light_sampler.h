@@ -35,6 +35,7 @@ struct EmittedPhoton {
     Ray ray;
     Rgb flux;           // W, of one photon if only one were emitted: divide by the number emitted
     bool isMet = true;  // the light, by rays
+    std::uint32_t light = 0;  // of the scene's, or of its lamps' triangles
 };
 
 // A place where light is asked for, and any direction on the side of the surface that is lit.

@@ -79,8 +79,9 @@ class SkyGuide::Learner {
             if (static_cast<double>(table[c]) * kDirections < kLittle) continue;
             for (std::uint32_t i = first; i < last; ++i) {
                 const std::size_t place = places[(c + i) % places.size()];
-                Sampler sampler(m_seed, c, index, i);
-                const float light = m_look(place, Directions::directionIn(c, sampler.next2D()));
+                const Sampler sampler(m_seed, c, index, i);
+                const float light =
+                    m_look(place, Directions::directionIn(c, sampler.get2D(Purpose::kDirection)));
                 m_seen[index * kDirections + c].add({1.0f, light * light});
             }
         }

@@ -20,12 +20,6 @@ decltype(auto) visitMostly(const OneOf& lobe, const Call& call) {
     return std::visit(call, lobe);
 }
 
-Rgb sumOf(const Lobes& lobes) {
-    Rgb sum;
-    for (const Rgb& reflectance : lobes.reflectance) sum += reflectance;
-    return sum;
-}
-
 // Of a mixture, the part that is all there is at a point, where one is; else the mixture.
 std::uint32_t aloneAt(const Materials& materials, const Surface& surface) {
     std::uint32_t index = surface.material;
@@ -73,6 +67,15 @@ Bsdf::Bsdf(const Materials& materials, const Surface& surface, const Vec3f& out,
     chooseProbabilities(carried);
 }
 
+Bsdf::Bsdf(const HenyeyGreenstein& phase, const Rgb& albedo, const Vec3f& out, Transport transport,
+           const Rgb& carried)
+    : m_at(out, out, out, transport) {
+    m_lobes.glossyRole = Lobe::kBroad;
+    m_lobes.glossy = phase;
+    m_lobes.of(Lobe::kBroad) = albedo;
+    chooseProbabilities(carried);
+}
+
 // What smooth lobes send by several ways is as much as the camera gets by each of them.
 bool Bsdf::isSentByWays(const Lobes& lobes, const LobePoint& at) {
     return visitMostly(lobes.smooth, [&](const auto& model) { return model.sendsByWays(at); });
@@ -80,7 +83,7 @@ bool Bsdf::isSentByWays(const Lobes& lobes, const LobePoint& at) {
 
 // What goes straight on is the share of the surface that is not there: none of it is taken.
 void Bsdf::limitEnergy(Lobes& lobes, float opacity) {
-    const float largest = maxChannel(sumOf(lobes));
+    const float largest = maxChannel(lobes.sum());
     if (!(largest > 1.0f)) return;
     const Rgb straight = lobes.of(Lobe::kStraight);
     const float factor = opacity / (largest - straight.g);
@@ -114,13 +117,14 @@ void Bsdf::chooseProbabilities(const Rgb& carried) {
 }
 
 Rgb Bsdf::albedo() const {
-    return sumOf(m_lobes);
+    return m_lobes.sum();
 }
 
 bool Bsdf::goesThrough() const {
     const auto isOne = [](const Lobes& lobes) {
         return std::holds_alternative<RoughGlass>(lobes.glossy) ||
-               std::holds_alternative<DiffuseTransmission>(lobes.glossy);
+               std::holds_alternative<DiffuseTransmission>(lobes.glossy) ||
+               std::holds_alternative<HenyeyGreenstein>(lobes.glossy);
     };
     if (!m_parts.any()) return isOne(m_lobes);
     return std::ranges::any_of(m_parts.all(), [&](const Part& part) { return isOne(part.lobes); });

@@ -30,6 +30,10 @@ class Bsdf {
     // probability, so that their mean flux stays the same; camera paths always go on.
     Bsdf(const Materials& materials, const Surface& surface, const Vec3f& out, Transport transport,
          const Rgb& carried);
+    // In a medium: by its phase function, as a broad lobe that light goes through. albedo: of what
+    // is scattered or absorbed, the share that is scattered.
+    Bsdf(const HenyeyGreenstein& phase, const Rgb& albedo, const Vec3f& out, Transport transport,
+         const Rgb& carried);
 
     bool has(Lobe lobe) const { return m_probability[index(lobe)] > 0.0f; }
     // Whether there is a lobe that is not delta, for which lamps are sampled.

@@ -48,9 +48,7 @@ void Bsdf::addParts(const Materials& materials, std::uint32_t index, const Surfa
     Part& part = m_parts.add(at);
     setLobes(materials, index, surface, part.at, part.lobes);
     if (isSentByWays(part.lobes, part.at)) return;
-    Rgb sum;
-    for (const Rgb& reflectance : part.lobes.reflectance) sum += reflectance;
-    const float largest = maxChannel(sum);
+    const float largest = maxChannel(part.lobes.sum());
     if (largest > share)
         for (Rgb& reflectance : part.lobes.reflectance) reflectance *= share / largest;
 }

@@ -9,6 +9,7 @@
 #include "integrator/materials/lobes/dielectric.h"
 #include "integrator/materials/lobes/diffuse_transmission.h"
 #include "integrator/materials/lobes/ggx_reflection.h"
+#include "integrator/materials/lobes/henyey_greenstein.h"
 #include "integrator/materials/lobes/lambertian.h"
 #include "integrator/materials/lobes/layered.h"
 #include "integrator/materials/lobes/lobe_models.h"
@@ -36,7 +37,8 @@ using OneOfSmooth = std::variant<Models...>;
 // here of diffuse ones, of others in material_lobes.cpp.
 using DiffuseLobe = OneOfDiffuse<Lambertian, Undercoat, RoughDiffuse>;
 using GlossyLobe = OneOfScattering<Phong, GgxReflection, RoughGlass, DiffuseTransmission, Sheen,
-                                   Layered<GgxReflection>, Layered<Sheen>>;  // and broad ones
+                                   Layered<GgxReflection>, Layered<Sheen>,
+                                   HenyeyGreenstein>;  // and broad ones
 using SmoothLobe = OneOfSmooth<NotSmooth, Mirror, Dielectric, Pane>;
 
 // lobe: as made, the first of its list. colour: of the material there, textures looked up.
@@ -55,6 +57,11 @@ struct Lobes {
 
     Rgb& of(Lobe lobe) { return reflectance[static_cast<std::size_t>(lobe)]; }
     const Rgb& of(Lobe lobe) const { return reflectance[static_cast<std::size_t>(lobe)]; }
+    Rgb sum() const {
+        Rgb sum;
+        for (const Rgb& of : reflectance) sum += of;
+        return sum;
+    }
     bool isSmooth() const { return !std::holds_alternative<NotSmooth>(smooth); }
 };
 

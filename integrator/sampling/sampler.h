@@ -74,34 +74,51 @@ inline float toBelowOne(double x) {
     return std::min(static_cast<float>(x), 1.0f - 0x1p-24f);
 }
 
-// One sample's random numbers: a function of (seed, stream, sequence, index, dimension) alone.
-// `sequence` names a set of points that is stratified together (a pixel of one pass, or all photons
-// of a pass); `index` is the point's number in it; dimensions are drawn one after another.
+// What a random number decides. Each event of a path has one number, or pair, for each of these,
+// whether or not the others are asked for: so nothing that a scene does without changes what it
+// has.
+enum class Purpose : std::uint8_t {
+    kPlace,      // where a path begins: on the frame, on a light
+    kLens,       // on the camera's aperture
+    kTime,       // while the shutter is open
+    kLight,      // which light a photon leaves
+    kDistance,   // how far to the next event in a medium
+    kLobe,       // by which lobe, or lobes, a path goes on
+    kDirection,  // where to
+    kRoulette,
+    kDirect,        // next-event estimation, from the side that is looked at
+    kDirectBehind,  // and from the other one
+    kCaustic,       // next-event estimation of caustics
+    kRefocused,     // whether refocused light is estimated
+    kHidden,        // whether a photon meets what is hidden from some rays
+    kAim,           // whether scattered photons are aimed
+    kAimedDirection,
+    kDescent,  // whether what descends from a caustic is followed
+    kStore,    // whether a photon is kept where it lands
+    kPilot,    // a pilot's own choice, where its path has stopped
+};
+
+// The random numbers of one path, or of one of its branches: a function of (seed, stream, sequence,
+// index, branch, event, purpose) alone, whatever else was asked for before. `sequence` names a set
+// of points that is stratified together (a pixel of one pass, or all photons of a pass); `index` is
+// the point's number in it.
 class Sampler {
   public:
     Sampler(std::uint64_t seed, std::uint64_t stream, std::uint64_t sequence, std::uint32_t index)
         : m_key(combineBits(combineBits(seed, stream), sequence)),
           m_reversedIndex(reverseBits(index)) {}
 
-    // The same of another point of the sequence, from its first dimension on.
-    Sampler at(std::uint32_t index) const {
-        Sampler other(*this);
-        other.m_reversedIndex = reverseBits(index);
-        other.m_dimension = 0;
-        return other;
-    }
-
     // Range: [0, 1).
-    float next1D() {
-        const std::uint64_t hash = nextHash();
+    float get1D(Purpose purpose) const {
+        const std::uint64_t hash = hashOf(purpose);
         const std::uint32_t shuffled = shuffle(hash);
         return toUnitFloat(
             reverseBits(owenScrambleReversed(shuffled, static_cast<std::uint32_t>(mixBits(hash)))));
     }
 
     // Range: [0, 1)^2.
-    Vec2f next2D() {
-        const std::uint64_t hash = nextHash();
+    Vec2f get2D(Purpose purpose) const {
+        const std::uint64_t hash = hashOf(purpose);
         const std::uint32_t shuffled = shuffle(hash);
         const std::uint64_t seeds = mixBits(hash);
         return {toUnitFloat(
@@ -110,19 +127,39 @@ class Sampler {
                     sobolSecondReversed(shuffled), static_cast<std::uint32_t>(seeds >> 32))))};
     }
 
-    // Where a sample takes `count` points of a dimension, a power of two, in place of one: what
-    // draws the i-th of them. Those of all indices are one sequence, those of one index an even
-    // part of it; count x index is below 2^32.
-    Sampler part(std::uint32_t count, std::uint32_t i) const {
-        Sampler sampler = *this;
-        sampler.m_reversedIndex = m_reversedIndex >> std::countr_zero(count) | reverseBits(i);
-        return sampler;
+    // To the path's next event.
+    void nextEvent() { m_event += kPurposes; }
+    // Those of a path that leaves this one here, from its first event on. Each `which` has its own,
+    // and none are those of the path itself.
+    Sampler branch(std::uint32_t which) const {
+        Sampler other(*this);
+        other.m_key = combineBits(m_key, std::uint64_t{which} << 32 | m_event);
+        other.m_event = 0;
+        return other;
     }
-    // Leaves out the next dimension, whether 1D or 2D.
-    void skip() { ++m_dimension; }
+    // The same event of another point of the sequence.
+    Sampler at(std::uint32_t index) const {
+        Sampler other(*this);
+        other.m_reversedIndex = reverseBits(index);
+        return other;
+    }
+    // Where a sample takes `count` points for a purpose, a power of two, in place of one: what has
+    // the i-th of them. Those of all indices are one sequence, those of one index an even part of
+    // it; count x index is below 2^32.
+    Sampler part(std::uint32_t count, std::uint32_t i) const {
+        Sampler other(*this);
+        other.m_reversedIndex = m_reversedIndex >> std::countr_zero(count) | reverseBits(i);
+        return other;
+    }
 
   private:
-    std::uint64_t nextHash() { return mixBits(m_key + 0x9e3779b97f4a7c15ull * ++m_dimension); }
+    static constexpr std::uint32_t kPurposes = 32;  // of an event; a constant, so that more change
+                                                    // no number
+
+    std::uint64_t hashOf(Purpose purpose) const {
+        return mixBits(m_key +
+                       0x9e3779b97f4a7c15ull * (m_event + static_cast<std::uint32_t>(purpose) + 1));
+    }
     std::uint32_t shuffle(std::uint64_t hash) const {
         return reverseBits(
             owenScrambleReversed(m_reversedIndex, static_cast<std::uint32_t>(hash >> 32)));
@@ -130,7 +167,7 @@ class Sampler {
 
     std::uint64_t m_key;
     std::uint32_t m_reversedIndex;
-    std::uint32_t m_dimension = 0;
+    std::uint32_t m_event = 0;
 };
 
 }  // namespace pm

@@ -58,19 +58,46 @@ double intersectSphere(const Vec3d& origin, const Vec3d& direction, double tMax,
     return t > 0.0 && t <= tMax ? t : -1.0;
 }
 
+void SphereShape::check(const std::string& name) const {
+    if (!(radius > 0) || !std::isfinite(radius) || !isFinite(centre))
+        throw Error(
+            Status::kInvalidScene,
+            fmt::format("sphere '{}' has radius {}; it must be > 0 and finite", name, radius));
+}
+
+Vec2f SphereShape::uvAt(const Vec3d& point) const {
+    constexpr Vec3d kAxes[3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    return textureOnSphere(kAxes, normalize(point - centre));
+}
+
+// An ellipsoid reaches as far along an axis as the matrix's row is long.
+Box3d SphereShape::boundsUnder(const Transform& m) const {
+    const Vec3d middle = transformPoint(m, centre);
+    const Vec3d reach = Vec3d{length(row(m, 0)), length(row(m, 1)), length(row(m, 2))} * radius;
+    return {middle - reach, middle + reach};
+}
+
+// The mean of what areas become, over points whose heights and turns are even.
+double SphereShape::areaUnder(const Transform& m) const {
+    constexpr int kSide = 64;
+    const NormalTransform normals(m);
+    double sum = 0;
+    for (int i = 0; i < kSide; ++i)
+        for (int j = 0; j < kSide; ++j) {
+            const double z = 1 - (2 * i + 1.0) / kSide, r = std::sqrt(1 - z * z);
+            const SinCos turn = sinCosTurns((static_cast<float>(j) + 0.5f) / kSide);
+            const Vec3d n{r * static_cast<double>(turn.cos), r * static_cast<double>(turn.sin), z};
+            sum += length(
+                Vec3d{dot(normals.rows[0], n), dot(normals.rows[1], n), dot(normals.rows[2], n)});
+        }
+    return 4 * std::numbers::pi * radius * radius * sum / (kSide * kSide);
+}
+
 PlacedSphere::PlacedSphere(const SphereShape& sphere, const Transform& toWorld, const Vec3d& origin,
                            bool hasTexture, const std::string& name)
     : m_hasTexture(hasTexture) {
-    if (!(sphere.radius > 0) || !std::isfinite(sphere.radius) || !isFinite(sphere.centre))
-        throw Error(Status::kInvalidScene,
-                    fmt::format("sphere '{}' has radius {}; it must be > 0 and finite", name,
-                                sphere.radius));
+    sphere.check(name);
     const double scale = uniformScale(toWorld);
-    if (scale == 0.0)
-        throw Error(Status::kUnsupported,
-                    fmt::format("sphere '{}' is under a transform that makes it an ellipsoid; "
-                                "rotation, translation and uniform scale are allowed",
-                                name));
     m_sphere.centre = transformPoint(toWorld, sphere.centre) - origin;
     m_sphere.radius = sphere.radius * scale;
     for (std::size_t i = 0; i < 3; ++i)

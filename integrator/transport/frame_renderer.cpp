@@ -80,7 +80,7 @@ struct FrameRenderer::Impl {
 
     void prepare(const std::atomic<bool>& cancelled);
     PhotonPass& photonsOfPass(std::uint32_t pass, const std::atomic<bool>& cancelled);
-    SampleRadiance sample(std::uint32_t pass, const PixelCell& cell, Sampler sampler,
+    SampleRadiance sample(std::uint32_t pass, const PixelCell& cell, const Sampler& sampler,
                           std::uint32_t index, NearestPhotons& scratch) const;
     struct Local;
     void renderCell(std::uint32_t pass, const PixelCell& cell, SampleRun run, float* pixel,
@@ -136,9 +136,9 @@ PhotonPass& FrameRenderer::Impl::photonsOfPass(std::uint32_t pass,
 }
 
 SampleRadiance FrameRenderer::Impl::sample(std::uint32_t pass, const PixelCell& cell,
-                                           Sampler sampler, std::uint32_t index,
+                                           const Sampler& sampler, std::uint32_t index,
                                            NearestPhotons& scratch) const {
-    const Place place = cell.place(settings.filter, sampler.next2D());
+    const Place place = cell.place(settings.filter, sampler.get2D(Purpose::kPlace));
     const Ray ray = camera.ray({place.x, place.y});
     const RayFootprint footprint = camera.footprint({place.x, place.y}, ray);
     if (settings.integrator == IntegratorKind::kPath)

@@ -197,6 +197,16 @@ const std::string& SettingValues::word(Setting id) const {
     return std::get<std::string>(at(id));
 }
 
+std::size_t SettingValues::choice(Setting id) const {
+    std::size_t place = 0;
+    for (const std::string_view name :
+         splitAtCommas(settingSpecs()[static_cast<std::size_t>(id)].choices)) {
+        if (name == word(id)) break;
+        ++place;
+    }
+    return place;
+}
+
 Rect SettingValues::window() const {
     const Rect frame{0, 0, static_cast<std::int32_t>(integer(Setting::kWidth)),
                      static_cast<std::int32_t>(integer(Setting::kHeight))};
@@ -224,8 +234,7 @@ RenderSettings SettingValues::toRenderSettings() const {
     settings.width = static_cast<std::int32_t>(integer(Setting::kWidth));
     settings.height = static_cast<std::int32_t>(integer(Setting::kHeight));
     settings.window = window();
-    settings.integrator =
-        word(Setting::kIntegrator) == "path" ? IntegratorKind::kPath : IntegratorKind::kPhoton;
+    settings.integrator = static_cast<IntegratorKind>(choice(Setting::kIntegrator));
     settings.plan = word(Setting::kPlan) == "everything" ? PlanKind::kEverything : PlanKind::kAuto;
     settings.photons = static_cast<std::uint64_t>(integer(Setting::kPhotons));
     settings.estimatePhotons = static_cast<std::uint32_t>(integer(Setting::kEstimatePhotons));

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -35,6 +36,7 @@ class SettingValues {
     std::int64_t integer(Setting id) const;
     double number(Setting id) const;
     const std::string& word(Setting id) const;  // CHOICE and TEXT
+    std::size_t choice(Setting id) const;       // CHOICE: its place among the choices
 
     // The window to render: the crop, else the frame.
     Rect window() const;

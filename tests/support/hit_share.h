@@ -16,10 +16,12 @@ inline double hitShare(const SceneMaker& maker, std::uint32_t photons) {
     const Aimed aimed(maker.build(), false);
     std::uint32_t aimedAt = 0, hit = 0;
     for (std::uint32_t i = 0; i < photons; ++i) {
-        Sampler sampler(1, 1, 0, i);
-        const Vec2f choice = sampler.next2D(), point = sampler.next2D();
+        const Sampler sampler(1, 1, 0, i);
+        const Vec2f choice = sampler.get2D(Purpose::kLight);
+        const Vec2f point = sampler.get2D(Purpose::kPlace);
         AimedPhoton photon;
-        const bool emitted = aimed.aim.emit(choice, point, sampler.next2D(), photon);
+        const bool emitted =
+            aimed.aim.emit(choice, point, sampler.get2D(Purpose::kDirection), photon);
         if (emitted && photon.caster == kNoCaster) continue;
         ++aimedAt;  // what carries nothing counts as missed
         Surface surface;

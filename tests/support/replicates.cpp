@@ -180,8 +180,8 @@ SampleRadiance PlannedRender::sample(std::int32_t x, std::int32_t y, std::uint32
                                      const PhotonMaps& maps, NearestPhotons& scratch) const {
     const std::uint64_t pixel = static_cast<std::uint64_t>(static_cast<std::uint32_t>(y)) << 32 |
                                 static_cast<std::uint32_t>(x);
-    Sampler sampler(m_settings.seed, 2 * std::uint64_t{m_pass % 2}, pixel, index);
-    const Vec2f jitter = sampler.next2D();
+    const Sampler sampler(m_settings.seed, 2 * std::uint64_t{m_pass % 2}, pixel, index);
+    const Vec2f jitter = sampler.get2D(Purpose::kPlace);
     const double onX = x + static_cast<double>(jitter.x), onY = y + static_cast<double>(jitter.y);
     return PhotonIntegrator(*m_scene, m_lights, maps)
         .sample({{static_cast<float>(onX), static_cast<float>(onY)}, m_camera.ray({onX, onY})},

@@ -32,9 +32,6 @@ inline constexpr std::array kShinyLobes{Lobe::kGlossy, Lobe::kWide, Lobe::kBroad
 constexpr bool isWide(Lobe lobe) {
     return lobe == Lobe::kWide || lobe == Lobe::kBroad;
 }
-constexpr bool isShiny(Lobe lobe) {
-    return lobe == Lobe::kGlossy || isWide(lobe);
-}
 constexpr bool isDelta(Lobe lobe) {
     return lobe == Lobe::kReflection || lobe == Lobe::kRefraction || lobe == Lobe::kStraight;
 }

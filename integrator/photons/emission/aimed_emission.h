@@ -18,7 +18,6 @@ namespace pm {
 
 // A photon as it leaves a light, and which choices made it.
 struct AimedPhoton : EmittedPhoton {
-    std::uint32_t light = 0;
     std::uint32_t caster = kNoCaster;
     std::uint32_t part = 0;  // of an environment's light: of the sky (SkyParts), where it is from
 };

@@ -9,6 +9,7 @@
 
 namespace pm {
 
+// In the order of the choices of the setting "integrator". All but the first do without photons.
 enum class IntegratorKind { kPhoton, kPath };
 
 // What the photon integrator uses: the maps that a scene needs, or all there are.

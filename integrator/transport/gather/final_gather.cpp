@@ -5,123 +5,129 @@
 #include <algorithm>
 
 #include "integrator/sampling/warps.h"
+#include "integrator/transport/path/camera_step.h"
 #include "integrator/transport/path/direct_light.h"
-#include "integrator/transport/path/path_walk.h"
 
 namespace pm {
 
 namespace {
 
-// A gather ray's way by lobes that don't end it.
-struct GatherWay {
-    PathWalk path;
-    LastScatter last;
-    bool byBroadOnly = true;
-
-    // Whether light of lamps that the last lobe leads to, or reflects, is the ray's business.
-    static bool isAsked(const GatherEnds& ends, Lobe lobe) {
-        return ends.lights && (lobe == Lobe::kBroad || (ends.findsAll && !ends.withoutCaustics));
-    }
-};
-
-// met: null where the ray meets nothing. atOnce: by no lobe.
-void addLampsMet(const Scene& scene, const GatherEnds& ends, const GatherWay& way,
-                 const Surface* met, bool atOnce, Gathered& result) {
-    if (atOnce) {
-        if (!ends.from) return;
-        result.lampsStraight +=
-            way.path.throughput * (met ? weightedEmission(*ends.lights, *met, *ends.from)
-                                       : weightedFarLight(scene, *ends.lights, *ends.from));
-        return;
-    }
-    if (!GatherWay::isAsked(ends, way.last.lobe)) return;
-    const Rgb light = way.path.throughput * (met ? weightedEmission(*ends.lights, *met, way.last)
-                                                 : weightedFarLight(scene, *ends.lights, way.last));
-    result.radiance += {light, light};
-}
-
-// By a sample of lamps, whether or not the lobe will be followed: else few rays would bring much.
-void addLampsSampled(const Scene& scene, const GatherEnds& ends, const GatherWay& way,
-                     const Surface& surface, const Bsdf& bsdf, Sampler& sampler, Gathered& result) {
-    const auto isAsked = [&](Lobe lobe) {
-        return bsdf.has(lobe) && GatherWay::isAsked(ends, lobe);
+// Follows gather rays by the lobes that don't end them.
+class GatherPath {
+  public:
+    struct Step : CameraStep {
+        using CameraStep::CameraStep;
+        LastScatter last{};
+        bool atOnce = true, byBroadOnly = true;  // by no lobe yet; by no other one
     };
-    if (std::ranges::none_of(kShinyLobes, isAsked)) return;
-    const DirectRadiance direct = estimateDirect(
-        scene, *ends.lights, surface, bsdf, LampStrategy::kNone, false, 1, sampler, result.rays);
-    Rgb sum;
-    for (const Lobe lobe : kShinyLobes)
-        if (isAsked(lobe)) sum += direct.of(lobe);
-    const Rgb light = way.path.throughput * sum;
-    result.radiance += {light, light};
-}
+    static constexpr Transport kTransport = Transport::kRadiance;
 
-// The end of the way at a surface with a diffuse lobe, as endGather will read it.
-// first: the gather ray.
-void setEnd(const Scene& scene, const GatherEnds& ends, const GatherWay& way, const Ray& first,
-            const Surface& surface, const Bsdf& bsdf, float cosine, bool atOnce, Gathered& result) {
-    const Ray& ray = way.path.ray;
-    result.isWaiting = true;
-    result.normal = bsdf.facingGeometricNormal();
-    result.position = scene.pointUnderRay(surface.position, ray, result.normal);
-    result.reflected = bsdf.reflectedOf(way.path.throughput);
-    result.density = 0.0f;
-    result.readsCaustics = ends.caustics && (ends.findsAll || (!atOnce && way.byBroadOnly));
-    if (ends.caustics && atOnce && !ends.findsAll) {
-        const float facing = -dot(ray.direction, result.normal);
-        result.density = cosine * kInvPi * facing / lengthSquared(surface.position - first.origin);
+    // ray: the first one.
+    GatherPath(const Scene& scene, const GatherEnds& ends, const Ray& ray, float cosine,
+               Gathered& result)
+        : m_scene(scene), m_ends(ends), m_first(ray), m_cosine(cosine), m_result(result) {}
+
+    static CacheUser user(const Step&) { return CacheUser::kGather; }
+    void setOut(const Step&) { ++m_result.rays; }
+    void meetNothing(const Step& step) { addLampsMet(step, nullptr); }
+    Verdict meet(const Step& step, const Surface& surface) {
+        addLampsMet(step, &surface);
+        if (!m_result.hitAny) {
+            m_result.first = surface;
+            m_result.hitAny = true;
+        }
+        return Verdict::kScatter;
     }
-    if (result.density > 0.0f || result.readsCaustics)
-        ends.caustics->prefetch(result.position, result.normal);
-    ends.sites.prefetch(result.position, result.normal);
-}
+    bool scatter(Step& step, const Surface& surface, const Bsdf& bsdf, Waiting<Step>&) {
+        if (bsdf.isBlackBody()) return false;
+        if (bsdf.has(Lobe::kDiffuse)) {
+            setEnd(step, surface, bsdf);
+            if (bsdf.isDiffuseOnly()) return false;
+            endGather(m_ends, m_result);
+        }
+        addLampsSampled(step, surface, bsdf);
+        BsdfSample sample;
+        if (!sampleLobe(bsdf, step.random, sample) || sample.lobe == Lobe::kDiffuse ||
+            !step.scatter(surface, bsdf, sample))
+            return false;
+        if (sample.lobe == Lobe::kStraight) return true;
+        step.atOnce = false;
+        step.last = lastScatter(surface, sample);
+        if (m_scene.viewersDiffer() && !isDelta(sample.lobe) && isAsked(sample.lobe)) {
+            add(step.carried *
+                lightAlong(m_scene, *m_ends.lights, step.ray, step.last, m_result.rays));
+            step.last.hasLamps = true;
+        }
+        step.byBroadOnly = step.byBroadOnly && sample.lobe == Lobe::kBroad;
+        return true;
+    }
+
+  private:
+    // Whether light of lamps that the last lobe leads to, or reflects, is the ray's business.
+    bool isAsked(Lobe lobe) const {
+        return m_ends.lights &&
+               (lobe == Lobe::kBroad || (m_ends.findsAll && !m_ends.withoutCaustics));
+    }
+    void add(const Rgb& light) { m_result.radiance += {light, light}; }
+    // met: null where the ray meets nothing.
+    void addLampsMet(const Step& step, const Surface* met) {
+        const auto light = [&](const LastScatter& last) {
+            return step.carried * (met ? weightedEmission(*m_ends.lights, *met, last)
+                                       : weightedFarLight(m_scene, *m_ends.lights, last));
+        };
+        if (step.atOnce) {
+            if (m_ends.from) m_result.lampsStraight += light(*m_ends.from);
+        } else if (isAsked(step.last.lobe)) {
+            add(light(step.last));
+        }
+    }
+    // By a sample of lamps, whether or not the lobe will be followed: else few rays would bring
+    // much.
+    void addLampsSampled(const Step& step, const Surface& surface, const Bsdf& bsdf) {
+        const auto asked = [&](Lobe lobe) { return bsdf.has(lobe) && isAsked(lobe); };
+        if (std::ranges::none_of(kShinyLobes, asked)) return;
+        const DirectRadiance direct =
+            estimateDirect(m_scene, *m_ends.lights, surface, bsdf, DirectStrategy::kNone, false, 1,
+                           step.random, m_result.rays);
+        Rgb sum;
+        for (const Lobe lobe : kShinyLobes)
+            if (asked(lobe)) sum += direct.of(lobe);
+        add(step.carried * sum);
+    }
+    // The end of the way at a surface with a diffuse lobe, as endGather will read it.
+    void setEnd(const Step& step, const Surface& surface, const Bsdf& bsdf) {
+        Gathered& end = m_result;
+        const VirtualLamps* caustics = m_ends.caustics;
+        end.isWaiting = true;
+        end.normal = bsdf.facingGeometricNormal();
+        end.position = m_scene.pointUnderRay(surface.position, step.ray, end.normal);
+        end.reflected = bsdf.reflectedOf(step.carried);
+        end.density = 0.0f;
+        end.readsCaustics = caustics && (m_ends.findsAll || (!step.atOnce && step.byBroadOnly));
+        if (caustics && step.atOnce && !m_ends.findsAll) {
+            const float facing = -dot(step.ray.direction, end.normal);
+            end.density =
+                m_cosine * kInvPi * facing / lengthSquared(surface.position - m_first.origin);
+        }
+        if (end.density > 0.0f || end.readsCaustics) caustics->prefetch(end.position, end.normal);
+        m_ends.sites.prefetch(end.position, end.normal);
+    }
+
+    const Scene& m_scene;
+    const GatherEnds& m_ends;
+    const Ray m_first;
+    const float m_cosine;
+    Gathered& m_result;
+};
 
 }  // namespace
 
 Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray, float cosine,
-                      Sampler& sampler) {
-    const CacheWatch::As as(CacheUser::kGather);
+                      const Sampler& sampler) {
     Gathered result;
-    GatherWay way{PathWalk(ray, scene.coneAround(ray.direction, ends.width)), {}};
-    bool atOnce = true;
-    while (true) {
-        Surface surface;
-        ++result.rays;
-        const bool hit =
-            meet(scene, way.path.ray, surface, &way.path.footprint, way.path.throughput);
-        addLampsMet(scene, ends, way, hit ? &surface : nullptr, atOnce, result);
-        if (!hit) return result;
-        if (!result.hitAny) {
-            result.first = surface;
-            result.hitAny = true;
-        }
-        const Bsdf bsdf(scene.materials(), surface, -way.path.ray.direction, Transport::kRadiance,
-                        way.path.throughput);
-        if (bsdf.isBlackBody()) return result;
-        if (bsdf.has(Lobe::kDiffuse)) {
-            setEnd(scene, ends, way, ray, surface, bsdf, cosine, atOnce, result);
-            if (bsdf.isDiffuseOnly()) return result;
-            endGather(ends, result);
-        }
-        addLampsSampled(scene, ends, way, surface, bsdf, sampler, result);
-        BsdfSample sample;
-        const float uLobe = sampler.next1D();
-        const Vec2f u = sampler.next2D();
-        if (!bsdf.sample(uLobe, u, sample) || sample.lobe == Lobe::kDiffuse ||
-            !way.path.scatter(surface, bsdf, sample, sampler))
-            return result;
-        if (sample.lobe == Lobe::kStraight) continue;
-        atOnce = false;
-        way.last = lastScatter(surface, sample);
-        if (scene.viewersDiffer() && !isDelta(sample.lobe) &&
-            GatherWay::isAsked(ends, sample.lobe)) {
-            const Rgb light = way.path.throughput *
-                              lightAlong(scene, *ends.lights, way.path.ray, way.last, result.rays);
-            result.radiance += {light, light};
-            way.last.hasLamps = true;
-        }
-        way.byBroadOnly = way.byBroadOnly && sample.lobe == Lobe::kBroad;
-    }
+    walk(scene, GatherPath(scene, ends, ray, cosine, result),
+         GatherPath::Step(ray, scene.coneAround(ray.direction, ends.width), sampler));
+    return result;
 }
 
 void endGather(const GatherEnds& ends, Gathered& gathered) {
@@ -139,7 +145,7 @@ void endGather(const GatherEnds& ends, Gathered& gathered) {
 }
 
 Gathered finalGather(const Scene& scene, const GatherEnds& ends, const Ray& ray, float cosine,
-                     Sampler& sampler) {
+                     const Sampler& sampler) {
     Gathered result = followGather(scene, ends, ray, cosine, sampler);
     endGather(ends, result);
     return result;

@@ -66,13 +66,14 @@ struct Gathered {
 // In two steps: the first asks for the site at the end to be at hand soon, the second reads it.
 // With another ray's first step between them memory has the time that it takes.
 //
-// cosine: of the ray to the shading normal where it comes from.
+// cosine: of the ray to the shading normal where it comes from. sampler: at the event where it
+// ends.
 Gathered followGather(const Scene& scene, const GatherEnds& ends, const Ray& ray, float cosine,
-                      Sampler& sampler);
+                      const Sampler& sampler);
 void endGather(const GatherEnds& ends, Gathered& gathered);
 
 // Both.
 Gathered finalGather(const Scene& scene, const GatherEnds& ends, const Ray& ray, float cosine,
-                     Sampler& sampler);
+                     const Sampler& sampler);
 
 }  // namespace pm

@@ -9,7 +9,7 @@
 #include "integrator/sampling/warps.h"
 #include "integrator/transport/gather/final_gather.h"
 #include "integrator/transport/gather/surroundings.h"
-#include "integrator/transport/path/path_walk.h"
+#include "integrator/transport/path/camera_step.h"
 
 namespace pm {
 
@@ -118,8 +118,8 @@ void GatherPoints::forget(const Rect& region, const Rect& all) const {
 // least, as samples ask there as often as where its other lobes lead.
 void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
     const std::size_t index = cell.row * static_cast<std::size_t>(m_tiles.columns()) + cell.column;
-    Sampler sampler(m_request.seed, streamOf(m_request.pass), kPointSequences + index, 0);
-    const Vec2f jitter = sampler.next2D();
+    const Sampler sampler(m_request.seed, streamOf(m_request.pass), kPointSequences + index, 0);
+    const Vec2f jitter = sampler.get2D(Purpose::kPlace);
     const auto start = [](std::size_t at) {
         return static_cast<float>(static_cast<std::int32_t>(at) - PointTiles::kMargin);
     };
@@ -131,7 +131,8 @@ void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
     const Ray first = m_camera.ray({x, y});
     followCameraPath(
         m_scene, first, m_camera.footprint({x, y}, first), sampler, [&](const PathStop& stop) {
-            const bool chosen = stop.bsdf.has(Lobe::kDiffuse) && stop.sampler.next1D() < 0.5f;
+            const bool chosen =
+                stop.bsdf.has(Lobe::kDiffuse) && stop.sampler.get1D(Purpose::kPilot) < 0.5f;
             if (!stop.isGathered() && !chosen) return stop.goesOn();
             const std::optional<Admission> admission = stop.bsdf.admission();
             if (!admission) return false;
@@ -165,7 +166,8 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
     };
     for (std::uint32_t i = 0; i < m_request.rays; ++i) {
         Sampler sampler = shared.at(static_cast<std::uint32_t>(part) * m_request.rays + i);
-        const auto [u, density] = GatherGuide::warp(directions, sampler.next2D());
+        const auto [u, density] = GatherGuide::warp(directions, sampler.get2D(Purpose::kDirection));
+        sampler.nextEvent();
         const float weight = 1 / density;
         const Vec3f direction = normalize(frame.toWorld(sampleCosineHemisphere(u)));
         if (dot(direction, geometricNormal) <= 0.0f) continue;
@@ -205,12 +207,12 @@ Rgb GatherPoints::sampleCaustics(const Point& point, const Origin& origin, const
     static_assert(kShared == 4);
     const auto part = static_cast<std::uint32_t>((cell.column & 1) | (cell.row & 1) << 1 |
                                                  (cell.column & 2) << 1 | (cell.row & 2) << 2);
-    Sampler sampler(m_request.seed, streamOf(m_request.pass), kLampSequences + sequenceOf(cell),
-                    part);
+    const Sampler sampler(m_request.seed, streamOf(m_request.pass),
+                          kLampSequences + sequenceOf(cell), part);
     const VirtualLamps::Place place{point.position,
                                     point.position + origin.geometricNormal * origin.offset,
                                     point.normal, origin.geometricNormal, origin.admission};
-    return m_request.caustics->sampled(place, m_request.rays, sampler.next1D());
+    return m_request.caustics->sampled(place, m_request.rays, sampler.get1D(Purpose::kCaustic));
 }
 
 GatherPoints::Value GatherPoints::compute(const Tile& tile, const Cell& cell,

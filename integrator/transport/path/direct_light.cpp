@@ -23,7 +23,7 @@ struct Question {
     const LightSampler& lights;
     const Surface& surface;
     const Bsdf& bsdf;
-    LampStrategy diffuse;
+    DirectStrategy diffuse;
     bool isSeen;
     std::uint32_t samples;
     Vec3f side;  // normal of that from which light is asked for
@@ -64,7 +64,7 @@ DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, st
     if (!asked.lights.sample(chosen, asked.surface, light) || !(light.pdfSolidAngle > 0.0f))
         return result;
     if (bsdf.goesThrough() && !(dot(light.direction, asked.side) > 0.0f)) return result;
-    if (asked.isSeen && !bsdf.goesThrough() && asked.diffuse != LampStrategy::kNone &&
+    if (asked.isSeen && !bsdf.goesThrough() && asked.diffuse != DirectStrategy::kNone &&
         bsdf.has(Lobe::kDiffuse) && !(dot(light.direction, asked.side) > 0.0f)) {
         result.of(Lobe::kDiffuse) = fromBeyondFace(asked, light, rays);
         return result;
@@ -74,13 +74,13 @@ DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, st
         const Rgb value = bsdf.evaluate(lobe, light.direction);
         if (isBlack(value)) return Rgb{};
         const bool alone = light.isPoint || (lobe == Lobe::kDiffuse &&
-                                             asked.diffuse == LampStrategy::kNextEventOnly);
+                                             asked.diffuse == DirectStrategy::kNextEventOnly);
         const float weight = alone ? 1.0f
                                    : powerHeuristic(samples * light.pdfSolidAngle,
                                                     bsdf.pdfSolidAngle(lobe, light.direction));
         return value * light.radiance * (weight / light.pdfSolidAngle);
     };
-    if (asked.diffuse != LampStrategy::kNone)
+    if (asked.diffuse != DirectStrategy::kNone)
         result.of(Lobe::kDiffuse) = contribution(Lobe::kDiffuse);
     for (const Lobe lobe : kShinyLobes) result.of(lobe) = contribution(lobe);
     if (std::ranges::all_of(result.by, [](const Rgb& c) { return isBlack(c); })) return result;
@@ -92,12 +92,13 @@ DirectRadiance byLampSample(const Question& asked, const ChosenLight& chosen, st
 
 // Sum over all samples, whose lamps are chosen kMost at a time.
 template <std::uint32_t kMost>
-DirectRadiance sumOfSamples(const Question& asked, const Sampler& sampler, std::uint32_t& rays) {
+DirectRadiance sumOfSamples(const Question& asked, const Sampler& sampler, Purpose purpose,
+                            std::uint32_t& rays) {
     DirectRadiance sum;
     std::array<ChosenLight, kMost> chosen;
     const std::span<ChosenLight> turn(chosen.data(), std::min(asked.samples, kMost));
     for (std::uint32_t next = 0; next < asked.samples;) {
-        for (ChosenLight& one : turn) one.u = sampler.part(asked.samples, next++).next2D();
+        for (ChosenLight& one : turn) one.u = sampler.part(asked.samples, next++).get2D(purpose);
         asked.lights.choose(asked.surface, asked.side, turn);
         for (const ChosenLight& one : turn) {
             const DirectRadiance part = byLampSample(asked, one, rays);
@@ -110,24 +111,23 @@ DirectRadiance sumOfSamples(const Question& asked, const Sampler& sampler, std::
 }  // namespace
 
 DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
-                              const Surface& surface, const Bsdf& bsdf, LampStrategy diffuse,
-                              bool isSeen, std::uint32_t samples, Sampler& sampler,
+                              const Surface& surface, const Bsdf& bsdf, DirectStrategy diffuse,
+                              bool isSeen, std::uint32_t samples, const Sampler& sampler,
                               std::uint32_t& rays) {
     Question asked{scene,   lights, surface, bsdf,
                    diffuse, isSeen, samples, bsdf.facingGeometricNormal()};
     DirectRadiance sum;
-    const auto add = [&] {
-        if (!lights.empty()) {
-            const DirectRadiance found = samples == 1 ? sumOfSamples<1>(asked, sampler, rays)
-                                                      : sumOfSamples<kAtOnce>(asked, sampler, rays);
-            for (std::size_t i = 0; i < sum.by.size(); ++i) sum.by[i] += found.by[i];
-        }
-        sampler.skip();
+    if (lights.empty()) return sum;
+    const auto add = [&](Purpose purpose) {
+        const DirectRadiance found = samples == 1
+                                         ? sumOfSamples<1>(asked, sampler, purpose, rays)
+                                         : sumOfSamples<kAtOnce>(asked, sampler, purpose, rays);
+        for (std::size_t i = 0; i < sum.by.size(); ++i) sum.by[i] += found.by[i];
     };
-    add();
+    add(Purpose::kDirect);
     if (bsdf.goesThrough()) {
         asked.side = -asked.side;
-        add();
+        add(Purpose::kDirectBehind);
     }
     const auto number = static_cast<float>(samples);
     for (Rgb& c : sum.by) c = c / number;

@@ -9,54 +9,12 @@
 
 #include "integrator/light_sampling/light_sampler.h"
 #include "integrator/materials/bsdf.h"
+#include "integrator/paths/path_class.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/values/rgb.h"
 
 namespace pm {
-
-// Which part of the picture a light path belongs to. With D the diffuse lobe, B a broad one and S
-// any other but going straight on, which is none, read from the eye: emission E S* L where every S
-// is delta; direct E S* (D|B) L, and E S+ L where a glossy lobe takes part; caustic E S* D (B|S)* S
-// L and, with W a lobe that is broad, or glossy and wide, E S* W (B|S)* S L; indirect all others,
-// which have two D or B or more. Each path is in exactly one.
-enum class PathClass : std::uint8_t { kEmission, kDirect, kCaustic, kIndirect };
-
-// How far a path from the camera has come.
-struct PathState {
-    // The first D or B, if any: what came after it, and whether it was a D.
-    enum class Since : std::uint8_t { kNone, kNothing, kOthers, kDiffuse };
-    Since since = Since::kNone;
-    bool firstIsDiffuse = false;
-    bool lastIsSpecular = false;
-    bool anyGlossy = false, anyDiffuse = false;
-    bool isPastWide = false;       // it has met a W, and no D
-    bool isCausticOnWide = false;  // what light is found next the first W receives as a caustic
-
-    void scatter(Lobe lobe) {
-        if (lobe == Lobe::kStraight) return;
-        const bool diffuse = lobe == Lobe::kDiffuse;
-        lastIsSpecular = !diffuse && lobe != Lobe::kBroad;
-        anyDiffuse = anyDiffuse || diffuse;
-        isCausticOnWide = isPastWide && lastIsSpecular;
-        isPastWide = !anyDiffuse && (isPastWide || isWide(lobe));
-        anyGlossy = anyGlossy || lobe == Lobe::kGlossy || lobe == Lobe::kWide;
-        if (since != Since::kNone)
-            since = diffuse ? Since::kDiffuse : std::max(since, Since::kOthers);
-        else if (!lastIsSpecular) {
-            since = Since::kNothing;
-            firstIsDiffuse = diffuse;
-        }
-    }
-    bool hasMetNoDiffuse() const { return since == Since::kNone; }
-    PathClass classify() const {
-        if (isCausticOnWide) return PathClass::kCaustic;
-        if (since == Since::kNone) return anyGlossy ? PathClass::kDirect : PathClass::kEmission;
-        if (since == Since::kNothing) return PathClass::kDirect;
-        return since == Since::kOthers && firstIsDiffuse && lastIsSpecular ? PathClass::kCaustic
-                                                                           : PathClass::kIndirect;
-    }
-};
 
 // Radiance of one camera sample by class, and what its first hit looks like.
 struct SampleRadiance {
@@ -105,8 +63,17 @@ struct DirectRadiance {
     }
 };
 
+// What lamps bring by each lobe of a surface: add(state, radiance), with the path's state after it.
+template <typename Add>
+void addByLobes(const DirectRadiance& direct, const Bsdf& bsdf, const PathState& state,
+                const Add& add) {
+    if (bsdf.has(Lobe::kDiffuse)) add(state.after(Lobe::kDiffuse), direct.of(Lobe::kDiffuse));
+    for (const Lobe lobe : kShinyLobes)
+        if (bsdf.has(lobe)) add(state.after(lobe), direct.of(lobe));
+}
+
 // How light that a diffuse lobe receives straight from a lamp is found.
-enum class LampStrategy : std::uint8_t {
+enum class DirectStrategy : std::uint8_t {
     kBoth,           // by next-event estimation and by sampling the lobe, weighted
     kNextEventOnly,  // where lamps fill so little of the view that sampling the lobe adds nothing
     kNone,           // it is not asked for
@@ -115,12 +82,11 @@ enum class LampStrategy : std::uint8_t {
 // Next-event estimation for both lobes: the mean of `samples` lamp samples, a power of two, with a
 // shadow ray each; weighted against finding the same light by sampling the lobe once, for the
 // diffuse lobe as `diffuse` says. isSeen: no diffuse lobe has been on the path so far; then coarse
-// smooth meshes end in shadow where the surface that they stand for does, see smoothPoint(). Draws
-// from one dimension of `sampler`, from two where light comes through the surface as well. Counts
+// smooth meshes end in shadow where the surface that they stand for does, see smoothPoint(). Counts
 // its rays in `rays`. Source: Veach 1997, section 9.2 (several samples of one strategy).
 DirectRadiance estimateDirect(const Scene& scene, const LightSampler& lights,
-                              const Surface& surface, const Bsdf& bsdf, LampStrategy diffuse,
-                              bool isSeen, std::uint32_t samples, Sampler& sampler,
+                              const Surface& surface, const Bsdf& bsdf, DirectStrategy diffuse,
+                              bool isSeen, std::uint32_t samples, const Sampler& sampler,
                               std::uint32_t& rays);
 
 // The sample that led from one surface to the next, as far as the weight of light found there

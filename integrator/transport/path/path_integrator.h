@@ -3,10 +3,10 @@
 #pragma once
 
 #include "integrator/light_sampling/light_sampler.h"
-#include "integrator/rays/ray_tracer.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/path/direct_light.h"
+#include "integrator/values/ray.h"
 
 namespace pm {
 
@@ -19,7 +19,7 @@ class PathIntegrator {
         : m_scene(scene), m_lights(lights) {}
 
     // footprint: of the ray.
-    SampleRadiance sample(const Ray& ray, Sampler& sampler,
+    SampleRadiance sample(const Ray& ray, const Sampler& sampler,
                           const RayFootprint& footprint = {}) const;
 
   private:

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "integrator/light_sampling/light_sampler.h"
@@ -12,9 +11,9 @@
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
+#include "integrator/shapes/ray_footprint.h"
 #include "integrator/transport/gather/gather_points.h"
 #include "integrator/transport/path/direct_light.h"
-#include "integrator/transport/path/path_walk.h"
 
 namespace pm {
 
@@ -51,69 +50,10 @@ class PhotonIntegrator {
         bool withSeenLamps = true;  // false where emission is left to paths of SeenLamps
         RayFootprint footprint{};   // of the ray
     };
-    SampleRadiance sample(const View& view, Sampler& sampler, NearestPhotons& scratch) const;
+    // sampler: at the camera.
+    SampleRadiance sample(const View& view, const Sampler& sampler, NearestPhotons& scratch) const;
 
   private:
-    // Which part of a diffuse reflection a ray along the lobe still has to find.
-    struct StillToFind {
-        LampStrategy lamps = LampStrategy::kBoth;
-        bool indirect = false;
-        std::uint32_t ownRays = 1;  // by how many rays along it
-        float width = 0.0f;         // of the footprint that they start from, scene units
-
-        bool any() const { return indirect || lamps == LampStrategy::kBoth; }
-    };
-    // A camera path on its way.
-    struct Branch {
-        PathWalk path;
-        PathState state;
-        LastScatter last;
-        std::uint32_t lampSamples = 1;
-        float way = 0.0f;  // that it has come, scene units
-        // Of what the camera sample brings, this branch's part, were all that it meets as bright:
-        // what is worth how much work.
-        float share = 1.0f;
-
-        bool goOn(const Surface& surface, const Bsdf& bsdf, const BsdfSample& sample, bool isPart,
-                  Sampler& sampler);
-    };
-    // What all branches of one sample share.
-    struct Tree {
-        const View& view;
-        Sampler& sampler;
-        NearestPhotons& scratch;
-        SampleRadiance& result;
-    };
-    // Of each lobe, with which probability the path was to be followed along it; 0: it is not.
-    using Survival = std::array<float, kLobeCount>;
-    // diffuse: whether that lobe is one to follow.
-    static Survival divide(const Bsdf& bsdf, const Carried& path, bool diffuse, Sampler& sampler);
-    void addLampsAlong(Branch& branch, const Tree& tree) const;
-    // To its end.
-    void follow(Branch& branch, const Tree& tree) const;
-    // Along all lobes but one, which `branch` then is on. False: there is none.
-    bool followLobes(const Surface& surface, const Bsdf& bsdf, StillToFind still, Branch& branch,
-                     const Tree& tree) const;
-    StillToFind addReflected(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
-                             const Tree& tree) const;
-    StillToFind readMaps(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
-                         const Tree& tree) const;
-    void addReceived(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
-                     const Tree& tree) const;
-    // Whether a map has the light that a path in this state finds at a lamp.
-    bool isOfMap(const PathState& state) const { return m_maps.received && state.isCausticOnWide; }
-    void addRefocused(const GatherPoints::Place& place, float clearance, float share,
-                      const Rgb& reflected, const Tree& tree) const;
-    void followDiffuse(const Surface& surface, const Bsdf& bsdf, const Branch& branch,
-                       StillToFind still, float survival, const Tree& tree) const;
-    void followBroad(const Surface& surface, const Bsdf& bsdf, const Branch& branch, float survival,
-                     const Tree& tree) const;
-    void gatherAlong(const Ray& ray, const LastScatter& last, StillToFind still, const Rgb& weight,
-                     std::uint32_t rays, float cosine, Sampler& sampler,
-                     SampleRadiance& result) const;
-    void sampleCaustics(const Surface& surface, const Bsdf& bsdf, const Rgb& throughput,
-                        std::uint32_t rays, Sampler sampler, SampleRadiance& result) const;
-
     const Scene& m_scene;
     const LightSampler& m_lights;
     PhotonMaps m_maps;

@@ -297,7 +297,7 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings,
               const std::atomic<bool>& cancelled) {
     Plan plan;
     const SceneTraits traits = findTraits(scene);
-    const bool isPath = settings.integrator == IntegratorKind::kPath;
+    const bool isPath = settings.integrator != IntegratorKind::kPhoton;
     if (isPath && traits.glossy && traits.specular && traits.pointLights)
         plan.notices.push_back({NoticeCode::kNotCovered,
                                 "light of point lights, spots and suns without a disc that reaches "

@@ -9,9 +9,7 @@
 #include <optional>
 #include <span>
 
-#include "integrator/materials/bsdf.h"
-#include "integrator/materials/follow_footprint.h"
-#include "integrator/transport/path/path_walk.h"
+#include "integrator/transport/path/camera_step.h"
 
 namespace pm {
 
@@ -104,50 +102,68 @@ std::optional<Linear> fit(std::span<const LampRay> rays, const LightBall& lamp, 
                   (qy * xx - qx * xy) * (1 / determinant)};
 }
 
-// What a ray meets.
-struct Arrival {
-    Surface surface;
-    RayFootprint footprint;  // there
-    bool isSurface;
-    std::optional<Bsdf> bsdf;  // of what may have delta lobes
-
-    // footprint: of the ray. carried: becomes that of here.
-    Arrival(const Scene& scene, const Ray& ray, const RayFootprint& from, Carried& carried)
-        : footprint(from), isSurface(meet(scene, ray, surface, &footprint, carried.throughput)) {
-        if (isSurface && scene.traits(surface.material).hasDelta)
-            bsdf.emplace(scene.materials(), surface, -ray.direction, Transport::kRadiance,
-                         carried.throughput);
-    }
-    // By way of a lobe, next: the ray that led here, then the one onwards; false where there is
-    // none.
-    bool follow(Lobe lobe, Carried& carried, Ray& next, RayFootprint& onwards) const {
-        BsdfSample sample;
-        if (!bsdf || !bsdf->follow(lobe, sample)) return false;
-        carried.followLobe(*bsdf, sample);
-        onwards = footprint;
-        followFootprint(next.direction, surface, *bsdf, sample, onwards);
-        const Viewers viewer = next.viewer;
-        next = rayFrom(surface, sample.direction);
-        if (lobe == Lobe::kStraight) next.viewer = viewer;
-        return true;
-    }
-};
-
 // The ray that these lobes lead to, from a place of the frame.
 std::optional<Ray> rayBy(const Scene& scene, const Camera& camera, std::uint64_t lobes, double x,
                          double y) {
-    Ray ray = camera.ray({x, y});
-    RayFootprint footprint = camera.footprint({x, y}, ray);
-    Carried carried;
+    const Ray first = camera.ray({x, y});
+    CameraStep step(first, camera.footprint({x, y}, first), Sampler(0, 0, 0, 0));
     int shift = 0;
     while (lobes >> (shift + 2)) shift += 2;
     for (shift -= 2; shift >= 0; shift -= 2) {
-        const Arrival arrival(scene, ray, footprint, carried);
-        if (!arrival.follow(kDeltaLobes[(lobes >> shift) & 3], carried, ray, footprint))
+        Surface surface;
+        if (!meet(scene, step.ray, surface, &step.footprint, step.carried) ||
+            !scene.traits(surface.material).hasDelta)
             return std::nullopt;
+        const Bsdf bsdf(scene.materials(), surface, -step.ray.direction, Transport::kRadiance,
+                        step.carried);
+        BsdfSample sample;
+        if (!bsdf.follow(kDeltaLobes[(lobes >> shift) & 3], sample)) return std::nullopt;
+        step.takeLobe(bsdf, sample);
+        step.leave(surface, bsdf, sample);
     }
-    return ray;
+    return step.ray;
 }
+
+// By all delta lobes; nothing is left to chance.
+struct EveryLobe {
+    struct Step : CameraStep {
+        using CameraStep::CameraStep;
+        std::uint64_t lobes = 1;
+    };
+    static constexpr Transport kTransport = Transport::kRadiance;
+
+    const Scene& scene;
+    const LightSampler& lights;
+    const double x, y;
+    std::vector<LampRay>& rays;
+    Rgb& found;
+
+    static CacheUser user(const Step& step) { return step.user(); }
+    void setOut(const Step& step) const { rays.push_back({step.lobes, x, y, step.ray}); }
+    static void meetNothing(const Step&) {}
+    Verdict meet(const Step& step, const Surface& surface) const {
+        if (surface.light != kNoLight)
+            found += step.carried * lights.emittedRadiance(surface, -step.ray.direction);
+        return scene.traits(surface.material).hasDelta && step.events.count() < kMostLobes
+                   ? Verdict::kScatter
+                   : Verdict::kEnd;
+    }
+    static bool scatter(const Step& step, const Surface& surface, const Bsdf& bsdf,
+                        Waiting<Step>& waiting) {
+        for (std::size_t i = 0; i < kDeltaLobes.size(); ++i) {
+            BsdfSample sample;
+            if (!bsdf.follow(kDeltaLobes[i], sample)) continue;
+            Step next = step;
+            next.lobes = step.lobes << 2 | i;
+            next.events.add(0.0f);
+            next.takeLobe(bsdf, sample);
+            if (next.amount() < kLeastThroughput) continue;
+            next.leave(surface, bsdf, sample);
+            waiting.add(next);
+        }
+        return false;
+    }
+};
 
 // Newton's method from (x, y) on, with shorter steps where one leads no nearer; the image's
 // rectangle where it converges.
@@ -291,33 +307,10 @@ bool LampImage::isAround(const FrameArea& frame) const {
 
 Rgb followLobes(const Scene& scene, const LightSampler& lights, const Camera& camera, double x,
                 double y, std::vector<LampRay>& rays) {
-    struct Branch {
-        Ray ray;
-        RayFootprint footprint;
-        std::uint64_t lobes = 1;
-        Carried carried{};
-        int count = 0;
-    };
     Rgb found;
     const Ray first = camera.ray({x, y});
-    std::vector<Branch> waiting{{first, camera.footprint({x, y}, first)}};
-    while (!waiting.empty()) {
-        Branch branch = waiting.back();
-        waiting.pop_back();
-        rays.push_back({branch.lobes, x, y, branch.ray});
-        const Arrival arrival(scene, branch.ray, branch.footprint, branch.carried);
-        if (arrival.isSurface && arrival.surface.light != kNoLight)
-            found += branch.carried.throughput *
-                     lights.emittedRadiance(arrival.surface, -branch.ray.direction);
-        if (branch.count == kMostLobes) continue;
-        for (std::size_t i = 0; i < kDeltaLobes.size(); ++i) {
-            Branch next{branch.ray, branch.footprint, branch.lobes << 2 | i, branch.carried,
-                        branch.count + 1};
-            if (arrival.follow(kDeltaLobes[i], next.carried, next.ray, next.footprint) &&
-                next.carried.amount() >= kLeastThroughput)
-                waiting.push_back(next);
-        }
-    }
+    walk(scene, EveryLobe{scene, lights, x, y, rays, found},
+         EveryLobe::Step(first, camera.footprint({x, y}, first), Sampler(0, 0, 0, 0)));
     return found;
 }
 

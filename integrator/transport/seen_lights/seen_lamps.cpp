@@ -9,8 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "integrator/materials/bsdf.h"
-#include "integrator/materials/follow_footprint.h"
+#include "integrator/transport/path/camera_step.h"
 
 namespace pm {
 
@@ -39,6 +38,76 @@ bool mayShow(const PixelCell& cell, PixelFilter filter, const LampImage& image) 
     return std::abs(image.centre[0] - cell.x - 0.5) < halfX + 0.5 + reach &&
            std::abs(image.centre[1] - cell.y - 0.5) < halfY + 0.5 + reach;
 }
+
+// The paths that SeenLamps follows: by delta lobes, by all of them while it may divide.
+class LampPath {
+  public:
+    using Step = CameraStep;
+    static constexpr Transport kTransport = Transport::kRadiance;
+
+    LampPath(const Scene& scene, const LightSampler& lights, const SeenLamps::Effort& effort,
+             std::uint32_t& rays)
+        : m_scene(scene), m_lights(lights), m_effort(effort), m_rays(rays) {}
+
+    const Rgb& found() const { return m_found; }
+
+    static CacheUser user(const Step& step) { return step.user(); }
+    void setOut(const Step&) { ++m_rays; }
+    static void meetNothing(const Step&) {}
+    Verdict meet(const Step& step, const Surface& surface) {
+        if (surface.light != kNoLight)
+            m_found += step.carried * m_lights.emittedRadiance(surface, -step.ray.direction);
+        return m_scene.traits(surface.material).hasDelta ? Verdict::kScatter : Verdict::kEnd;
+    }
+    bool scatter(Step& step, const Surface& surface, const Bsdf& bsdf, Waiting<Step>& waiting) {
+        if (bsdf.isBlackBody()) return false;
+        BsdfSample sample;
+        if (m_divisions >= m_effort.divisions)
+            return sampleLobe(bsdf, step.random, sample) && isDelta(sample.lobe) &&
+                   goOn(step, surface, bsdf, sample);
+        const Step arrived = step;
+        std::uint32_t followed = 0;
+        for (const Lobe lobe : kDeltaLobes) {
+            Step next = arrived;
+            next.random = arrived.random.branch(static_cast<std::uint32_t>(lobe));
+            if (!bsdf.follow(lobe, sample) || !goOn(next, surface, bsdf, sample)) continue;
+            if (followed++ > 0) waiting.add(step);
+            step = next;
+        }
+        m_divisions += followed > 0 ? followed - 1 : 0;
+        return followed > 0;
+    }
+
+  private:
+    // False: the roulette ends it.
+    bool goOn(Step& step, const Surface& surface, const Bsdf& bsdf,
+              const BsdfSample& sample) const {
+        const float before = step.amount();
+        step.takeLobe(bsdf, sample);
+        const float amount = step.amount();
+        const float kept = amount / before;
+        const bool halves = step.events.add(kept) < kept;
+        // Of what ends here camera paths tell, which follow the same lobes.
+        if (step.events.isOver()) return false;
+        float least = m_effort.leastThroughput;
+        if (step.events.count() >= m_effort.events) least = std::max(least, before);
+        if (halves) least = std::max(least, 2.0f * amount);
+        if (amount < least) {
+            const float survival = amount / least;
+            if (!(step.random.get1D(Purpose::kRoulette) < survival)) return false;
+            step.carried *= 1.0f / survival;
+        }
+        step.leave(surface, bsdf, sample);
+        return true;
+    }
+
+    const Scene& m_scene;
+    const LightSampler& m_lights;
+    const SeenLamps::Effort& m_effort;
+    std::uint32_t& m_rays;
+    std::uint32_t m_divisions = 0;  // so far
+    Rgb m_found;
+};
 
 }  // namespace
 
@@ -92,7 +161,8 @@ SeenLamps::Square SeenLamps::look(std::int32_t column, std::int32_t row) const {
     std::vector<LampRay> rays;
     float least = std::numeric_limits<float>::max(), most = 0.0f;
     for (std::int32_t i = 0; i < kPilots * kPilots; ++i) {
-        const Vec2f jitter = Sampler(kPilotSeed, 0, key, static_cast<std::uint32_t>(i)).next2D();
+        const Vec2f jitter =
+            Sampler(kPilotSeed, 0, key, static_cast<std::uint32_t>(i)).get2D(Purpose::kPlace);
         const float x = (static_cast<float>(i % kPilots) + jitter.x) * kStep - kBeyond;
         const float y = (static_cast<float>(i / kPilots) + jitter.y) * kStep - kBeyond;
         const Rgb seen = followLobes(m_scene, m_lights, m_camera, x0 + static_cast<double>(x),
@@ -117,7 +187,7 @@ Rgb SeenLamps::sample(const Shown& shown, std::uint32_t pass, const PixelCell& c
                              [&](const LampImage& image) { return mayShow(cell, filter, image); });
     const Effort effort = images.empty() ? Effort{} : kOfImages;
     Rgb sum;
-    const auto add = [&](const Place& place, Sampler& sampler) {
+    const auto add = [&](const Place& place, const Sampler& sampler) {
         double weight = 1.0 / shown.paths;
         if (!images.empty()) {
             const double density =
@@ -134,91 +204,24 @@ Rgb SeenLamps::sample(const Shown& shown, std::uint32_t pass, const PixelCell& c
     };
     const std::uint64_t stream = cell.stream(pass) + 8;
     for (std::uint32_t i = 0; i < shown.paths; ++i) {
-        Sampler sampler(m_settings.seed, stream, cell.key(), index * shown.paths + i);
-        add(cell.place(filter, sampler.next2D()), sampler);
+        const Sampler sampler(m_settings.seed, stream, cell.key(), index * shown.paths + i);
+        add(cell.place(filter, sampler.get2D(Purpose::kPlace)), sampler);
     }
     for (std::size_t k = 0; k < images.size(); ++k)
         for (std::uint32_t i = 0; i < kPathsOfImage; ++i) {
-            Sampler sampler(m_settings.seed, stream + 8 * (k + 1), cell.key(),
-                            index * kPathsOfImage + i);
-            const auto [x, y] = images[k].at(sampler.next2D());
+            const Sampler sampler(m_settings.seed, stream + 8 * (k + 1), cell.key(),
+                                  index * kPathsOfImage + i);
+            const auto [x, y] = images[k].at(sampler.get2D(Purpose::kPlace));
             add({x, y}, sampler);
         }
     return sum;
 }
 
-Rgb SeenLamps::along(const Ray& ray, const RayFootprint& footprint, Sampler& sampler,
+Rgb SeenLamps::along(const Ray& ray, const RayFootprint& footprint, const Sampler& sampler,
                      std::uint32_t& rays, const Effort& effort) const {
-    Waiting waiting{effort};
-    waiting.branches[waiting.count++] = {ray, footprint};
-    Rgb found;
-    while (waiting.count > 0) {
-        Branch branch = waiting.branches[--waiting.count];
-        do ++rays;
-        while (step(branch, waiting, sampler, found));
-    }
-    return found;
-}
-
-// To the next surface, and on from there. False: nothing goes on.
-bool SeenLamps::step(Branch& branch, Waiting& waiting, Sampler& sampler, Rgb& found) const {
-    Surface surface;
-    if (!meet(m_scene, branch.ray, surface, &branch.footprint, branch.carried.throughput))
-        return false;
-    const Vec3f out = -branch.ray.direction;
-    if (surface.light != kNoLight)
-        found += branch.carried.throughput * m_lights.emittedRadiance(surface, out);
-    if (!m_scene.traits(surface.material).hasDelta) return false;
-    const Bsdf bsdf(m_scene.materials(), surface, out, Transport::kRadiance,
-                    branch.carried.throughput);
-    if (bsdf.isBlackBody()) return false;
-    const Branch arrived = branch;
-    if (waiting.divisions >= waiting.effort.divisions) {
-        const float uLobe = sampler.next1D();
-        BsdfSample sample;
-        return bsdf.sample(uLobe, sampler.next2D(), sample) && isDelta(sample.lobe) &&
-               goOn(arrived, surface, bsdf, sample, waiting.effort, sampler, branch);
-    }
-    std::size_t followed = 0;
-    for (const Lobe lobe : kDeltaLobes) {
-        BsdfSample sample;
-        Branch next;
-        if (!bsdf.follow(lobe, sample) ||
-            !goOn(arrived, surface, bsdf, sample, waiting.effort, sampler, next))
-            continue;
-        if (followed++ > 0) waiting.branches[waiting.count++] = branch;
-        branch = next;
-    }
-    waiting.divisions += followed > 0 ? followed - 1 : 0;
-    return followed > 0;
-}
-
-// Along a lobe from where `from` has arrived. False: the roulette ends it.
-bool SeenLamps::goOn(const Branch& from, const Surface& surface, const Bsdf& bsdf,
-                     const BsdfSample& sample, const Effort& effort, Sampler& sampler,
-                     Branch& next) const {
-    next.carried = from.carried;
-    next.carried.followLobe(bsdf, sample);
-    next.events = from.events;
-    const float amount = next.carried.amount();
-    const float kept = amount / from.carried.amount();
-    const bool halves = next.events.add(kept) < kept;
-    // Of what ends here camera paths tell, which follow the same lobes.
-    if (next.events.isOver()) return false;
-    float least = effort.leastThroughput;
-    if (next.events.count() >= effort.events) least = std::max(least, from.carried.amount());
-    if (halves) least = std::max(least, 2.0f * amount);
-    if (amount < least) {
-        const float survival = amount / least;
-        if (!(sampler.next1D() < survival)) return false;
-        next.carried.throughput *= 1.0f / survival;
-    }
-    next.footprint = from.footprint;
-    followFootprint(from.ray.direction, surface, bsdf, sample, next.footprint);
-    const Viewers viewer = from.ray.viewer;
-    next.ray = rayFrom(surface, sample.direction);
-    if (sample.lobe == Lobe::kStraight) next.ray.viewer = viewer;
-    return true;
+    LampPath path(m_scene, m_lights, effort, rays);
+    walk(m_scene, path, CameraStep(ray, footprint, sampler));
+    return path.found();
 }
 
 }  // namespace pm

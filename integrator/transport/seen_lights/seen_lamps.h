@@ -13,13 +13,12 @@
 #include <vector>
 
 #include "integrator/light_sampling/light_sampler.h"
-#include "integrator/materials/bsdf.h"
 #include "integrator/sampling/sampler.h"
 #include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
+#include "integrator/shapes/ray_footprint.h"
 #include "integrator/transport/frame/pixel_cell.h"
 #include "integrator/transport/frame/render_settings.h"
-#include "integrator/transport/path/path_walk.h"
 #include "integrator/transport/seen_lights/lamp_images.h"
 #include "integrator/values/rgb.h"
 
@@ -75,37 +74,19 @@ class SeenLamps {
     static constexpr Effort kOfImages{12, 1e-4f, 12};
 
     // Radiance of the lamps along a ray. Adds its rays to `rays`.
-    Rgb along(const Ray& ray, Sampler& sampler, std::uint32_t& rays) const {
+    Rgb along(const Ray& ray, const Sampler& sampler, std::uint32_t& rays) const {
         return along(ray, {}, sampler, rays, {});
     }
-    Rgb along(const Ray& ray, const RayFootprint& footprint, Sampler& sampler, std::uint32_t& rays,
-              const Effort& effort) const;
+    Rgb along(const Ray& ray, const RayFootprint& footprint, const Sampler& sampler,
+              std::uint32_t& rays, const Effort& effort) const;
 
   private:
-    // How far a path has come.
-    struct Branch {
-        Ray ray;
-        RayFootprint footprint{};  // of the ray
-        Carried carried{};
-        EventCount events{};
-    };
-    // Branches of one path that wait to be followed.
-    struct Waiting {
-        static constexpr std::size_t kMost = 16;
-        const Effort& effort;
-        std::array<Branch, kMost> branches{};
-        std::size_t count = 0;
-        std::size_t divisions = 0;  // so far
-    };
     // What is known of a square.
     struct Square {
         std::uint32_t paths = 0;
         std::vector<LampImage> images;
     };
 
-    bool step(Branch& branch, Waiting& waiting, Sampler& sampler, Rgb& found) const;
-    bool goOn(const Branch& from, const Surface& surface, const Bsdf& bsdf,
-              const BsdfSample& sample, const Effort& effort, Sampler& sampler, Branch& next) const;
     Square look(std::int32_t column, std::int32_t row) const;
 
     const Scene& m_scene;

@@ -51,11 +51,13 @@ void addEndsOfRaysFrom(const Scene& scene, const PathStop& stop, std::vector<End
         if (weight > 0) ends.push_back({met.surface.position, length(way), weight});
         return met.next != Lobe::kDiffuse;
     };
-    for (std::size_t i = 0; i < kRays; ++i) {
+    for (std::uint32_t i = 0; i < kRays; ++i) {
+        Sampler random = stop.sampler.branch(i);
         const Vec3f direction =
-            normalize(frame.toWorld(sampleCosineHemisphere(stop.sampler.next2D())));
+            normalize(frame.toWorld(sampleCosineHemisphere(random.get2D(Purpose::kDirection))));
+        random.nextEvent();
         followCameraPath(scene, rayFrom(stop.surface, direction),
-                         scene.coneAround(direction, stop.footprint.width()), stop.sampler, addEnd);
+                         scene.coneAround(direction, stop.footprint.width()), random, addEnd);
     }
 }
 

@@ -58,13 +58,15 @@ class GatherPilot {
         std::uint32_t rays = 0;
         const Rgb direct =
             estimateDirect(m_scene, lights, m_stop.surface, m_stop.bsdf,
-                           LampStrategy::kNextEventOnly, true, kLampSamples, m_stop.sampler, rays)
+                           DirectStrategy::kNextEventOnly, true, kLampSamples, m_stop.sampler, rays)
                 .of(Lobe::kDiffuse);
         return m_stop.throughput * direct;
     }
 
     // What the eye sees of a gather ray.
-    Rgb seen(Vec2f u, bool guided, Sampler& sampler) const {
+    Rgb seen(bool guided, Sampler random) const {
+        const Vec2f u = random.get2D(Purpose::kDirection);
+        random.nextEvent();
         const auto warped =
             guided ? m_directions->warp(u) : GatherGuide::Directions::Warped{u, 1.0f};
         const Vec3f direction = normalize(m_frame.toWorld(sampleCosineHemisphere(warped.u)));
@@ -72,21 +74,16 @@ class GatherPilot {
         GatherEnds ends = m_ends;
         ends.width = m_stop.footprint.width();
         const Rgb radiance = finalGather(m_scene, ends, rayFrom(m_stop.surface, direction),
-                                         dot(direction, m_frame.normal), sampler)
+                                         dot(direction, m_frame.normal), random)
                                  .radiance.wide;
         return m_stop.throughput * m_stop.bsdf.diffuse() * (radiance / warped.density);
     }
 
-    // Of kRaysOfSet rays, as well spread as a gather point's.
-    Rgb meanOfSet(bool guided) const {
-        const auto sequence = static_cast<std::uint64_t>(m_stop.sampler.next1D() * 0x1p24f);
-        const Sampler shared(kSeed, 0, sequence, 0);
+    // The mean of kRaysOfSet rays, as well spread as a gather point's; each set has its number.
+    Rgb meanOfSet(std::uint32_t set, bool guided) const {
+        const Sampler shared = m_stop.sampler.branch(set);
         Rgb sum;
-        for (std::uint32_t i = 0; i < kRaysOfSet; ++i) {
-            Sampler sampler = shared.at(i);
-            const Vec2f u = sampler.next2D();
-            sum += seen(u, guided, sampler);
-        }
+        for (std::uint32_t i = 0; i < kRaysOfSet; ++i) sum += seen(guided, shared.at(i));
         return sum / static_cast<float>(kRaysOfSet);
     }
 
@@ -98,12 +95,11 @@ class GatherPilot {
     std::optional<GatherGuide::Directions> m_directions;
 };
 
-double spreadAt(const GatherPilot& pilot, const LightSampler& lights, Sampler& sampler) {
+double spreadAt(const GatherPilot& pilot, const LightSampler& lights, const Sampler& sampler) {
     const Rgb direct = pilot.direct(lights);
     Moments moments[3];
     for (std::uint32_t i = 0; i < kRays; ++i) {
-        const Vec2f u = sampler.next2D();
-        const Rgb seen = pilot.seen(u, false, sampler);
+        const Rgb seen = pilot.seen(false, sampler.branch(i));
         for (int c = 0; c < 3; ++c) moments[c].add(static_cast<double>(seen[c]));
     }
     double spread = 0;
@@ -117,8 +113,8 @@ double spreadAt(const GatherPilot& pilot, const LightSampler& lights, Sampler& s
 // By two sets of rays each way: half of the square of what they differ by is the variance of one.
 GatherRivals rivalsAt(const GatherPilot& pilot, const LightSampler& lights) {
     const Rgb direct = pilot.direct(lights);
-    const Rgb cosine[2] = {pilot.meanOfSet(false), pilot.meanOfSet(false)};
-    const Rgb guide[2] = {pilot.meanOfSet(true), pilot.meanOfSet(true)};
+    const Rgb cosine[2] = {pilot.meanOfSet(0, false), pilot.meanOfSet(1, false)};
+    const Rgb guide[2] = {pilot.meanOfSet(2, true), pilot.meanOfSet(3, true)};
     GatherRivals rivals;
     for (int c = 0; c < 3; ++c) {
         const auto of = [c](const Rgb& rgb) { return static_cast<double>(rgb[c]); };

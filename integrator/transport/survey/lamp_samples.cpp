@@ -37,10 +37,10 @@ struct Lit {
 };
 
 Rgb estimate(const Scene& scene, const LightSampler& lights, const Surface& surface,
-             const Bsdf& bsdf, Sampler sampler) {
+             const Bsdf& bsdf, const Sampler& sampler) {
     std::uint32_t rays = 0;
-    const DirectRadiance direct = estimateDirect(scene, lights, surface, bsdf, LampStrategy::kBoth,
-                                                 true, kSet, sampler, rays);
+    const DirectRadiance direct = estimateDirect(scene, lights, surface, bsdf,
+                                                 DirectStrategy::kBoth, true, kSet, sampler, rays);
     return direct.of(Lobe::kDiffuse) + direct.shiny();
 }
 

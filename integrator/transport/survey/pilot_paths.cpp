@@ -33,8 +33,8 @@ void followPilotPaths(const Scene& scene, const Camera& camera, const FrameLatti
                       const std::function<bool(std::size_t path, const PathStop& stop)>& visit) {
     tbb::parallel_for(std::size_t{0}, lattice.size(), [&](std::size_t i) {
         cancel.throwIfSet("looking where light will be asked for");
-        Sampler sampler(seed, 0, i, 0);
-        const Vec2f jitter = sampler.next2D();
+        const Sampler sampler(seed, 0, i, 0);
+        const Vec2f jitter = sampler.get2D(Purpose::kPlace);
         const double x = static_cast<double>(i % lattice.columns) + static_cast<double>(jitter.x);
         const double y = static_cast<double>(i / lattice.columns) + static_cast<double>(jitter.y);
         const double atX = x * lattice.cellWidth, atY = y * lattice.cellHeight;

@@ -9,7 +9,7 @@
 #include "integrator/scene/camera.h"
 #include "integrator/scene/scene.h"
 #include "integrator/transport/frame/render_settings.h"
-#include "integrator/transport/path/path_walk.h"
+#include "integrator/transport/path/camera_step.h"
 #include "integrator/values/cancel_check.h"
 
 namespace pm {

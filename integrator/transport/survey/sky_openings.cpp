@@ -100,10 +100,11 @@ double radiusAround(const std::vector<SkyRay>& rays, const Vec3d& centre) {
 }
 
 // The ball around where the most rays come close to each other.
-std::optional<Caster> findBall(const std::vector<SkyRay>& rays, double widest, Sampler& sampler) {
+std::optional<Caster> findBall(const std::vector<SkyRay>& rays, double widest,
+                               const Sampler& sampler) {
     std::vector<SkyRay> best;
     for (std::uint32_t trial = 0; trial < kTrials; ++trial) {
-        const Vec2f u = sampler.next2D();
+        const Vec2f u = sampler.branch(trial).get2D(Purpose::kPilot);
         const auto one = [&](float v) -> const SkyRay& {
             return rays[std::min(
                 static_cast<std::size_t>(static_cast<double>(v) * static_cast<double>(rays.size())),
@@ -153,7 +154,7 @@ Looks lookAtSky(const Scene& scene, const Camera& camera, const RenderSettings& 
                      [&](std::size_t path, const PathStop& stop) {
                          if (stop.next != Lobe::kDiffuse) return true;
                          const Vec3f normal = stop.bsdf.facingShadingNormal();
-                         const Vec2f start = stop.sampler.next2D();
+                         const Vec2f start = stop.sampler.get2D(Purpose::kPilot);
                          for (std::uint32_t i = 0; i < count; ++i) {
                              float pdf;
                              const Vec3f direction =
@@ -196,6 +197,7 @@ SkyOpenings findSkyOpenings(const Scene& scene, const Camera& camera,
     double area = 0;
     while (openings.balls.size() < kMostOpenings && looks.rays.size() >= 3) {
         const auto ball = findBall(looks.rays, kWidest * scene.radius(), sampler);
+        sampler.nextEvent();
         if (!ball) break;
         const std::size_t before = looks.rays.size();
         std::erase_if(looks.rays, [&](const SkyRay& ray) {

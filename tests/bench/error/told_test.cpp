@@ -60,7 +60,7 @@ Means meansOf(const std::string& key, std::uint64_t photons = 0) {
         const Halves r = source.halves(scene.byPaths ? pathSettings() : narrowSettings());
         Means means;
         for (int seed = 1; seed <= kSeeds; ++seed) {
-            RenderSettings settings = settingsFor(kPasses, static_cast<std::uint64_t>(seed));
+            RenderSettings settings = settingsFor(kPasses, static_cast<std::uint64_t>(10 + seed));
             settings.photons = photons;
             const Judged last = source.judged(settings).back();
             std::vector<double> moved = last.rgb;

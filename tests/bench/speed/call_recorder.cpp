@@ -100,18 +100,18 @@ bool wrapSample(const Bsdf* bsdf, float uLobe, Vec2f u, BsdfSample& sample) {
 }
 
 using DirectFunction = DirectRadiance(const Scene&, const LightSampler&, const Surface&,
-                                      const Bsdf&, LampStrategy, bool, std::uint32_t, Sampler&,
-                                      std::uint32_t&);
+                                      const Bsdf&, DirectStrategy, bool, std::uint32_t,
+                                      const Sampler&, std::uint32_t&);
 static_assert(std::is_same_v<decltype(estimateDirect), DirectFunction>);
 DirectFunction realDirect __asm__(
     "__real__ZN2pm14estimateDirectERKNS_5SceneERKNS_12LightSamplerERKNS_7SurfaceERKNS_"
-    "4BsdfENS_12LampStrategyEbjRNS_7SamplerERj");
+    "4BsdfENS_14DirectStrategyEbjRKNS_7SamplerERj");
 DirectFunction wrapDirect __asm__(
     "__wrap__ZN2pm14estimateDirectERKNS_5SceneERKNS_12LightSamplerERKNS_7SurfaceERKNS_"
-    "4BsdfENS_12LampStrategyEbjRNS_7SamplerERj");
+    "4BsdfENS_14DirectStrategyEbjRKNS_7SamplerERj");
 DirectRadiance wrapDirect(const Scene& scene, const LightSampler& lights, const Surface& surface,
-                          const Bsdf& bsdf, LampStrategy diffuse, bool isSeen,
-                          std::uint32_t samples, Sampler& sampler, std::uint32_t& rays) {
+                          const Bsdf& bsdf, DirectStrategy diffuse, bool isSeen,
+                          std::uint32_t samples, const Sampler& sampler, std::uint32_t& rays) {
     if (recorded) recorded->pairs += samples;
     return realDirect(scene, lights, surface, bsdf, diffuse, isSeen, samples, sampler, rays);
 }

@@ -154,8 +154,14 @@ void benchSampler(Report& report, int turns) {
             }
         };
     };
-    const auto pair = [](Sampler& s) { benchmark::DoNotOptimize(s.next2D()); };
-    const auto single = [](Sampler& s) { benchmark::DoNotOptimize(s.next1D()); };
+    const auto pair = [](Sampler& s) {
+        benchmark::DoNotOptimize(s.get2D(Purpose::kDirection));
+        s.nextEvent();
+    };
+    const auto single = [](Sampler& s) {
+        benchmark::DoNotOptimize(s.get1D(Purpose::kLobe));
+        s.nextEvent();
+    };
     const auto times =
         takeTurns(turns, {drawing(0, pair), drawing(kDraws, pair), drawing(kDraws, single)});
     report.row({"a sampler made", show(spreadOf(times[0]), 1e9 / kSamples)});

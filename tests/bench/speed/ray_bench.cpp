@@ -4,12 +4,12 @@
 #include <fmt/format.h>
 
 #include "integrator/light_sampling/light_sampler.h"
-#include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
 #include "integrator/scene/camera.h"
 #include "tests/bench/run/bench_scenes.h"
 #include "tests/bench/speed/bare_embree.h"
 #include "tests/bench/speed/speed_bench.h"
+#include "tests/support/draws.h"
 
 namespace pm::bench {
 
@@ -27,7 +27,7 @@ RaySets makeRays(const Scene& scene) {
     RaySets rays;
     for (std::int32_t y = 0; y < kSize; ++y)
         for (std::int32_t x = 0; x < kSize; ++x) {
-            Sampler sampler(1, 0, static_cast<std::uint64_t>(y * kSize + x), 0);
+            test::Draws sampler(1, 0, static_cast<std::uint64_t>(y * kSize + x), 0);
             const Vec2f jitter = sampler.next2D();
             rays.camera.push_back(
                 camera.ray({x + static_cast<double>(jitter.x), y + static_cast<double>(jitter.y)}));

@@ -128,10 +128,11 @@ void Replay::drawNumbers() const {
     std::uint64_t pairs = 0, singles = 0;
     for (std::uint64_t i = 0; i < m_calls.samplers; ++i) {
         Sampler sampler(1, 0, i / 16, static_cast<std::uint32_t>(i % 16));
-        for (; pairs * m_calls.samplers < m_calls.pairs * (i + 1); ++pairs)
-            benchmark::DoNotOptimize(sampler.next2D());
-        for (; singles * m_calls.samplers < m_calls.singles * (i + 1); ++singles)
-            benchmark::DoNotOptimize(sampler.next1D());
+        for (; pairs * m_calls.samplers < m_calls.pairs * (i + 1); ++pairs, sampler.nextEvent())
+            benchmark::DoNotOptimize(sampler.get2D(Purpose::kDirection));
+        for (; singles * m_calls.samplers < m_calls.singles * (i + 1);
+             ++singles, sampler.nextEvent())
+            benchmark::DoNotOptimize(sampler.get1D(Purpose::kLobe));
     }
 }
 

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <memory>
 
+#include "tests/integrator/brute/brute_rooms.h"
 #include "tests/support/mixture.h"
 #include "tests/support/rooms.h"
 #include "tests/support/scene_maker.h"
@@ -39,25 +40,6 @@ TriangleMesh square(Vec3f p, Vec3f e0, Vec3f e1) {
     mesh.texcoords = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     mesh.triangles = mesh.texcoordIndices = {{0, 1, 2}, {0, 2, 3}};
     return mesh;
-}
-
-// A room under a lamp as wide as its ceiling.
-SceneMaker litRoom() {
-    SceneMaker maker = openRoom();
-    ceilingLamp(maker, 0.95, Rgb(2.0f));
-    return maker;
-}
-
-SceneMaker withBalls(const MaterialDescription& left, const MaterialDescription& right) {
-    SceneMaker maker = litRoom();
-    maker.sphere({-0.45, -0.5, -0.2}, 0.4, maker.material(left));
-    maker.sphere({0.45, -0.5, 0.1}, 0.4, maker.material(right));
-    return maker;
-}
-
-MaterialDescription rough(MaterialDescription m, float roughness) {
-    m.roughness = roughness;
-    return m;
 }
 
 MaterialDescription absorbing(MaterialDescription m, Rgb left, float distance) {
@@ -146,28 +128,6 @@ Room hidden() {
     return {"hidden from shadows", maker};
 }
 
-Room instances() {
-    SceneMaker maker = litRoom();
-    auto mesh =
-        std::make_shared<TriangleMesh>(square({-0.3f, -0.3f, 0}, {0.6f, 0, 0}, {0, 0.6f, 0}));
-    const auto material = maker.material(rough(mirror(), 0.35f));
-    for (const double angle : {0.4, 2.0, 4.5}) {
-        InstanceDescription placed;
-        placed.shape = std::shared_ptr<const TriangleMesh>(mesh);
-        const double c = std::cos(angle), s = std::sin(angle);
-        placed.transform = {c, 0, s, 0.5 * s, 0, 1, 0, -0.4, -s, 0, c, 0.5 * c};
-        placed.materials = {material};
-        maker.description.instances.push_back(placed);
-    }
-    return {"instances", maker};
-}
-
-Room underSky() {
-    SceneMaker maker = withBalls(rough(glass(), 0.3f), rough(mirror(), 0.6f));
-    maker.sky({0.5f, 0.7f, 1.0f});
-    return {"sky", maker};
-}
-
 // A ball that is metal in squares, and one of five lobes.
 Room mixtures() {
     SceneMaker maker = withBalls(rough(mirror(), 0.3f), MaterialDescription{});
@@ -201,8 +161,8 @@ std::vector<Room> scenes() {
             coats(),
             cutLamp(),
             hidden(),
-            instances(),
-            underSky(),
+            {"instances", mirrorsOfOneMesh()},
+            {"sky", ballsUnderASky()},
             mixtures()};
 }
 

@@ -117,8 +117,8 @@ TEST(PixelFilter, KeepsStrata) {
         for (std::uint64_t sequence = 0; sequence < 20; ++sequence) {
             std::vector<int> alongX(count), alongY(count);
             for (std::uint32_t i = 0; i < count; ++i) {
-                Sampler sampler(3, 0, sequence, i);
-                const Vec2f u = sampler.next2D();
+                const Sampler sampler(3, 0, sequence, i);
+                const Vec2f u = sampler.get2D(Purpose::kPlace);
                 const auto part = [&](float v) {
                     const double place = placeInPixel(PixelFilter::kGaussian, v);
                     return static_cast<std::size_t>(filterBelow(place, 0.5) * count);

@@ -25,8 +25,8 @@ std::vector<Vec2f> pairOfDimensions(std::uint64_t sequence, int pair, std::uint3
     std::vector<Vec2f> points;
     for (std::uint32_t i = 0; i < count; ++i) {
         Sampler sampler(7, 3, sequence, i);
-        for (int skipped = 0; skipped < pair; ++skipped) sampler.next2D();
-        points.push_back(sampler.next2D());
+        for (int event = 0; event < pair / 2; ++event) sampler.nextEvent();
+        points.push_back(sampler.get2D(pair % 2 ? Purpose::kDirection : Purpose::kDirect));
     }
     return points;
 }
@@ -69,9 +69,8 @@ TEST(Sampler, OneDimensionIsStratified) {
     for (std::uint64_t sequence = 0; sequence < 8; ++sequence) {
         std::vector<int> seen(1024);
         for (std::uint32_t i = 0; i < 1024; ++i) {
-            Sampler sampler(1, 0, sequence, i);
-            sampler.next2D();
-            ++seen[static_cast<std::size_t>(sampler.next1D() * 1024.0f)];
+            const Sampler sampler(1, 0, sequence, i);
+            ++seen[static_cast<std::size_t>(sampler.get1D(Purpose::kLobe) * 1024.0f)];
         }
         EXPECT_EQ(*std::max_element(seen.begin(), seen.end()), 1);
     }
@@ -86,28 +85,32 @@ TEST(Sampler, UniformAcrossNames) {
             100'000,
             [&]() -> std::optional<Vec2f> {
                 ++n;
-                Sampler sampler(varied == 0 ? n : 1, varied == 1 ? n : 0, varied == 2 ? n : 0, 5);
-                sampler.next1D();
-                return sampler.next2D();
+                return Sampler(varied == 0 ? n : 1, varied == 1 ? n : 0, varied == 2 ? n : 0, 5)
+                    .get2D(Purpose::kDirection);
             },
             flat);
         EXPECT_GT(p, kSignificance) << "varied: " << varied;
     }
 }
 
-// Dimensions of different pairs, and neighbours in sequence and stream, know nothing of each other.
+// Numbers of other purposes, events and branches, and neighbours in sequence and stream, know
+// nothing of each other.
 TEST(Sampler, PairsAndNeighboursAreIndependent) {
-    for (int kind = 0; kind < 3; ++kind) {
+    for (int kind = 0; kind < 7; ++kind) {
         std::uint64_t n = 0;
         const double p = squarePValue(
             100'000,
             [&]() -> std::optional<Vec2f> {
                 ++n;
-                Sampler first(1, 2, n, 0);
-                const float x = first.next2D().x;
-                if (kind == 0) return Vec2f{x, first.next2D().x};
+                const Sampler first(1, 2, n, 0);
                 Sampler second(1, kind == 1 ? 4 : 2, kind == 2 ? n + (1ull << 32) : n, 0);
-                return Vec2f{x, second.next2D().x};
+                if (kind == 3) second.nextEvent();
+                if (kind == 4) second = first.branch(0);
+                if (kind == 5) second = first.branch(1);
+                const Sampler& other = kind == 6 ? first.branch(0) : first;
+                const Purpose purpose = kind == 0 ? Purpose::kDirect : Purpose::kLobe;
+                const Sampler last = kind == 6 ? first.branch(1) : second;
+                return Vec2f{other.get1D(Purpose::kLobe), last.get1D(purpose)};
             },
             [](double, double) { return 1.0; });
         EXPECT_GT(p, kSignificance) << "kind: " << kind;
@@ -118,30 +121,33 @@ TEST(Sampler, IsAPureFunctionOfItsArguments) {
     const std::vector<Vec2f> forwards = pairOfDimensions(9, 2, 512);
     for (std::uint32_t i = 512; i-- > 0;) {
         Sampler sampler(7, 3, 9, i);
-        sampler.next2D();
-        sampler.next2D();
-        EXPECT_EQ(sampler.next2D(), forwards[i]);
+        sampler.nextEvent();
+        EXPECT_EQ(sampler.get2D(Purpose::kDirect), forwards[i]);
     }
     EXPECT_NE(forwards, pairOfDimensions(10, 2, 512));
-    // Stored once: a change of these is a change of every picture.
-    Sampler sampler(1, 2, 3, 4);
-    const float x = sampler.next1D();
-    Sampler again(1, 2, 3, 4);
-    EXPECT_EQ(x, again.next1D());
-    EXPECT_GE(x, 0.0f);
-    EXPECT_LT(x, 1.0f);
 }
 
 // From one point of a sequence to another is as good as a sampler of its own.
 TEST(Sampler, AnotherPointOfTheSequence) {
-    Sampler used(3, 5, 7, 11);
-    used.next2D();
+    const Sampler used(3, 5, 7, 11);
     for (const std::uint32_t index : {0u, 1u, 11u, 0x80000001u}) {
         Sampler other = used.at(index), own(3, 5, 7, index);
-        for (int i = 0; i < 4; ++i) {
-            EXPECT_EQ(other.next1D(), own.next1D()) << index;
-            EXPECT_EQ(other.next2D(), own.next2D()) << index;
+        for (int i = 0; i < 4; ++i, other.nextEvent(), own.nextEvent()) {
+            EXPECT_EQ(other.get1D(Purpose::kLobe), own.get1D(Purpose::kLobe)) << index;
+            EXPECT_EQ(other.get2D(Purpose::kLobe), own.get2D(Purpose::kLobe)) << index;
         }
+    }
+}
+
+// What was asked for before, and for what, changes no number.
+TEST(Sampler, PurposesAreKeysNotAnOrder) {
+    Sampler plain(3, 5, 7, 11), asked(3, 5, 7, 11);
+    for (int event = 0; event < 3; ++event, plain.nextEvent(), asked.nextEvent()) {
+        asked.get1D(Purpose::kRoulette);
+        asked.get2D(Purpose::kLens);
+        asked.branch(2).get2D(Purpose::kDirection);
+        EXPECT_EQ(plain.get2D(Purpose::kDirection), asked.get2D(Purpose::kDirection)) << event;
+        EXPECT_EQ(plain.branch(1).get1D(Purpose::kLobe), asked.branch(1).get1D(Purpose::kLobe));
     }
 }
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "integrator/light_sampling/light_choice.h"
-#include "integrator/transport/path/path_walk.h"
+#include "integrator/transport/path/camera_step.h"
 #include "tests/support/rooms.h"
 #include "tests/support/scene_maker.h"
 #include "tests/support/statistics.h"
@@ -191,17 +191,15 @@ TEST(SamplingRoutines, RouletteKeepsTheMean) {
     constexpr int kEvents = 9, kPaths = 200'000;
     std::array<double, kEvents> mean{}, square{}, alive{};
     for (std::uint32_t n = 0; n < kPaths; ++n) {
-        Sampler sampler(1, 0, n, 0);
-        PathWalk path(Ray{{}, {0, 0, -1}});
+        CameraStep path(Ray{{}, {0, 0, -1}}, {}, Sampler(1, 0, n, 0));
         for (std::size_t event = 0; event < kEvents; ++event) {
             const Bsdf bsdf(bench.scene->materials(), bench.surface, {0, 0, 1},
-                            Transport::kRadiance, path.throughput);
+                            Transport::kRadiance, path.carried);
             BsdfSample sample;
-            const float u = sampler.next1D();
-            ASSERT_TRUE(bsdf.sample(u, sampler.next2D(), sample));
-            if (!path.scatter(bench.surface, bsdf, sample, sampler)) break;
+            ASSERT_TRUE(sampleLobe(bsdf, path.random, sample));
+            if (!path.scatter(bench.surface, bsdf, sample)) break;
             alive[event] += 1;
-            const auto red = static_cast<double>(path.throughput.r);
+            const auto red = static_cast<double>(path.carried.r);
             mean[event] += red / kPaths;
             square[event] += red * red / kPaths;
         }

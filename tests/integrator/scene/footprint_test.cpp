@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "integrator/scene/camera.h"
+#include "integrator/transport/path/camera_step.h"
 #include "integrator/transport/path/path_integrator.h"
-#include "integrator/transport/path/path_walk.h"
 #include "tests/support/rooms.h"
 #include "tests/support/scene_maker.h"
 
@@ -112,7 +112,7 @@ constexpr std::int32_t kWidth = 40, kHeight = 30;
 
 End endOf(const Scene& scene, const Camera& camera, double x, double y, std::uint32_t index) {
     End end;
-    Sampler sampler(1, 0, index, 0);
+    const Sampler sampler(1, 0, index, 0);
     const Ray first = camera.ray({x, y});
     followCameraPath(scene, first, camera.footprint({x, y}, first), sampler,
                      [&](const PathStop& stop) {
@@ -236,9 +236,9 @@ Horizon floorToTheHorizon(bool filters) {
     Horizon found;
     for (std::int32_t row = kDown / 2; row < kDown; ++row)
         for (std::int32_t column = 0; column < kAcross; ++column) {
-            Sampler sampler(1, 0, static_cast<std::uint64_t>(row),
-                            static_cast<std::uint32_t>(column));
-            const Vec2f at = sampler.next2D();
+            const Sampler sampler(1, 0, static_cast<std::uint64_t>(row),
+                                  static_cast<std::uint32_t>(column));
+            const Vec2f at = sampler.get2D(Purpose::kPlace);
             const double x = column + static_cast<double>(at.x),
                          y = row + static_cast<double>(at.y);
             const Ray ray = camera.ray({x, y});

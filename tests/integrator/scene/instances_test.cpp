@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "integrator/rays/shared_mesh.h"
-#include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
 #include "integrator/values/transform.h"
+#include "tests/support/draws.h"
 #include "tests/support/scene_maker.h"
 
 namespace pm::test {
@@ -87,7 +87,7 @@ Mesh tile(std::uint32_t divisions) {
 
 std::vector<Transform> anywhere(std::size_t count, double distance, double leastScale,
                                 double mostScale) {
-    Sampler random(7, 0, 0, 0);
+    Draws random(7, 0, 0, 0);
     std::vector<Transform> places;
     for (std::size_t i = 0; i < count; ++i) {
         const Vec2f a = random.next2D(), b = random.next2D(), c = random.next2D();
@@ -103,7 +103,7 @@ std::vector<Transform> anywhere(std::size_t count, double distance, double least
 }
 
 // From anywhere, towards one of the instances or past it.
-Ray somewhere(const Scene& scene, Sampler& random) {
+Ray somewhere(const Scene& scene, Draws& random) {
     const auto radius = static_cast<float>(scene.radius());
     const auto& all = scene.description().instances;
     const auto which = static_cast<std::size_t>(random.next1D() * static_cast<float>(all.size()));
@@ -145,7 +145,7 @@ TEST(Instances, AreMetWhereTheyAre) {
     for (const double distance : {10.0, 300.0}) {
         const SceneMaker maker = manyBalls(ball(8), distance);
         const auto scene = maker.build(), flat = flattened(maker).build();
-        Sampler random(1, 0, 0, 0);
+        Draws random(1, 0, 0, 0);
         int met = 0, other = 0;
         for (int i = 0; i < 100'000; ++i) {
             const Ray ray = somewhere(*scene, random);
@@ -180,7 +180,7 @@ TEST(Instances, AreLeftByRaysThatStartOnThem) {
         instances(maker, mesh, maker.diffuse(Rgb(0.5f)), places);
         const auto scene = maker.build();
         ASSERT_TRUE(scene->hasInstances());
-        Sampler random(1, 0, 0, 0);
+        Draws random(1, 0, 0, 0);
         int left = 0;
         for (int i = 0; i < 400'000; ++i) {
             Surface surface, again;
@@ -208,7 +208,7 @@ TEST(Instances, LeaveNoCracksWhereTheyTouch) {
     instances(maker, tile(3), maker.diffuse(Rgb(0.5f)), places);
     const auto scene = maker.build();
     ASSERT_TRUE(scene->hasInstances());
-    Sampler random(1, 0, 0, 0);
+    Draws random(1, 0, 0, 0);
     const Vec3d up = Vec3d{whole[2], whole[6], whole[10]};
     for (int i = 0; i < 400'000; ++i) {
         const Vec2f u = random.next2D(), v = random.next2D();

@@ -16,15 +16,15 @@
 #include <vector>
 
 #include "integrator/geometry/subdivision.h"
-#include "integrator/sampling/sampler.h"
 #include "integrator/sampling/warps.h"
 #include "tests/integrator/geometry/obj_cage.h"
+#include "tests/support/draws.h"
 
 namespace pm::test {
 namespace {
 
 // From around the scene, into it.
-Ray rayInto(const Scene& scene, Sampler& random) {
+Ray rayInto(const Scene& scene, Draws& random) {
     const auto radius = static_cast<float>(scene.radius());
     const Vec3f from = sampleUniformSphere(random.next2D()) * (2.0f * radius);
     const Vec3f to = sampleUniformSphere(random.next2D()) * (0.7f * radius * random.next1D());
@@ -43,7 +43,7 @@ TEST(LimitScene, IsMetWhereThePlainMeshIs) {
     SceneMaker plain;
     plain.mesh(tessellate(cubeCage(), 8).mesh, plain.diffuse(Rgb(0.5f)));
     const auto other = plain.build();
-    Sampler random(3, 0, 0, 0);
+    Draws random(3, 0, 0, 0);
     int met = 0, unlike = 0;
     for (int i = 0; i < 20'000; ++i) {
         Ray ray = rayInto(*scene, random);
@@ -71,7 +71,7 @@ struct Met {
 
 std::vector<Met> metBy(const Scene& scene, std::uint32_t seed, int count) {
     std::vector<Met> all;
-    Sampler random(seed, 0, 0, 0);
+    Draws random(seed, 0, 0, 0);
     for (int i = 0; i < count; ++i) {
         Surface surface;
         const Ray ray = rayInto(scene, random);
@@ -133,7 +133,7 @@ std::size_t missedFromInside(const Scene& scene, std::uint64_t rays) {
     std::atomic<std::size_t> missed{0};
     constexpr std::uint64_t kBatch = 4096;
     tbb::parallel_for(std::uint64_t{0}, (rays + kBatch - 1) / kBatch, [&](std::uint64_t batch) {
-        Sampler random(static_cast<std::uint32_t>(batch), 1, 0, 0);
+        Draws random(static_cast<std::uint32_t>(batch), 1, 0, 0);
         for (std::uint64_t i = 0; i < kBatch; ++i) {
             const Vec3f from = sampleUniformSphere(random.next2D()) *
                                (0.05f * static_cast<float>(scene.radius()) * random.next1D());
@@ -345,7 +345,7 @@ TEST(LimitScene, HasNoCracksBesideWhatShines) {
         maker.camera(middle + Vec3d{0.4, 0.5, 4} * size, middle, {0, 1, 0}, 150);
         const auto scene = maker.build();
         EXPECT_GT(scene->lights().size(), 500u);
-        Sampler random(7, 0, 0, 0);
+        Draws random(7, 0, 0, 0);
         for (int i = 0; i < 10'000; ++i) {
             const double y = 0.1 + 3.8 * static_cast<double>(random.next1D());
             const double aside = 2e-6 * static_cast<double>(random.next1D() - 0.5f);

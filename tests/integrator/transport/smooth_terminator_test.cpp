@@ -35,15 +35,15 @@ class Ball {
     void forEachPoint(bool isSeen, const Towards& towards, const Visit& visit) const {
         constexpr std::uint32_t kRays = 4000;
         for (std::uint32_t i = 0; i < kRays; ++i) {
-            Sampler sampler(1, 0, i, 0);
-            const Vec3f out = sampleUniformSphere(sampler.next2D());
+            const Sampler sampler(1, 0, i, 0);
+            const Vec3f out = sampleUniformSphere(sampler.get2D(Purpose::kDirection));
             const Ray ray{Vec3f(-Vec3d(m_scene->centre())) + out * 1.5f, -out};
             Surface surface;
             if (!m_scene->intersect(ray, surface) || surface.shape != 0) continue;
             const Bsdf bsdf(m_scene->materials(), surface, out, Transport::kRadiance, Rgb(1.0f));
             std::uint32_t rays = 0;
             const DirectRadiance direct = estimateDirect(
-                *m_scene, m_lights, surface, bsdf, LampStrategy::kBoth, isSeen, 1, sampler, rays);
+                *m_scene, m_lights, surface, bsdf, DirectStrategy::kBoth, isSeen, 1, sampler, rays);
             visit(Point{surface, direct.of(Lobe::kDiffuse).g,
                         dot(surface.geometricNormal, towards(surface.position)) <= 0.0f});
         }
@@ -134,10 +134,10 @@ TEST(SmoothTerminator, HollowSurfacesShadeThemselves) {
     maker.meshSphere({0, 0, 0}, 1, maker.diffuse(Rgb(kReflectance)), true, 4);
     const auto scene = maker.build();
     for (std::uint32_t i = 0; i < 500; ++i) {
-        Sampler sampler(1, 0, i, 0);
+        const Sampler sampler(1, 0, i, 0);
         Surface surface;
-        ASSERT_TRUE(
-            scene->intersect({Vec3f(0.0f), sampleUniformSphere(sampler.next2D())}, surface));
+        ASSERT_TRUE(scene->intersect(
+            {Vec3f(0.0f), sampleUniformSphere(sampler.get2D(Purpose::kDirection))}, surface));
         SmoothPoint smooth;
         ASSERT_TRUE(scene->smoothPoint(surface, surface.geometricNormal, smooth));
         EXPECT_LT(length(smooth.position - Vec3d(surface.position)), 1e-6);

@@ -256,10 +256,12 @@ TEST(AimedEmission, WeightsAreBounded) {
         const Aimed aimed(build(test));
         double largest = 0;
         for (std::uint32_t i = 0; i < 100'000; ++i) {
-            Sampler sampler(1, 1, 0, i);
-            const Vec2f choice = sampler.next2D(), point = sampler.next2D();
+            const Sampler sampler(1, 1, 0, i);
+            const Vec2f choice = sampler.get2D(Purpose::kLight);
+            const Vec2f point = sampler.get2D(Purpose::kPlace);
             AimedPhoton photon;
-            if (!aimed.aim.emit(choice, point, sampler.next2D(), photon)) continue;
+            if (!aimed.aim.emit(choice, point, sampler.get2D(Purpose::kDirection), photon))
+                continue;
             ASSERT_TRUE(isFinite(photon.flux));
             const Light& light = aimed.scene->lights()[photon.light];
             const double mean =

@@ -95,7 +95,8 @@ TEST(BrightRooms, ARoomBesideIsNotStarved) {
     ASSERT_GT(makePlan(*both.build(), settings).oneInChains, 0u);
     const MeasuredLayers found = measure(both.build(), settings);
     EXPECT_TRUE(agrees(found.beauty, Rgb(1.0f), 0.002));
-    EXPECT_LT(found.beauty.standardError[0], 3 * wanted.beauty.standardError[0]);
+    // By 16 seeds 1.7 to 4.4 times; starved it is ten and more.
+    EXPECT_LT(found.beauty.standardError[0], 6 * wanted.beauty.standardError[0]);
 }
 
 // All light comes by way of glass, so chains are those of light descended from caustics.

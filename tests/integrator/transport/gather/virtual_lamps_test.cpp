@@ -95,8 +95,9 @@ Moments gather(const Scene& scene, const IrradianceSites& sites, const VirtualLa
         double irradiance = 0;
         for (std::uint32_t i = 0; i < kRays; ++i) {
             Sampler sampler(7, 0, sequence, i);
-            const Vec3f direction =
-                normalize(frame.toWorld(sampleCosineHemisphere(sampler.next2D())));
+            const Vec3f direction = normalize(
+                frame.toWorld(sampleCosineHemisphere(sampler.get2D(Purpose::kDirection))));
+            sampler.nextEvent();
             const float cosine = dot(direction, place.shadingNormal);
             irradiance += static_cast<double>(
                 finalGather(scene, ends, {place.start, direction}, cosine, sampler)
@@ -105,7 +106,8 @@ Moments gather(const Scene& scene, const IrradianceSites& sites, const VirtualLa
         irradiance *= std::numbers::pi / kRays;
         if (lamps)
             irradiance += static_cast<double>(
-                lamps->sampled(place, kRays, Sampler(8, 0, sequence, 0).next1D()).g);
+                lamps->sampled(place, kRays, Sampler(8, 0, sequence, 0).get1D(Purpose::kCaustic))
+                    .g);
         return irradiance;
     });
 }

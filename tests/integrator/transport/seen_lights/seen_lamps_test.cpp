@@ -32,8 +32,8 @@ struct View {
           lights(*scene),
           lamps(*scene, lights, camera, {.width = kSize, .height = kSize}) {}
 
-    Ray ray(Sampler& sampler) const {
-        const Vec2f place = sampler.next2D();
+    Ray ray(const Sampler& sampler) const {
+        const Vec2f place = sampler.get2D(Purpose::kPlace);
         return camera.ray(
             {kSize * static_cast<double>(place.x), kSize * static_cast<double>(place.y)});
     }
@@ -47,7 +47,7 @@ Mean meanAlong(const View& view, std::uint32_t count) {
     std::uint32_t rays = 0;
     const Moments found = momentsOf(count, [&](std::uint32_t i) {
         // Each by a sequence of its own: independent, for the standard error.
-        Sampler sampler(7, 0, i, 0);
+        const Sampler sampler(7, 0, i, 0);
         const Ray ray = view.ray(sampler);
         return static_cast<double>(view.lamps.along(ray, sampler, rays).g);
     });
@@ -63,7 +63,7 @@ TEST(SeenLamps, GlassShowsItsShareOfALampInEachPath) {
     const View view(maker);
     std::uint32_t rays = 0;
     for (std::uint32_t i = 0; i < 200; ++i) {
-        Sampler sampler(1, 0, 0, i);
+        const Sampler sampler(1, 0, 0, i);
         const Ray ray = view.ray(sampler);
         const float expected = 30.0f * fresnelDielectric(-ray.direction.y, 1.5f);
         EXPECT_NEAR(view.lamps.along(ray, sampler, rays).r, expected, 1e-4f * expected);
