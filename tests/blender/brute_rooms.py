@@ -14,6 +14,9 @@ import sys
 import bpy
 from mathutils import Matrix
 
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import cycles_reference
+
 SIZE = (12, 8)
 
 
@@ -119,36 +122,21 @@ ROOMS = {
 }
 
 
-def set_up(samples):
+def add_camera():
     scene = bpy.context.scene
     camera = bpy.data.cameras.new("camera")
     camera.sensor_fit, camera.angle = "VERTICAL", math.radians(36)
     scene.camera = bpy.data.objects.new("camera", camera)
     scene.camera.location = (0, 0, 4.2)
     scene.collection.objects.link(scene.camera)
-    scene.world = bpy.data.worlds.new("black")
-    scene.world.color = (0.0, 0.0, 0.0)
-    scene.render.engine = "CYCLES"
-    scene.render.resolution_x, scene.render.resolution_y = SIZE
-    scene.render.resolution_percentage = 100
-    scene.render.dither_intensity = 0.0
-    scene.view_settings.view_transform = "Raw"
-    image = scene.render.image_settings
-    image.file_format, image.color_mode, image.color_depth = "OPEN_EXR", "RGB", "32"
-    cycles = scene.cycles
-    cycles.device, cycles.samples, cycles.seed = "CPU", samples, 1
-    cycles.use_adaptive_sampling = cycles.use_denoising = False
-    cycles.pixel_filter_type, cycles.filter_width = "BOX", 1.0
-    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
-    cycles.blur_glossy = cycles.light_sampling_threshold = 0.0
-    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = cycles.transmission_bounces = 64
 
 
 def main():
     folder, samples = sys.argv[sys.argv.index("--") + 1 :]
     for name, build in ROOMS.items():
         bpy.ops.wm.read_factory_settings(use_empty=True)
-        set_up(int(samples))
+        add_camera()
+        cycles_reference.set_up(SIZE, int(samples), 64).transmission_bounces = 64
         build()
         bpy.ops.render.render()
         bpy.data.images["Render Result"].save_render(os.path.join(folder, f"cycles_{name}.exr"))

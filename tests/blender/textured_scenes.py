@@ -15,6 +15,9 @@ import addon_utils
 import bpy
 from mathutils import Vector
 
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+import cycles_reference
+
 SIZE = (64, 48)
 CAMERA = {"position": (0.0, -5.0, 2.2), "look_at": (0.0, 0.3, 0.6), "field_of_view": 40.0}
 PICTURE = 256  # texels on a side, so that few pixels see where two mix
@@ -212,27 +215,6 @@ def add_camera():
     bpy.context.scene.camera = thing
 
 
-def set_up(samples):
-    scene = bpy.context.scene
-    scene.render.engine = "CYCLES"
-    scene.render.resolution_x, scene.render.resolution_y = SIZE
-    scene.render.resolution_percentage = 100
-    scene.render.dither_intensity = 0.0
-    scene.view_settings.view_transform = "Raw"
-    image = scene.render.image_settings
-    image.file_format, image.color_mode, image.color_depth = "OPEN_EXR", "RGB", "32"
-    scene.world = bpy.data.worlds.new("black")
-    scene.world.color = (0.0, 0.0, 0.0)
-    cycles = scene.cycles
-    cycles.device, cycles.samples, cycles.seed = "CPU", samples, 1
-    cycles.use_adaptive_sampling = cycles.use_denoising = False
-    cycles.pixel_filter_type, cycles.filter_width = "BOX", 1.0
-    cycles.sample_clamp_direct = cycles.sample_clamp_indirect = 0.0
-    cycles.blur_glossy = cycles.light_sampling_threshold = 0.0
-    cycles.max_bounces = cycles.diffuse_bounces = cycles.glossy_bounces = 32
-    cycles.transparent_max_bounces = 32
-
-
 def export(folder, name):
     bpy.ops.export_scene.obj(filepath=os.path.join(folder, f"{name}_old.obj"), path_mode="RELATIVE")
     bpy.ops.wm.obj_export(filepath=os.path.join(folder, f"{name}_new.obj"), path_mode="RELATIVE")
@@ -249,7 +231,7 @@ def main():
         addon_utils.enable("io_scene_obj")
         SCENES[name](folder)
         add_camera()
-        set_up(int(samples))
+        cycles_reference.set_up(SIZE, int(samples), 32).transparent_max_bounces = 32
         export(folder, name)
         bpy.ops.render.render()
         bpy.data.images["Render Result"].save_render(os.path.join(folder, f"cycles_{name}.exr"))
