@@ -19,8 +19,6 @@
 namespace pm::host {
 namespace {
 
-constexpr double kWantedChange = 0.02;
-
 void print(const std::string& text) {
     const std::string plain = plainLines(text);
     std::fwrite(plain.data(), 1, plain.size(), stdout);
@@ -35,11 +33,11 @@ std::string lineOf(const SceneOutcome& outcome, bool isUpdate) {
     else
         text = fmt::format("{}: {}", name, nameOf(outcome.status));
     if (outcome.status == SceneOutcome::Status::kWithinNoise)
-        text +=
-            fmt::format(" (furthest region at {:.0f} % of its limit)", 100 * outcome.shareOfLimit);
+        text += fmt::format(" ({})", noiseText(outcome));
     text += fmt::format(", {:.2f} s\n", outcome.seconds);
     for (const Finding& finding : outcome.findings)
         text += fmt::format("    {}: {}\n", finding.measure, finding.text);
+    for (const std::string& line : remarksOf(outcome)) text += fmt::format("    {}\n", line);
     if (!outcome.isRight()) text += fmt::format("    {}\n", outcome.command);
     return text;
 }
@@ -49,14 +47,6 @@ std::string summaryOf(const std::vector<SceneOutcome>& outcomes, bool isUpdate) 
     for (const SceneOutcome& outcome : outcomes) right += outcome.isRight() ? 1 : 0;
     return fmt::format("{} of {} scenes {}\n", right, outcomes.size(),
                        isUpdate ? "stored" : "right");
-}
-
-void warnOfNoise(const SceneOutcome& outcome, Log& log) {
-    if (outcome.seenChange > kWantedChange)
-        log.warning(static_cast<int>(Warning::kOutput),
-                    fmt::format("{}: a change of one 16 x 16 region is found from {:.2g} % on; "
-                                "more --passes find less",
-                                outcome.scene->name, 100 * outcome.seenChange));
 }
 
 // The renders work in the suite's folder; what the environment names is relative to this one.
@@ -73,15 +63,16 @@ std::vector<std::filesystem::path> filesOf(const Suite& suite) {
     std::vector<std::filesystem::path> files{suite.file};
     for (const SuiteScene& scene : suite.scenes) {
         const ReferenceFiles references = referenceFiles(suite, scene);
-        files.insert(files.end(),
-                     {scene.scene, references.picture, references.display, references.numbers});
+        files.insert(files.end(), {scene.scene, references.numbers});
+        const auto pictures = references.pictures();
+        files.insert(files.end(), pictures.begin(), pictures.end());
     }
     return files;
 }
 
 }  // namespace
 
-int runCheckCommand(const CheckOptions& options, Log& log) {
+int runCheckCommand(const CheckOptions& options) {
     keepNamesOfEnvironment();
     const Suite suite = readSuite(options.suite);
     if (!options.junit.empty()) {
@@ -92,7 +83,6 @@ int runCheckCommand(const CheckOptions& options, Log& log) {
     if (!options.html.empty()) pages.emplace(options.html, suite);
     CheckRun run(options, suite, [&](const SceneOutcome& outcome) {
         print(lineOf(outcome, options.update));
-        if (options.update) warnOfNoise(outcome, log);
         if (pages) pages->add(outcome);
     });
     const std::vector<SceneOutcome> outcomes = options.update ? run.update() : run.check();

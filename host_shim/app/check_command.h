@@ -10,6 +10,6 @@ namespace pm::host {
 // pm_host check: renders a suite and holds it against its references, or makes those; results go to
 // standard output. Returns the exit code: 0, 6 when anything differs, 3 when a reference is
 // missing.
-int runCheckCommand(const CheckOptions& options, Log& log);
+int runCheckCommand(const CheckOptions& options);
 
 }  // namespace pm::host

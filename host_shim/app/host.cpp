@@ -131,7 +131,7 @@ int runOptions(const Options& options, Log& log) {
     if (!options.list.empty()) return printList(options);
     if (options.cacheList || options.cacheClear || options.cacheVerify)
         return runCacheCommand(options);
-    if (options.check) return runCheckCommand(*options.check, log);
+    if (options.check) return runCheckCommand(*options.check);
     if (options.pack) return runPack(options, log);
     if (options.watch) return runWatch(options, log);
     if (options.farm) return runFarm(options, log);

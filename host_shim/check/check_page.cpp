@@ -10,6 +10,7 @@
 
 #include "host_shim/folders/own_folder.h"
 #include "host_shim/pictures/finished_file.h"
+#include "host_shim/report/report_command.h"
 #include "host_shim/report/report_html.h"
 #include "host_shim/report/report_pictures.h"
 
@@ -18,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kPictureBytes = 1'500'000;
+constexpr std::size_t kPictureBytes = 20'000'000;
 constexpr std::size_t kThumbnailBytes = 30'000;
 constexpr int kThumbnailWidth = 160;
 constexpr double kShareOfScale = 0.99;  // above all is shown alike
@@ -37,19 +38,21 @@ bool haveOneShape(const SceneOutcome& outcome) {
            outcome.stored->dataWindow == outcome.picture->dataWindow;
 }
 
-std::string picturesHtml(const SceneOutcome& outcome, const EmbeddedPicture& shown,
-                         const EmbeddedPicture& stored) {
+// Old, new and what they differ by.
+std::string picturesHtml(const SceneOutcome& outcome, const SceneDisplay& display) {
+    const EmbeddedPicture shown = embedded(display.shown(*outcome.picture), kPictureBytes);
     if (!haveOneShape(outcome))
         return section("picture", "Picture", figureHtml(shown, "the new picture", "New."));
+    const EmbeddedPicture stored = embedded(display.shown(*outcome.stored), kPictureBytes);
     const Plane plane = differenceOf(*outcome.stored, *outcome.picture);
     const float most = quantile(plane, kShareOfScale);
-    return section("picture", "Stored and new",
-                   sliderHtml(stored, "the stored picture", shown, "the new picture")) +
-           section("difference", "Difference",
-                   figureHtml(embedded(heatMap(plane, 0, most), kPictureBytes),
-                              "difference from the stored picture",
-                              "Of scene-linear values, relative, the channels together.") +
-                       scaleHtml("0", fmt::format("{:.3g}", most)));
+    return section(
+        "picture", "Old, new, difference",
+        besideHtml({{stored, "the stored picture", "Old: the reference."},
+                    {shown, "the new picture", "New."},
+                    {embedded(heatMap(plane, 0, most), kPictureBytes),
+                     "difference from the stored picture", "Difference of scene-linear values."}}) +
+            scaleHtml("0", fmt::format("{:.3g} of the value", most)));
 }
 
 std::string findingsHtml(const SceneOutcome& outcome) {
@@ -60,14 +63,23 @@ std::string findingsHtml(const SceneOutcome& outcome) {
                         : table({"measure", "finding"}, rows);
 }
 
+std::string remarksHtml(const SceneOutcome& outcome) {
+    std::string lines;
+    for (const std::string& line : remarksOf(outcome)) lines += paragraph(line);
+    return lines.empty() ? lines : section("remarks", "Warnings and notes", lines);
+}
+
+std::string acceptCommand(const Suite& suite, const SuiteScene& scene) {
+    return shellCommand({"pm_host", "check", suite.file.string(), "--update", "--only", scene.name,
+                         "--because", "TEXT"});
+}
+
 std::string statusHtml(const SceneOutcome& outcome) {
     std::string words = fmt::format("{}. {:.2f} s.", nameOf(outcome.status), outcome.seconds);
     if (outcome.status == SceneOutcome::Status::kWithinNoise)
         words += fmt::format(" The furthest region is at {:.0f} % of its limit.",
                              100 * outcome.shareOfLimit);
-    if (outcome.seenChange > 0)
-        words += fmt::format(" A change of a 16 x 16 region is seen from {:.2g} % on.",
-                             100 * outcome.seenChange);
+    if (outcome.seenChange > 0) words += fmt::format(" Found are {}.", seenText(outcome));
     return fmt::format("<p class=\"status{}\">{}</p>\n", outcome.isRight() ? "" : " bad",
                        escaped(words));
 }
@@ -78,6 +90,16 @@ std::string thumbnailHtml(EmbeddedPicture picture) {
         std::max(1, picture.shownHeight * kThumbnailWidth / std::max(picture.shownWidth, 1));
     picture.shownWidth = kThumbnailWidth;
     return imageHtml(picture, "the new picture");
+}
+
+std::string seenCell(const SceneOutcome& outcome) {
+    return escaped(seenText(outcome)) + (outcome.isCoarse() ? " <strong>coarse</strong>" : "");
+}
+
+std::string warningsCell(const SceneOutcome& outcome) {
+    std::string lines;
+    for (const std::string& text : outcome.warnings) lines += paragraph(text);
+    return lines;
 }
 
 bool isPages(const fs::path& folder) {
@@ -129,15 +151,15 @@ void CheckPages::add(const SceneOutcome& outcome) {
     EmbeddedPicture small;
     std::string body = "<p>" + link("../index.html", "All scenes") + "</p>\n" +
                        fmt::format("<h1>{}</h1>\n", escaped(scene.name)) + statusHtml(outcome) +
-                       section("findings", "Findings", findingsHtml(outcome));
+                       section("findings", "Findings", findingsHtml(outcome)) +
+                       remarksHtml(outcome);
     if (const auto display = outcome.picture ? findDisplay(m_suite, scene) : std::nullopt) {
-        const DisplayPicture shown = display->shown(*outcome.picture);
-        small = embedded(shown, kThumbnailBytes);
-        body +=
-            picturesHtml(outcome, embedded(shown, kPictureBytes),
-                         outcome.stored ? embedded(display->shown(*outcome.stored), kPictureBytes)
-                                        : EmbeddedPicture{});
+        small = embedded(display->shown(*outcome.picture), kThumbnailBytes);
+        body += picturesHtml(outcome, *display);
     }
+    if (!outcome.isRight() && outcome.picture)
+        body += section("accept", "To accept the new picture",
+                        codeBlock(acceptCommand(m_suite, scene)));
     if (!outcome.because.empty())
         body += section("reason", "Why the reference is as it is", paragraph(outcome.because));
     body +=
@@ -150,10 +172,12 @@ void CheckPages::add(const SceneOutcome& outcome) {
                             : outcome.findings[0].measure + ": " + outcome.findings[0].text;
     m_entries.push_back(
         {&scene,
-         fmt::format("<tr><td>{}</td><td>{}</td><td>{}</td><td>{:.2f} s</td><td>{}</td><td>{}</td>"
-                     "</tr>\n",
-                     thumbnailHtml(small), link(page, scene.name), nameOf(outcome.status),
-                     outcome.seconds, escaped(first), hasReport ? link(report, "report") : ""),
+         fmt::format("<tr{}><td>{}</td><td>{}</td><td>{}</td><td>{}</td><td>{:.2f} s</td>"
+                     "<td>{}</td><td>{}</td><td>{}</td></tr>\n",
+                     outcome.isRight() ? "" : " class=\"bad\"", thumbnailHtml(small),
+                     link(page, scene.name), nameOf(outcome.status), seenCell(outcome),
+                     outcome.seconds, escaped(first), warningsCell(outcome),
+                     hasReport ? link(report, "report") : ""),
          outcome.isRight()});
 }
 
@@ -163,8 +187,8 @@ void CheckPages::writeIndex() const {
     const std::string name = m_suite.file.filename().string();
     std::string body = fmt::format(
         "<h1>{}</h1>\n<p class=\"status{}\">{} of {} scenes are right.</p>"
-        "\n<table>\n<tr><th></th><th>scene</th><th>outcome</th>"
-        "<th>time</th><th>first finding</th><th></th></tr>\n",
+        "\n<table>\n<tr><th></th><th>scene</th><th>outcome</th><th>found are</th><th>time</th>"
+        "<th>first finding</th><th>warnings</th><th></th></tr>\n",
         escaped(name), isGood ? "" : " bad", right, m_entries.size());
     // In the suite's order, whoever was done first.
     for (const SuiteScene& scene : m_suite.scenes)

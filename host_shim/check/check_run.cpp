@@ -10,6 +10,7 @@
 #include <string_view>
 #include <thread>
 
+#include "host_shim/check/junit.h"
 #include "host_shim/check/reference_making.h"
 #include "host_shim/process/interrupt.h"
 #include "host_shim/process/outputs.h"
@@ -21,6 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kOwnSeed = 1;
+constexpr std::string_view kTag = "tag:";
 constexpr std::uint64_t kFirstOtherSeed = 1001;
 
 bool isNamed(const std::vector<std::string>& options, std::string_view name) {
@@ -35,7 +37,7 @@ void checkIsReference(const ReferenceFiles& files) {
         readReference(files.numbers);
         return;
     }
-    for (const fs::path& picture : {files.picture, files.display})
+    for (const fs::path& picture : files.pictures())
         if (fs::exists(picture))
             throw HostError(ExitCode::kFile,
                             fmt::format("--update: {} is there without {}, so it is no reference "
@@ -55,6 +57,12 @@ std::string lastLine(const fs::path& file) {
     return error.empty() ? last : error;
 }
 
+// The scene itself, or tag:NAME of it.
+bool isMeant(const std::string& asked, const SuiteScene& scene) {
+    if (!asked.starts_with(kTag)) return asked == scene.name;
+    return std::ranges::find(scene.tags, asked.substr(kTag.size())) != scene.tags.end();
+}
+
 }  // namespace
 
 CheckRun::CheckRun(const CheckOptions& options, const Suite& suite,
@@ -64,35 +72,50 @@ CheckRun::CheckRun(const CheckOptions& options, const Suite& suite,
 }
 
 void CheckRun::choose() {
-    for (const std::string& name : m_options.only)
-        if (std::ranges::find(m_suite.scenes, name, &SuiteScene::name) == m_suite.scenes.end())
+    std::vector<std::string> asked = m_options.only;
+    if (!m_options.failed.empty()) {
+        const std::vector<std::string> failed = failedScenes(m_options.failed);
+        if (failed.empty())
+            throw HostError(ExitCode::kUsage, fmt::format("--failed: all scenes of {} were right",
+                                                          m_options.failed.string()));
+        asked.insert(asked.end(), failed.begin(), failed.end());
+    }
+    for (const std::string& name : asked)
+        if (std::ranges::none_of(m_suite.scenes,
+                                 [&](const SuiteScene& scene) { return isMeant(name, scene); }))
             throw HostError(ExitCode::kUsage,
-                            fmt::format("--only '{}': the suite has {}", name, namesOf(m_suite)));
+                            fmt::format("--only '{}': the suite has {}; its tags are {}", name,
+                                        namesOf(m_suite), fmt::join(tagsOf(m_suite), ", ")));
     for (const SuiteScene& scene : m_suite.scenes) {
-        if (!m_options.only.empty() &&
-            std::ranges::find(m_options.only, scene.name) == m_options.only.end())
+        if (!asked.empty() && std::ranges::none_of(asked, [&](const std::string& name) {
+                return isMeant(name, scene);
+            }))
             continue;
         m_outcomes.emplace_back().scene = &scene;
         checkOptions(m_suite, scene);
     }
 }
 
-CheckRun::Render CheckRun::addRender(std::size_t index, std::uint64_t seed) {
+CheckRun::Render CheckRun::addRender(std::size_t index, std::uint64_t seed, std::int32_t twin) {
     SceneOutcome& outcome = m_outcomes[index];
     const SuiteScene& scene = *outcome.scene;
-    const fs::path base = m_folder.path() / fmt::format("{}_{}", scene.name, seed);
-    Render render{index, base.string() + ".exr",
-                  scene.hasDisplay ? fs::path(base.string() + ".png") : fs::path()};
+    const std::string base =
+        (m_folder.path() / fmt::format("{}_{}_{}", scene.name, seed, twin)).string();
+    Render render{index,
+                  twin != 0,
+                  {base + ".exr", scene.hasDisplay ? fs::path(base + ".png") : fs::path(),
+                   base + ".stats.json", base + ".log"}};
     ChildTask task;
     task.folder = m_suite.folder;
-    task.log = base.string() + ".log";
+    task.log = render.files.log;
     std::vector<std::string>& words = task.arguments;
-    words = wordsOf(scene, seed);
-    m_commands.push_back(commandOf(scene, seed));
+    words = wordsOf(scene, seed, twin);
+    m_commands.push_back(commandOf(scene, words));
     if (outcome.command.empty()) outcome.command = m_commands.back();
     words.insert(words.end(),
-                 {"--aov", "stderr", "-o", render.exr.string(), "-q", "--progress", "none"});
-    if (scene.hasDisplay) words.insert(words.end(), {"-o", render.png.string()});
+                 {"--aov", "stderr", "-o", render.files.exr.string(), "-q", "--progress", "none",
+                  "--stats", render.files.statistics.string(), "--input-hashes"});
+    if (scene.hasDisplay) words.insert(words.end(), {"-o", render.files.png.string()});
     if (!m_options.html.empty() && !m_options.update && findDisplay(m_suite, scene))
         words.insert(words.end(),
                      {"--report", reportPage(fs::absolute(m_options.html), scene).string()});
@@ -105,26 +128,30 @@ CheckRun::Render CheckRun::addRender(std::size_t index, std::uint64_t seed) {
     return render;
 }
 
-std::vector<std::string> CheckRun::wordsOf(const SuiteScene& scene, std::uint64_t seed) const {
+std::vector<std::string> CheckRun::wordsOf(const SuiteScene& scene, std::uint64_t seed,
+                                           std::int32_t twin) const {
     std::vector<std::string> words{scene.scene.string()};
     words.insert(words.end(), scene.options.begin(), scene.options.end());
     words.insert(words.end(), {"--seed", std::to_string(seed)});
+    if (twin != 0) words.insert(words.end(), {"--twin", std::to_string(twin)});
     if (!m_options.plugin.empty())
         words.insert(words.end(), {"--plugin", fs::absolute(m_options.plugin).string()});
     return words;
 }
 
-std::string CheckRun::commandOf(const SuiteScene& scene, std::uint64_t seed) const {
-    std::vector<std::string> words = wordsOf(scene, seed);
-    words.insert(words.begin(), "pm_host");
-    words.insert(words.end(), {"-o", (temporaryPlace() / (scene.name + ".exr")).string()});
-    return fmt::format("cd {} && {}", shellCommand({m_suite.folder.string()}), shellCommand(words));
+std::string CheckRun::commandOf(const SuiteScene& scene,
+                                const std::vector<std::string>& words) const {
+    std::vector<std::string> all{"pm_host"};
+    all.insert(all.end(), words.begin(), words.end());
+    all.insert(all.end(), {"-o", (temporaryPlace() / (scene.name + ".exr")).string()});
+    return fmt::format("cd {} && {}", shellCommand({m_suite.folder.string()}), shellCommand(all));
 }
 
-void CheckRun::clean(const Render& render) const {
+void CheckRun::clean(const Render& render) {
     std::error_code ignored;
-    fs::remove(render.exr, ignored);
-    if (!render.png.empty()) fs::remove(render.png, ignored);
+    const RenderedFiles& files = render.files;
+    for (const fs::path& file : {files.exr, files.png, files.statistics, files.log})
+        if (!file.empty()) fs::remove(file, ignored);
 }
 
 bool CheckRun::ended(const ChildResult& result, std::size_t task, SceneOutcome& outcome) const {
@@ -175,7 +202,7 @@ std::vector<SceneOutcome> CheckRun::check() {
         SceneOutcome& outcome = m_outcomes[renders[task].outcome];
         const Render& render = renders[task];
         if (ended(result, task, outcome))
-            guard(outcome, [&] { checkScene(m_suite, render.exr, render.png, outcome); });
+            guard(outcome, [&] { checkScene(m_suite, render.files, outcome); });
         clean(render);
         m_told(outcome);
         // Those of all scenes together may be many.
@@ -191,13 +218,15 @@ std::vector<SceneOutcome> CheckRun::update() {
     for (std::size_t i = 0; i < m_outcomes.size(); ++i) {
         // Before the first ray: they can be written, and what is there can be read.
         const ReferenceFiles files = referenceFiles(m_suite, *m_outcomes[i].scene);
-        checkOutputs({files.picture, files.display}, {files.numbers}, true);
+        checkOutputs(files.pictures(), {files.numbers}, true);
         checkIsReference(files);
         renders.push_back(addRender(i, kOwnSeed));
         for (std::uint64_t other = 0; other < others; ++other)
             renders.push_back(addRender(i, kFirstOtherSeed + other));
+        for (std::int32_t twin = 1; twin <= kTwins; ++twin)
+            renders.push_back(addRender(i, kOwnSeed, twin));
     }
-    std::vector<std::size_t> left(m_outcomes.size(), others + 1);
+    std::vector<std::size_t> left(m_outcomes.size(), others + 1 + kTwins);
     std::vector<bool> good(m_outcomes.size(), true);
     run([&](std::size_t task, const ChildResult& result) {
         const std::size_t index = renders[task].outcome;
@@ -215,14 +244,16 @@ std::vector<SceneOutcome> CheckRun::update() {
 }
 
 void CheckRun::store(SceneOutcome& outcome, const std::vector<Render>& renders) {
-    std::vector<RenderedFiles> files;
-    for (const Render& render : renders) files.push_back({render.exr, render.png});
+    std::vector<RenderedFiles> seeds, twins;
+    for (const Render& render : renders) (render.isTwin ? twins : seeds).push_back(render.files);
     const ReferenceFiles to = referenceFiles(m_suite, *outcome.scene);
-    const Reference made = makeReference(files, to.numbers, m_options.because);
-    storeReference(files.front(), made, to);
+    const MadeReference made =
+        makeReference(m_suite, *outcome.scene, seeds, twins, m_options.because);
+    storeReference(seeds.front(), made, to);
     outcome.status = SceneOutcome::Status::kSame;
     outcome.because = m_options.because;
-    outcome.seenChange = seenChange(made.regions.front());
+    outcome.seenChange = seenChange(made.reference);
+    outcome.warnings = *made.reference.warnings;
 }
 
 int exitCodeOf(const std::vector<SceneOutcome>& outcomes) {

@@ -29,14 +29,17 @@ class CheckRun {
   private:
     struct Render {
         std::size_t outcome{};
-        std::filesystem::path exr, png;
+        bool isTwin{};
+        RenderedFiles files;
     };
     void choose();
-    Render addRender(std::size_t outcome, std::uint64_t seed);
+    // twin: 0, or see makeTwin.
+    Render addRender(std::size_t outcome, std::uint64_t seed, std::int32_t twin = 0);
     // What to type to repeat a task's render.
-    std::string commandOf(const SuiteScene& scene, std::uint64_t seed) const;
-    std::vector<std::string> wordsOf(const SuiteScene& scene, std::uint64_t seed) const;
-    void clean(const Render& render) const;
+    std::string commandOf(const SuiteScene& scene, const std::vector<std::string>& words) const;
+    std::vector<std::string> wordsOf(const SuiteScene& scene, std::uint64_t seed,
+                                     std::int32_t twin) const;
+    static void clean(const Render& render);
     // Runs work on one scene's files; what is wrong there keeps no other from being done.
     static void guard(SceneOutcome& outcome, const std::function<void()>& work);
     // Whether the render came to an end; else the outcome says why not.

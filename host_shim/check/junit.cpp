@@ -4,6 +4,8 @@
 
 #include <fmt/format.h>
 
+#include <OpenImageIO/detail/pugixml/pugixml.hpp>
+
 #include "host_shim/report/report_html.h"
 
 namespace pm::host {
@@ -27,6 +29,12 @@ std::string testCase(const std::string& suite, const SceneOutcome& outcome) {
                             escaped(outcome.findings.empty() ? "" : outcome.findings[0].text),
                             escaped(lines), escaped(outcome.command));
     }
+    std::vector<std::string> lines = remarksOf(outcome);
+    if (outcome.status == SceneOutcome::Status::kWithinNoise)
+        lines.insert(lines.begin(), "within noise: " + noiseText(outcome));
+    if (!lines.empty())
+        text += fmt::format("    <system-out>{}</system-out>\n",
+                            escaped(fmt::format("{}", fmt::join(lines, "\n"))));
     return text + "  </testcase>\n";
 }
 
@@ -47,6 +55,27 @@ std::string junitXml(const Suite& suite, const std::vector<SceneOutcome>& outcom
         "<testsuites>\n<testsuite name=\"{}\" tests=\"{}\" failures=\"{}\" errors=\"{}\" "
         "time=\"{:.3f}\">\n{}</testsuite>\n</testsuites>\n",
         escaped(name), outcomes.size(), failures, errors, seconds, cases);
+}
+
+std::vector<std::string> failedScenes(const std::filesystem::path& junit) {
+    OIIO::pugi::xml_document document;
+    const auto parsed = document.load_file(junit.c_str());
+    if (parsed.status == OIIO::pugi::status_file_not_found ||
+        parsed.status == OIIO::pugi::status_io_error)
+        throw HostError(ExitCode::kFile,
+                        fmt::format("--failed: {}: can't be read", junit.string()));
+    const OIIO::pugi::xml_node suites = document.child("testsuites");
+    if (!parsed || !suites)
+        throw HostError(
+            ExitCode::kBadInput,
+            fmt::format("--failed: {} is no JUnit file of pm_host check{}", junit.string(),
+                        parsed ? "" : fmt::format(": {}", parsed.description())));
+    std::vector<std::string> names;
+    for (const auto& suite : suites.children("testsuite"))
+        for (const auto& test : suite.children("testcase"))
+            if (test.child("failure") || test.child("error"))
+                names.emplace_back(test.attribute("name").value());
+    return names;
 }
 
 }  // namespace pm::host

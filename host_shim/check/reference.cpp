@@ -71,6 +71,26 @@ std::vector<RegionSpread> spreadsOf(const json& list, const PixelRect& window) {
     return spreads;
 }
 
+DisplayNoise displayNoiseOf(const json& entry, const PixelRect& window) {
+    return {spreadsOf(entry.at("codes"), window), entry.at("visibleLimit").get<std::int64_t>()};
+}
+
+PairSpread pairsOf(const json& entry, const PixelRect& window) {
+    PairSpread pairs;
+    entry.at("mean").get_to(pairs.mean);
+    entry.at("variance").get_to(pairs.variance);
+    const RegionGrid grid(window, kPairSide);
+    const auto count =
+        3 * static_cast<std::size_t>(grid.columns()) * static_cast<std::size_t>(grid.rows());
+    if (entry.at("side") != kPairSide || pairs.variance.size() != count ||
+        pairs.mean.size() != count ||
+        !std::ranges::all_of(pairs.variance, [](double v) { return v >= 0; }))
+        throw HostError(
+            ExitCode::kBadInput,
+            fmt::format("'pairs' are not {} variances of regions of {}", count, kPairSide));
+    return pairs;
+}
+
 Reference parsed(const json& text) {
     if (text.at("schema") != kSchema)
         throw HostError(ExitCode::kBadInput, fmt::format("'schema' must be \"{}\"", kSchema));
@@ -82,15 +102,26 @@ Reference parsed(const json& text) {
     reference.window = {window[0], window[1], window[2], window[3]};
     if (reference.window.empty()) throw HostError(ExitCode::kBadInput, "'window' is empty");
     reference.regions = spreadsOf(text.at("regions"), reference.window);
-    reference.codes = spreadsOf(text.at("codes"), reference.window);
+    reference.display = displayNoiseOf(text, reference.window);
+    if (text.contains("views"))
+        for (const auto& [name, view] : text["views"].items())
+            reference.views[name] = displayNoiseOf(view, reference.window);
     if (!std::ranges::equal(reference.regions, kRegionSides, {}, &RegionSpread::side))
         throw HostError(ExitCode::kBadInput, "'regions' are not those of 16 pixels and the whole");
     text.at("pixelLimit").get_to(reference.pixelLimit);
-    text.at("visibleLimit").get_to(reference.visibleLimit);
+    if (text.contains("pairs")) reference.pairs = pairsOf(text["pairs"], reference.window);
+    if (text.contains("inputs")) reference.inputs = text["inputs"].get<SceneInputs>();
+    if (text.contains("warnings"))
+        reference.warnings = text["warnings"].get<std::vector<std::string>>();
     return reference;
 }
 
 }  // namespace
+
+double seenChange(const Reference& reference) {
+    if (reference.pairs) return seenByPairs(*reference.pairs);
+    return reference.regions.empty() ? 0 : seenChange(reference.regions.front());
+}
 
 Reference readReference(const std::filesystem::path& file) {
     const json text = parseJsonFile(file, throwIfInterrupted);
@@ -110,13 +141,22 @@ std::string textOf(const Reference& reference) {
         reasons.push_back(
             {{"because", reason.because}, {"date", reason.date}, {"version", reason.version}});
     const PixelRect& window = reference.window;
-    const json text{{"schema", kSchema},
-                    {"reasons", reasons},
-                    {"window", {window.x0, window.y0, window.x1, window.y1}},
-                    {"regions", textOf(reference.regions)},
-                    {"codes", textOf(reference.codes)},
-                    {"pixelLimit", reference.pixelLimit},
-                    {"visibleLimit", reference.visibleLimit}};
+    json text{{"schema", kSchema},
+              {"reasons", reasons},
+              {"window", {window.x0, window.y0, window.x1, window.y1}},
+              {"regions", textOf(reference.regions)},
+              {"codes", textOf(reference.display.codes)},
+              {"pixelLimit", reference.pixelLimit},
+              {"visibleLimit", reference.display.visibleLimit}};
+    for (const auto& [name, view] : reference.views)
+        text["views"][name] = {{"codes", textOf(view.codes)}, {"visibleLimit", view.visibleLimit}};
+    if (reference.pairs)
+        text["pairs"] = {{"side", kPairSide},
+                         {"twins", kTwins},
+                         {"mean", numbers(reference.pairs->mean)},
+                         {"variance", numbers(reference.pairs->variance)}};
+    if (reference.warnings) text["warnings"] = *reference.warnings;
+    if (reference.inputs) text["inputs"] = *reference.inputs;
     // A line for each part, so that a change of the reasons is seen beside those of the numbers.
     std::string lines;
     for (const auto& [key, value] : text.items())

@@ -4,10 +4,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "host_shim/check/pairs.h"
 #include "host_shim/check/region_spread.h"
+#include "host_shim/check/render_facts.h"
 
 namespace pm::host {
 
@@ -16,18 +20,32 @@ struct Reason {
     std::string because, date, version;  // date: YYYY-MM-DD, UTC
 };
 
+// What other seeds make of a display picture.
+struct DisplayNoise {
+    std::vector<RegionSpread> codes;  // of 255; or none
+    std::int64_t visibleLimit{};      // pixels visibly different
+};
+
 // What lies beside a reference picture, NAME.json: what other seeds make of the scene.
 struct Reference {
     std::vector<Reason> reasons;
     PixelRect window;                   // of the picture
     std::vector<RegionSpread> regions;  // of the scene-linear picture
-    std::vector<RegionSpread> codes;    // of the display picture, in codes of 255; or none
     double pixelLimit{};                // standard errors, told by both pictures
-    std::int64_t visibleLimit{};        // pixels visibly different
+    DisplayNoise display;               // of the display picture, if there is one
+    std::map<std::string, DisplayNoise> views;
+    // What references of an earlier version don't have.
+    std::optional<PairSpread> pairs;
+    std::optional<SceneInputs> inputs;
+    std::optional<std::vector<std::string>> warnings;
 };
 
 // The sides of the regions that are compared: 16 pixels, and the whole picture.
 inline constexpr std::int32_t kRegionSides[] = {16, 0};
+
+// The relative change of one region that is found in a render of the reference's seed, median of
+// the regions: of 8 pixels by pairs where there are any, else of 16.
+double seenChange(const Reference& reference);
 
 // Errors: kFile when it can't be read; kBadInput when it is no reference, with what is wrong.
 Reference readReference(const std::filesystem::path& file);

@@ -54,20 +54,48 @@ std::vector<RegionSpread> regionsOf(const PixelRect& window, const std::vector<P
     return spreads;
 }
 
-void addCodes(const std::vector<RenderedFiles>& renders, Reference& reference) {
-    std::vector<DisplayPicture> pictures;
-    for (const RenderedFiles& render : renders) pictures.push_back(readDisplayPicture(render.png));
+DisplayNoise displayNoiseOf(const PixelRect& window, const std::vector<DisplayPicture>& pictures) {
+    DisplayNoise noise;
     for (const std::int32_t side : kRegionSides) {
         std::vector<std::vector<double>> means;
         for (const DisplayPicture& picture : pictures)
-            means.push_back(codeMeans(picture, reference.window, side));
-        reference.codes.push_back(spreadOf(reference.window, side, means));
+            means.push_back(codeMeans(picture, window, side));
+        noise.codes.push_back(spreadOf(window, side, means));
     }
     for (const DisplayPicture& picture : pictures)
-        reference.visibleLimit = std::max(reference.visibleLimit,
-                                          compareDisplay(pictures.front(), picture).visiblePixels);
-    reference.visibleLimit =
-        kVisibleBeyondOwn * reference.visibleLimit + reference.window.area() / kPixelsOfOneVisible;
+        noise.visibleLimit =
+            std::max(noise.visibleLimit, compareDisplay(pictures.front(), picture).visiblePixels);
+    noise.visibleLimit =
+        kVisibleBeyondOwn * noise.visibleLimit + window.area() / kPixelsOfOneVisible;
+    return noise;
+}
+
+std::vector<Picture> picturesOf(const std::vector<RenderedFiles>& renders) {
+    std::vector<Picture> pictures;
+    for (const RenderedFiles& render : renders) {
+        pictures.push_back(readExr(render.exr));
+        checkFinite(pictures.back());
+    }
+    return pictures;
+}
+
+PairSpread pairsOf(const Picture& kept, const std::vector<Picture>& twins) {
+    const RegionGrid grid(kept.dataWindow, kPairSide);
+    std::vector<std::vector<double>> means;
+    for (const Picture& twin : twins) means.push_back(grid.means(beautyOf(twin)));
+    return pairSpreadOf(grid.means(beautyOf(kept)), means);
+}
+
+// Warnings of any seed are known ones: some come by chance.
+void addFacts(const std::vector<RenderedFiles>& seeds, const std::vector<Picture>& pictures,
+              const fs::path& folder, Reference& reference) {
+    reference.warnings.emplace();
+    for (std::size_t i = 0; i < seeds.size(); ++i) {
+        const RenderFacts facts = readFacts(seeds[i].statistics, seeds[i].log, pictures[i], folder);
+        if (!reference.inputs) reference.inputs = facts.inputs;
+        for (const std::string& text : newWarnings(*reference.warnings, facts.warnings))
+            reference.warnings->push_back(text);
+    }
 }
 
 std::string today() {
@@ -83,31 +111,56 @@ std::string versionOf(const Picture& picture) {
 
 }  // namespace
 
-Reference makeReference(const std::vector<RenderedFiles>& renders, const fs::path& before,
-                        const std::string& because) {
-    std::vector<Picture> pictures;
-    for (const RenderedFiles& render : renders) {
-        pictures.push_back(readExr(render.exr));
-        checkFinite(pictures.back());
-    }
-    Reference reference;
+MadeReference makeReference(const Suite& suite, const SuiteScene& scene,
+                            const std::vector<RenderedFiles>& seeds,
+                            const std::vector<RenderedFiles>& twins, const std::string& because) {
+    const fs::path before = referenceFiles(suite, scene).numbers;
+    const std::vector<Picture> pictures = picturesOf(seeds);
+    const Picture& kept = pictures.front();
+    MadeReference made;
+    Reference& reference = made.reference;
     if (fs::exists(before)) reference.reasons = readReference(before).reasons;
-    reference.reasons.push_back({because, today(), versionOf(pictures.front())});
-    reference.window = pictures.front().dataWindow;
+    reference.reasons.push_back({because, today(), versionOf(kept)});
+    reference.window = kept.dataWindow;
     reference.regions = regionsOf(reference.window, pictures);
     reference.pixelLimit = kLeastPixelLimit;
     for (const Picture& picture : pictures)
         reference.pixelLimit =
-            std::max(reference.pixelLimit,
-                     kBeyondOwn * std::abs(furthestPixel(pictures.front(), picture).z));
-    if (!renders.front().png.empty()) addCodes(renders, reference);
-    return reference;
+            std::max(reference.pixelLimit, kBeyondOwn * std::abs(furthestPixel(kept, picture).z));
+    reference.pairs = pairsOf(kept, picturesOf(twins));
+    std::vector<const Picture*> others;
+    for (std::size_t i = 1; i < pictures.size(); ++i) others.push_back(&pictures[i]);
+    made.noise = pixelNoiseOf(others);
+    addFacts(seeds, pictures, suite.folder, reference);
+    if (!seeds.front().png.empty()) {
+        std::vector<DisplayPicture> shown;
+        for (const RenderedFiles& render : seeds) shown.push_back(readDisplayPicture(render.png));
+        reference.display = displayNoiseOf(reference.window, shown);
+    }
+    for (const SuiteView& view : scene.views) {
+        const SceneDisplay display(suite, scene, &view);
+        std::vector<DisplayPicture> shown;
+        for (const Picture& picture : pictures) shown.push_back(display.shown(picture));
+        reference.views[view.name] = displayNoiseOf(reference.window, shown);
+        made.views.push_back(std::move(shown.front()));
+    }
+    return made;
 }
 
-void storeReference(const RenderedFiles& kept, const Reference& reference,
+void storeReference(const RenderedFiles& kept, const MadeReference& made,
                     const ReferenceFiles& files) {
+    const fs::path noise = kept.exr.string() + ".noise.exr";
+    writeExr(noise, made.noise);
     std::vector<std::pair<fs::path, std::string>> contents{{files.picture, bytesOf(kept.exr)},
-                                                           {files.numbers, textOf(reference)}};
+                                                           {files.noise, bytesOf(noise)},
+                                                           {files.numbers, textOf(made.reference)}};
+    fs::remove(noise);
+    for (std::size_t i = 0; i < made.views.size(); ++i) {
+        const fs::path view = kept.exr.string() + ".view.png";
+        writeDisplayPicture(view, made.views[i]);
+        contents.emplace_back(files.views[i], bytesOf(view));
+        fs::remove(view);
+    }
     if (!kept.png.empty()) contents.emplace_back(files.display, bytesOf(kept.png));
     // All or none: only what is on the disk as a whole takes the names.
     std::vector<std::unique_ptr<FinishedFile>> written;

@@ -11,18 +11,22 @@
 
 namespace pm::host {
 
-struct RenderedFiles {
-    std::filesystem::path exr, png;  // png may be empty
+// What a reference is made of.
+struct MadeReference {
+    Reference reference;
+    Picture noise;                      // see pixelNoiseOf
+    std::vector<DisplayPicture> views;  // of the picture that is kept, as the scene has them
 };
 
-// The numbers of a reference from renders that differ in the seed alone, the one that is kept
-// first. before: the .json that there may be, whose reasons are kept. Errors: kBadInput where a
-// value is not finite or `before` is no reference.
-Reference makeReference(const std::vector<RenderedFiles>& renders,
-                        const std::filesystem::path& before, const std::string& because);
+// seeds: renders that differ in the seed alone, the one that is kept first; twins: of its seed, see
+// makeTwin. The reasons of a reference that is there are kept. Errors: kBadInput where a value is
+// not finite or what is there is no reference.
+MadeReference makeReference(const Suite& suite, const SuiteScene& scene,
+                            const std::vector<RenderedFiles>& seeds,
+                            const std::vector<RenderedFiles>& twins, const std::string& because);
 
 // Errors: kFile.
-void storeReference(const RenderedFiles& kept, const Reference& reference,
+void storeReference(const RenderedFiles& kept, const MadeReference& made,
                     const ReferenceFiles& files);
 
 }  // namespace pm::host

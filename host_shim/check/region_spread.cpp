@@ -51,11 +51,6 @@ double limitOfStudent(double probability, std::size_t count, std::int32_t degree
     return high;
 }
 
-PixelRect regionOf(const RegionGrid& grid, std::size_t value) {
-    const auto region = static_cast<std::int32_t>(value / 3);
-    return grid.rect(region % grid.columns(), region / grid.columns());
-}
-
 // Of a render's mean against that of the others.
 std::vector<double> variancesOf(const RegionSpread& spread) {
     std::vector<double> result = spread.variance;
@@ -65,6 +60,12 @@ std::vector<double> variancesOf(const RegionSpread& spread) {
         result[i] = result[i] * ofMean + rounding * rounding;
     }
     return result;
+}
+
+// Nothing is farther off than NaN.
+bool isFarther(double a, double b) {
+    if (std::isnan(a) || std::isnan(b)) return std::isnan(a) && !std::isnan(b);
+    return std::abs(a) > std::abs(b);
 }
 
 void measure(RegionSpread& spread, const std::vector<std::vector<double>>& means,
@@ -109,6 +110,11 @@ RegionGrid::RegionGrid(const PixelRect& window, std::int32_t side)
 PixelRect RegionGrid::rect(std::int32_t column, std::int32_t row) const {
     const std::int32_t x0 = m_window.x0 + column * m_side, y0 = m_window.y0 + row * m_side;
     return {x0, y0, std::min(x0 + m_side, m_window.x1), std::min(y0 + m_side, m_window.y1)};
+}
+
+PixelRect RegionGrid::rectOf(std::size_t region) const {
+    const auto index = static_cast<std::int32_t>(region);
+    return rect(index % m_columns, index / m_columns);
 }
 
 std::vector<double> RegionGrid::means(const Beauty& picture) const {
@@ -161,24 +167,37 @@ RegionFinding furthestRegion(const PixelRect& window, const RegionSpread& spread
         const double beyond = std::copysign(std::max(std::abs(off) - floor, 0.0), off);
         const double z = beyond == 0 ? 0 : beyond / std::sqrt(variances[i]);
         if (i != 0 && std::abs(z) <= std::abs(found.z)) continue;
-        found = {regionOf(grid, i), static_cast<int>(i % 3), z, mean != 0 ? off / mean : 0};
+        found = {grid.rectOf(i / 3), static_cast<int>(i % 3), z, mean != 0 ? off / mean : 0};
         if (std::isnan(z)) break;  // nothing is farther off
     }
     return found;
 }
 
-RegionFinding mostChangedRegion(const PixelRect& window, std::int32_t side,
-                                const std::vector<double>& wanted, const std::vector<double>& got) {
+std::vector<RegionFinding> changedRegions(const PixelRect& window, std::int32_t side,
+                                          const std::vector<double>& wanted,
+                                          const std::vector<double>& got, std::size_t most) {
     const RegionGrid grid(window, side);
-    RegionFinding found;
+    std::vector<RegionFinding> regions(wanted.size() / 3);
     for (std::size_t i = 0; i < wanted.size(); ++i) {
         const double off = got[i] - wanted[i];
         const double relative = wanted[i] != 0 ? off / std::abs(wanted[i]) : off;
-        if (i != 0 && std::abs(relative) <= std::abs(found.relative)) continue;
-        found = {regionOf(grid, i), static_cast<int>(i % 3), 0, relative};
-        if (std::isnan(relative)) break;
+        RegionFinding& region = regions[i / 3];
+        if (i % 3 != 0 && !isFarther(relative, region.relative)) continue;
+        region = {grid.rectOf(i / 3), static_cast<int>(i % 3), 0, relative};
     }
-    return found;
+    std::ranges::stable_sort(regions, [](const RegionFinding& a, const RegionFinding& b) {
+        return isFarther(a.relative, b.relative);
+    });
+    regions.resize(std::min(regions.size(), most));
+    std::erase_if(regions, [](const RegionFinding& region) { return region.relative == 0; });
+    return regions;
+}
+
+RegionFinding mostChangedRegion(const PixelRect& window, std::int32_t side,
+                                const std::vector<double>& wanted, const std::vector<double>& got) {
+    const std::vector<RegionFinding> changed = changedRegions(window, side, wanted, got, 1);
+    return changed.empty() ? RegionFinding{RegionGrid(window, side).rectOf(0), 0, 0, 0}
+                           : changed.front();
 }
 
 double seenChange(const RegionSpread& spread) {

@@ -30,6 +30,8 @@ class RegionGrid {
     std::int32_t columns() const { return m_columns; }
     std::int32_t rows() const { return m_rows; }
     PixelRect rect(std::int32_t column, std::int32_t row) const;
+    // Row by row.
+    PixelRect rectOf(std::size_t region) const;
     // Means over the regions, row by row, three values each.
     std::vector<double> means(const Beauty& picture) const;
 
@@ -72,6 +74,10 @@ RegionFinding furthestRegion(const PixelRect& window, const RegionSpread& spread
 // The region that differs most, relative to its value; of pictures that should be the same.
 RegionFinding mostChangedRegion(const PixelRect& window, std::int32_t side,
                                 const std::vector<double>& wanted, const std::vector<double>& got);
+// So many of them, each by its colour that differs most, the most changed first; those that differ.
+std::vector<RegionFinding> changedRegions(const PixelRect& window, std::int32_t side,
+                                          const std::vector<double>& wanted,
+                                          const std::vector<double>& got, std::size_t most);
 
 // The relative change of one region that is beyond the limit, of the regions that are not black the
 // median; 0 when all are.

@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "host_shim/cli/command_line.h"
-#include "host_shim/colour/display_picture.h"
+#include <algorithm>
+
 #include "host_shim/pictures/picture_io.h"
 
 namespace pm::host {
@@ -15,88 +15,127 @@ namespace fs = std::filesystem;
 
 constexpr double kCodeRounding = 1e-3;  // codes are floats here
 
-// What a scene's options may not ask for: the check renders one whole picture of it.
-void refuseWhatIsNoPicture(const Options& options) {
-    const auto refuse = [](const std::string& what) {
-        throw HostError(ExitCode::kBadInput, what +
-                                                 " is not for a suite: whole pictures are "
-                                                 "rendered, to files of the check's own");
-    };
-    if (options.help || options.version || options.explain || !options.list.empty())
-        refuse("what prints and stops");
-    if (options.photonsOnly) refuse("--photons-only");
-    if (!options.checkpoint.empty()) refuse("--checkpoint");
-    if (options.onlyPixel) refuse("--only-pixel");
-    if (!options.frames.empty()) refuse("--frames");
-    if (options.writeSidecar) refuse("--write-sidecar");
-    if (!options.bucketTimes.empty()) refuse("--bucket-times");
-    const fs::path own = options.scene.stem().string() + ".exr";
-    if (!options.part.empty() || options.outputs != std::vector<fs::path>{own}) refuse("-o");
-}
-
-Options parsedOptions(const Suite& suite, const SuiteScene& scene) {
-    std::vector<std::string> words{scene.scene.string()};
-    words.insert(words.end(), scene.options.begin(), scene.options.end());
-    try {
-        Options options = parseCommandLine(words);
-        if (options.exposure.kind == ExposureOption::Kind::kAuto)
-            throw HostError(ExitCode::kBadInput,
-                            "--exposure auto: a suite's pictures are of one exposure; give STOPS");
-        refuseWhatIsNoPicture(options);
-        std::string& config = options.colour.ocioFile;
-        if (!config.empty() && !config.starts_with("ocio://"))
-            config = (suite.folder / config).string();
-        return options;
-    } catch (const HostError& error) {
-        throw HostError(ExitCode::kBadInput, fmt::format("{}: scene '{}': {}", suite.file.string(),
-                                                         scene.name, error.what()));
-    }
-}
-
 std::string list(const std::vector<fs::path>& files) {
     std::string text;
     for (const fs::path& file : files) text += (text.empty() ? "" : ", ") + file.string();
     return text;
 }
 
-// What today's config makes of the stored scene-linear picture is the stored display picture: no
-// noise is in that.
-void compareTransform(const DisplayPicture& wanted, const DisplayPicture& stored, double codeLimit,
-                      Verdict& verdict) {
-    const DisplayDifference difference = compareDisplay(stored, wanted);
-    if (difference.most > codeLimit + kCodeRounding)
-        verdict.findings.push_back(
-            {"display transform",
-             fmt::format("display and view make another picture of the stored one: {} (limit {:g})",
-                         describe(difference), codeLimit)});
-}
+// A new display picture against the stored one. wanted: what today's config makes of the stored
+// scene-linear picture, where no noise is in the way.
+struct DisplayCheck {
+    const DisplayPicture &stored, &picture, &wanted;
+    const DisplayNoise& noise;
+    double codeLimit{};
+    std::string view;  // "", "view NAME: "
+};
 
-void compareDisplays(const Suite& suite, const SceneOutcome& outcome, const fs::path& png,
-                     const Reference& reference, Verdict& verdict) {
-    const SuiteScene& scene = *outcome.scene;
-    const DisplayPicture stored = asCodes(readDisplayPicture(referenceFiles(suite, scene).display));
-    const DisplayPicture picture = asCodes(readDisplayPicture(png));
-    if (stored.width != picture.width || stored.height != picture.height) {
-        verdict.findings.push_back(
-            {"size", fmt::format("display picture {}x{} in place of {}x{}", picture.width,
-                                 picture.height, stored.width, stored.height)});
-        return;
-    }
-    compareTransform(asCodes(SceneDisplay(suite, scene).shown(*outcome.stored)), stored,
-                     scene.codeLimit, verdict);
+void compareDisplays(const DisplayCheck& check, const PixelRect& window, Verdict& verdict) {
+    const auto found = [&](const char* measure, const std::string& text) {
+        verdict.findings.push_back({measure, check.view + text});
+    };
+    const DisplayPicture stored = asCodes(check.stored), picture = asCodes(check.picture);
+    if (stored.width != picture.width || stored.height != picture.height)
+        return found("size", fmt::format("display picture {}x{} in place of {}x{}", picture.width,
+                                         picture.height, stored.width, stored.height));
+    const double limit = check.codeLimit + kCodeRounding;
+    const DisplayDifference transform = compareDisplay(stored, asCodes(check.wanted));
+    if (transform.most > limit)
+        found(
+            "display transform",
+            fmt::format("display and view make another picture of the stored one: {} (limit {:g})",
+                        describe(transform), check.codeLimit));
     const DisplayDifference difference = compareDisplay(stored, picture);
     if (verdict.isSameBuild) {
-        if (difference.most > scene.codeLimit + kCodeRounding)
-            verdict.findings.push_back(
-                {"display codes",
-                 fmt::format("{} (limit {:g})", describe(difference), scene.codeLimit)});
+        if (difference.most > limit)
+            found("display codes",
+                  fmt::format("{} (limit {:g})", describe(difference), check.codeLimit));
         return;
     }
-    compareCodes(picture, reference, scene.codeLimit, verdict);
-    if (difference.visiblePixels > reference.visibleLimit)
-        verdict.findings.push_back(
-            {"visible", fmt::format("{} pixels visibly different (limit {})",
-                                    difference.visiblePixels, reference.visibleLimit)});
+    compareCodes(picture, window, check.noise, check.codeLimit, check.view, verdict);
+    if (difference.visiblePixels > check.noise.visibleLimit)
+        found("visible", fmt::format("{} pixels visibly different (limit {})",
+                                     difference.visiblePixels, check.noise.visibleLimit));
+}
+
+void compareAllDisplays(const Suite& suite, const SceneOutcome& outcome, const fs::path& png,
+                        const Reference& reference, Verdict& verdict) {
+    const SuiteScene& scene = *outcome.scene;
+    const ReferenceFiles files = referenceFiles(suite, scene);
+    if (scene.hasDisplay) {
+        const DisplayPicture stored = readDisplayPicture(files.display),
+                             picture = readDisplayPicture(png),
+                             wanted = SceneDisplay(suite, scene).shown(*outcome.stored);
+        compareDisplays({stored, picture, wanted, reference.display, scene.codeLimit, ""},
+                        reference.window, verdict);
+    }
+    for (std::size_t i = 0; i < scene.views.size(); ++i) {
+        const SuiteView& view = scene.views[i];
+        const SceneDisplay display(suite, scene, &view);
+        const auto noise = reference.views.find(view.name);
+        if (noise == reference.views.end()) {
+            verdict.findings.push_back(
+                {"reference", fmt::format("knows no view {}; --update makes it", view.name)});
+            continue;
+        }
+        const DisplayPicture stored = readDisplayPicture(files.views[i]),
+                             picture = display.shown(*outcome.picture),
+                             wanted = display.shown(*outcome.stored);
+        compareDisplays({stored, picture, wanted, noise->second, scene.codeLimit,
+                         fmt::format("view {}: ", view.name)},
+                        reference.window, verdict);
+    }
+}
+
+bool isMissing(const ReferenceFiles& files, SceneOutcome& outcome) {
+    std::vector<fs::path> missing;
+    std::error_code ignored;
+    const auto want = [&](const fs::path& file) {
+        if (!fs::exists(file, ignored)) missing.push_back(file);
+    };
+    want(files.picture);
+    want(files.numbers);
+    if (outcome.scene->hasDisplay) want(files.display);
+    for (const fs::path& view : files.views) want(view);
+    // References of an earlier version have none.
+    if (missing.empty() && readReference(files.numbers).pairs) want(files.noise);
+    if (missing.empty()) return false;
+    outcome.status = SceneOutcome::Status::kMissing;
+    outcome.findings.push_back({"reference", list(missing) + ": missing (--update makes it)"});
+    return true;
+}
+
+std::string pairText(const Reference& reference, const Verdict& verdict) {
+    if (!reference.pairs)
+        return "the reference has no twins, so regions are compared by the spread of seeds alone; "
+               "--update makes them";
+    if (!verdict.correlation)
+        return "one of the pictures has no noise, so regions are compared by the spread of seeds";
+    return fmt::format(
+        "the noise is not the reference's (correlation {:.2f}, above {:g} it would "
+        "be), so regions are compared by the spread of seeds",
+        *verdict.correlation, kPairedCorrelation);
+}
+
+// What the render and its scene say of themselves.
+void compareFacts(const Reference& reference, const RenderFacts& facts, Verdict& verdict,
+                  SceneOutcome& outcome) {
+    const std::string changed =
+        reference.inputs ? differences(*reference.inputs, facts.inputs) : std::string();
+    if (verdict.isSameBuildOfAnotherScene && !verdict.hasSameBits) {
+        const auto input = std::ranges::find(verdict.findings, "input", &Finding::measure);
+        if (input != verdict.findings.end())
+            input->text += !reference.inputs ? "; of what, the reference doesn't know"
+                           : changed.empty() ? "; of nothing that has a name"
+                                             : "; changed are: " + changed;
+    } else if (!changed.empty()) {
+        outcome.notes.push_back("of the input has changed: " + changed);
+    }
+    if (!verdict.isSameBuild && !verdict.hasSameBits && !verdict.isPaired)
+        outcome.notes.push_back(pairText(reference, verdict));
+    if (!reference.warnings) return;
+    for (const std::string& text : newWarnings(*reference.warnings, facts.warnings))
+        verdict.findings.push_back({"new warning", text});
 }
 
 }  // namespace
@@ -121,32 +160,16 @@ const char* nameOf(SceneOutcome::Status status) {
 
 ReferenceFiles referenceFiles(const Suite& suite, const SuiteScene& scene) {
     const auto file = [&](const char* ending) { return suite.references / (scene.name + ending); };
-    return {file(".exr"), file(".png"), file(".json")};
+    ReferenceFiles files{file(".exr"), file(".png"), file(".json"), file(".noise.exr"), {}};
+    for (const SuiteView& view : scene.views)
+        files.views.push_back(suite.references / (scene.name + "." + view.name + ".png"));
+    return files;
 }
 
-void checkOptions(const Suite& suite, const SuiteScene& scene) {
-    parsedOptions(suite, scene);
-    if (!scene.hasDisplay) return;
-    try {
-        SceneDisplay(suite, scene);
-    } catch (const HostError& error) {
-        throw HostError(error.code(), fmt::format("{}: scene '{}': {}", suite.file.string(),
-                                                  scene.name, error.what()));
-    }
-}
-
-SceneDisplay::SceneDisplay(const Suite& suite, const SuiteScene& scene) {
-    const Options options = parsedOptions(suite, scene);
-    m_transform = ColourPipeline(options.colour).displayTransform();
-    m_transform->setExposureStops(options.exposure.stops);
-}
-
-std::optional<SceneDisplay> findDisplay(const Suite& suite, const SuiteScene& scene) {
-    try {
-        return SceneDisplay(suite, scene);
-    } catch (const HostError&) {
-        return std::nullopt;
-    }
+std::vector<fs::path> ReferenceFiles::pictures() const {
+    std::vector<fs::path> all{picture, display, noise};
+    all.insert(all.end(), views.begin(), views.end());
+    return all;
 }
 
 fs::path scenePage(const fs::path& folder, const SuiteScene& scene) {
@@ -157,30 +180,47 @@ fs::path reportPage(const fs::path& folder, const SuiteScene& scene) {
     return folder / "render" / (scene.name + ".html");
 }
 
-DisplayPicture SceneDisplay::shown(const Picture& picture) const {
-    return makeDisplayPicture(picture, *m_transform).picture;
+std::string seenText(const SceneOutcome& outcome) {
+    return outcome.seenChange > 0
+               ? fmt::format("regions from {:.2g} % on", 100 * outcome.seenChange)
+               : std::string();
 }
 
-void checkScene(const Suite& suite, const fs::path& exr, const fs::path& png,
-                SceneOutcome& outcome) {
+std::vector<std::string> remarksOf(const SceneOutcome& outcome) {
+    std::vector<std::string> lines;
+    if (outcome.isCoarse())
+        lines.push_back(
+            fmt::format("COARSE: a change is found from {:.2g} % of a region on; more "
+                        "--passes find less",
+                        100 * outcome.seenChange));
+    for (const std::string& text : outcome.warnings) lines.push_back("warning: " + text);
+    for (const std::string& text : outcome.notes) lines.push_back("note: " + text);
+    return lines;
+}
+
+std::string noiseText(const SceneOutcome& outcome) {
+    const std::string seen = seenText(outcome);
+    return fmt::format("furthest region at {:.0f} % of its limit{}{}", 100 * outcome.shareOfLimit,
+                       seen.empty() ? "" : "; found are ", seen);
+}
+
+void checkScene(const Suite& suite, const RenderedFiles& render, SceneOutcome& outcome) {
     const ReferenceFiles files = referenceFiles(suite, *outcome.scene);
-    std::vector<fs::path> missing;
-    std::error_code ignored;
-    for (const fs::path& file : {files.picture, files.numbers, files.display})
-        if (!fs::exists(file, ignored) && (outcome.scene->hasDisplay || file != files.display))
-            missing.push_back(file);
-    outcome.picture = readExr(exr);
-    if (!missing.empty()) {
-        outcome.status = SceneOutcome::Status::kMissing;
-        outcome.findings.push_back({"reference", list(missing) + ": missing (--update makes it)"});
-        return;
-    }
+    outcome.picture = readExr(render.exr);
+    const RenderFacts facts =
+        readFacts(render.statistics, render.log, *outcome.picture, suite.folder);
+    outcome.warnings = facts.warnings;
+    if (isMissing(files, outcome)) return;
     const Reference reference = readReference(files.numbers);
     if (!reference.reasons.empty()) outcome.because = reference.reasons.back().because;
     outcome.stored = readExr(files.picture);
-    Verdict verdict = comparePictures(*outcome.stored, *outcome.picture, reference);
-    if (verdict.findings.empty() && outcome.scene->hasDisplay)
-        compareDisplays(suite, outcome, png, reference, verdict);
+    std::optional<Picture> noise;
+    if (reference.pairs) noise = readExr(files.noise);
+    Verdict verdict =
+        comparePictures(*outcome.stored, *outcome.picture, reference, noise ? &*noise : nullptr);
+    if (verdict.findings.empty())
+        compareAllDisplays(suite, outcome, render.png, reference, verdict);
+    compareFacts(reference, facts, verdict, outcome);
     outcome.findings = verdict.findings;
     outcome.shareOfLimit = verdict.shareOfLimit;
     outcome.seenChange = verdict.seenChange;

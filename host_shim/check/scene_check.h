@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 
+#include "host_shim/check/scene_display.h"
 #include "host_shim/check/suite.h"
 #include "host_shim/check/verdict.h"
-#include "host_shim/colour/colour_pipeline.h"
 
 namespace pm::host {
 
@@ -22,43 +22,45 @@ struct SceneOutcome {
     std::string command;  // that repeats the render
     std::string because;  // of the reference
     std::optional<Picture> stored, picture;
+    std::vector<std::string> warnings;  // of the render
+    std::vector<std::string> notes;     // what else is to be known of the comparison
 
     bool isRight() const { return status == Status::kSame || status == Status::kWithinNoise; }
+    // Whether only coarse changes of the scene would be found.
+    bool isCoarse() const { return seenChange > kCoarseChange; }
+
+    static constexpr double kCoarseChange = 0.1;  // of one region
 };
+
+// "regions from 2.4 % on"; empty where that is not known.
+std::string seenText(const SceneOutcome& outcome);
+// What else is to be told of it, a line each: how coarse its reference is, warnings of the render,
+// notes.
+std::vector<std::string> remarksOf(const SceneOutcome& outcome);
+// What "within noise" rests on: the furthest region as a share of its limit, and seenText().
+std::string noiseText(const SceneOutcome& outcome);
 
 const char* nameOf(SceneOutcome::Status status);
 
 // A scene's files beside the suite.
 struct ReferenceFiles {
-    std::filesystem::path picture, display, numbers;  // NAME.exr, NAME.png, NAME.json
+    std::filesystem::path picture, display, numbers;      // NAME.exr, NAME.png, NAME.json
+    std::filesystem::path noise;                          // NAME.noise.exr, see pixelNoiseOf
+    std::vector<std::filesystem::path> views;             // NAME.VIEW.png, as the scene has them
+    std::vector<std::filesystem::path> pictures() const;  // all but the numbers
 };
 ReferenceFiles referenceFiles(const Suite& suite, const SuiteScene& scene);
-
-// Errors: kBadInput naming the scene, for options that pm_host does not take, and for a display
-// picture that can't be had.
-void checkOptions(const Suite& suite, const SuiteScene& scene);
-
-// The display and view that a scene's options ask for, with its exposure. Errors: kBadInput naming
-// the scene, for options that pm_host does not take.
-class SceneDisplay {
-  public:
-    SceneDisplay(const Suite& suite, const SuiteScene& scene);
-    DisplayPicture shown(const Picture& picture) const;
-
-  private:
-    std::optional<DisplayTransform> m_transform;
-};
-
-// Nothing where there is no display and view that a scene's pictures can be shown by.
-std::optional<SceneDisplay> findDisplay(const Suite& suite, const SuiteScene& scene);
 
 // In a folder of pages: a scene's own, and the report of its render.
 std::filesystem::path scenePage(const std::filesystem::path& folder, const SuiteScene& scene);
 std::filesystem::path reportPage(const std::filesystem::path& folder, const SuiteScene& scene);
 
-// A render against its references. exr, png: the new files; png only where the scene has a display
-// picture.
-void checkScene(const Suite& suite, const std::filesystem::path& exr,
-                const std::filesystem::path& png, SceneOutcome& outcome);
+// What a render left. png: only where the scene has a display picture.
+struct RenderedFiles {
+    std::filesystem::path exr, png, statistics, log;
+};
+
+// A render against its references.
+void checkScene(const Suite& suite, const RenderedFiles& render, SceneOutcome& outcome);
 
 }  // namespace pm::host

@@ -25,9 +25,20 @@ using json = nlohmann::ordered_json;
 constexpr std::string_view kOwnOptions[] = {"-o",     "--output", "--reference", "--stats",
                                             "--seed", "--report", "--log",       "--progress"};
 
-constexpr std::size_t kMostNameLength = 100;
+// What a view may say: nothing of these changes what is rendered.
+constexpr std::string_view kViewOptions[] = {"--display", "--view", "--look", "--exposure",
+                                             "--context"};
+
+constexpr std::size_t kMostNameLength = 100, kMostViews = 100, kMostTags = 100;
 // Each scene has all that are common, so that both have to be bounded.
 constexpr std::size_t kMostScenes = 10000, kMostOptions = 1000;
+
+bool isPlain(const std::string& name) {
+    return !name.empty() && std::ranges::all_of(name, [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+               c == '_' || c == '-';
+    });
+}
 
 class SuiteReader {
   public:
@@ -79,21 +90,64 @@ class SuiteReader {
         return result;
     }
 
+    std::string plainName(const json& entry, const std::string& where) const {
+        const std::string name = text(entry, "name", where);
+        if (!isPlain(name))
+            fail(fmt::format("{}: 'name' is of letters, digits, _ and - only", where));
+        if (name.size() > kMostNameLength)
+            fail(fmt::format("{}: 'name' has at most {} letters", where, kMostNameLength));
+        return name;
+    }
+
+    std::vector<std::string> tags(const json& entry, const std::string& where) const {
+        std::vector<std::string> result;
+        if (!entry.contains("tags")) return result;
+        const json& list = entry["tags"];
+        if (!list.is_array() || list.size() > kMostTags)
+            fail(fmt::format("{}: 'tags' must be a list of at most {} texts", where, kMostTags));
+        for (const json& tag : list) {
+            if (!tag.is_string() || !isPlain(tag.get_ref<const std::string&>()))
+                fail(where + ": 'tags' are of letters, digits, _ and - only");
+            result.push_back(tag);
+        }
+        return result;
+    }
+
+    std::vector<SuiteView> views(const json& entry, const std::string& where) const {
+        std::vector<SuiteView> result;
+        if (!entry.contains("views")) return result;
+        const json& list = entry["views"];
+        if (!list.is_array() || list.size() > kMostViews)
+            fail(fmt::format("{}: 'views' must be a list of at most {} views", where, kMostViews));
+        std::set<std::string> names;
+        for (const json& one : list) {
+            const std::string place = fmt::format("{}, view {}", where, result.size() + 1);
+            checkKeys(one, place, {"name", "options"});
+            SuiteView& view =
+                result.emplace_back(SuiteView{plainName(one, place), options(one, place)});
+            if (!names.insert(lowerCase(view.name)).second)
+                fail(fmt::format("{}: the name '{}' is there twice", place, view.name));
+            for (const std::string& option : view.options)
+                if (option.starts_with("--") &&
+                    std::ranges::find(kViewOptions, option.substr(0, option.find('='))) ==
+                        std::end(kViewOptions))
+                    fail(fmt::format("{}: {} is not for a view; allowed are {}", place, option,
+                                     fmt::join(kViewOptions, ", ")));
+        }
+        return result;
+    }
+
     void readScene(const json& entry, const std::string& where,
                    const std::vector<std::string>& common) {
-        checkKeys(entry, where, {"name", "scene", "options", "display", "codeLimit"});
+        checkKeys(entry, where,
+                  {"name", "scene", "options", "display", "codeLimit", "tags", "views"});
         SuiteScene scene;
-        scene.name = text(entry, "name", where);
-        const bool isPlain = std::ranges::all_of(scene.name, [](char c) {
-            return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
-                   c == '_' || c == '-';
-        });
-        if (!isPlain) fail(fmt::format("{}: 'name' is of letters, digits, _ and - only", where));
-        if (scene.name.size() > kMostNameLength)
-            fail(fmt::format("{}: 'name' has at most {} letters", where, kMostNameLength));
+        scene.name = plainName(entry, where);
         // References of both have to find room on any file system.
         if (!m_names.insert(lowerCase(scene.name)).second)
             fail(fmt::format("{}: the name '{}' is there twice", where, scene.name));
+        scene.tags = tags(entry, where);
+        scene.views = views(entry, where);
         scene.scene = m_suite.folder / text(entry, "scene", where);
         scene.options = common;
         for (std::string& option : options(entry, where))
@@ -118,7 +172,7 @@ class SuiteReader {
     }
 
     void readAll(const json& all) {
-        checkKeys(all, "the suite", {"schema", "references", "options", "scenes"});
+        checkKeys(all, "the suite", {"$schema", "schema", "references", "options", "scenes"});
         if (text(all, "schema", "the suite") != "pm-suite/1")
             fail("'schema' must be \"pm-suite/1\"");
         const bool isNamed = all.contains("references");
@@ -150,6 +204,14 @@ std::string namesOf(const Suite& suite) {
     std::string names;
     for (const SuiteScene& scene : suite.scenes) names += (names.empty() ? "" : ", ") + scene.name;
     return names;
+}
+
+std::vector<std::string> tagsOf(const Suite& suite) {
+    std::vector<std::string> tags;
+    for (const SuiteScene& scene : suite.scenes)
+        for (const std::string& tag : scene.tags)
+            if (std::ranges::find(tags, tag) == tags.end()) tags.push_back(tag);
+    return tags;
 }
 
 }  // namespace pm::host

@@ -13,9 +13,11 @@
 namespace pm::host {
 namespace {
 
-// Both pictures come to the same bits where these agree.
-constexpr std::array<const char*, 5> kSameBuild{"pm:build", "pm:isa", "pm:sceneHash",
-                                                "pm:settingsHash", "pm:passesDone"};
+// Both pictures come to the same bits where these and the scene agree.
+constexpr std::array<const char*, 4> kSameBuild{"pm:build", "pm:isa", "pm:settingsHash",
+                                                "pm:passesDone"};
+constexpr const char* kScene = "pm:sceneHash";
+constexpr std::size_t kChangedRegions = 3;  // that are told
 constexpr std::array<const char*, 4> kColourMetadata{"chromaticities", "colorInteropID",
                                                      "pm:renderingSpace", "pm:complete"};
 constexpr std::array<const char*, 3> kErrorChannels{"stderr.X", "stderr.Y", "stderr.Z"};
@@ -45,13 +47,10 @@ std::string channelList(const Picture& picture) {
     return list;
 }
 
-bool isSameBuild(const Picture& a, const Picture& b) {
-    return std::ranges::all_of(kSameBuild, [&](const char* name) {
-        const auto in = a.attributes.find(name);
-        const auto other = b.attributes.find(name);
-        return in != a.attributes.end() && other != b.attributes.end() &&
-               in->second == other->second;
-    });
+bool haveSame(const Picture& a, const Picture& b, const char* name) {
+    const auto in = a.attributes.find(name);
+    const auto other = b.attributes.find(name);
+    return in != a.attributes.end() && other != b.attributes.end() && in->second == other->second;
 }
 
 struct Place {
@@ -146,17 +145,59 @@ void compareBits(const Picture& stored, const Picture& picture, Verdict& verdict
                              count, first, describe(most))});
 }
 
+// Another scene, told by its hash, is no noise.
+void compareInput(const Picture& stored, const Picture& picture, Verdict& verdict) {
+    if (!verdict.isSameBuildOfAnotherScene || verdict.hasSameBits) return;
+    std::string regions;
+    for (const std::int32_t side : kRegionSides) {
+        const RegionGrid grid(picture.dataWindow, side);
+        for (const RegionFinding& region :
+             changedRegions(picture.dataWindow, side, grid.means(beautyOf(stored)),
+                            grid.means(beautyOf(picture)), kChangedRegions))
+            regions += (regions.empty() ? "" : "; ") + describe(region);
+    }
+    verdict.findings.push_back({"input", "the scene's input changed; " + regions});
+}
+
+// A render that shares the reference's noise may be off by what twins are.
+void comparePairs(const Picture& stored, const Picture& picture, const Reference& reference,
+                  const Picture* noise, Verdict& verdict) {
+    if (!reference.pairs || noise == nullptr) return;
+    verdict.correlation = noiseCorrelation(*noise, stored, picture);
+    verdict.isPaired = verdict.correlation > kPairedCorrelation;
+    if (!verdict.isPaired) verdict.seenChange = seenChange(reference.regions.front());
+    if (!verdict.isPaired) return;
+    const PixelRect& window = picture.dataWindow;
+    const RegionGrid grid(window, kPairSide);
+    const RegionFinding found =
+        furthestOfPair(window, *reference.pairs, grid.means(beautyOf(picture)));
+    verdict.shareOfLimit = std::max(verdict.shareOfLimit, std::abs(found.z) / kPairLimit);
+    if (std::abs(found.z) <= kPairLimit) return;  // false for NaN
+    verdict.findings.push_back(
+        {"pair", fmt::format("{}, {:.1f} standard deviations of what rounding makes of the same "
+                             "noise (limit {:g})",
+                             describe(found), std::abs(found.z), kPairLimit)});
+}
+
+struct RegionMeasure {
+    const char* name;
+    std::string before{};  // what is told
+    double floor{};        // what is no difference
+};
+
 // The regions that are furthest off, those of each side.
 void compareRegions(const PixelRect& window, const std::vector<RegionSpread>& spreads,
                     const std::function<std::vector<double>(std::int32_t side)>& meansOf,
-                    const char* measure, double floor, Verdict& verdict) {
+                    const RegionMeasure& measure, Verdict& verdict) {
     for (const RegionSpread& spread : spreads) {
-        const RegionFinding found = furthestRegion(window, spread, meansOf(spread.side), floor);
+        const RegionFinding found =
+            furthestRegion(window, spread, meansOf(spread.side), measure.floor);
         verdict.shareOfLimit = std::max(verdict.shareOfLimit, std::abs(found.z) / spread.limit);
         if (!(std::abs(found.z) <= spread.limit))
             verdict.findings.push_back(
-                {measure, fmt::format("{}, {:.1f} standard errors (limit {:.1f})", describe(found),
-                                      std::abs(found.z), spread.limit)});
+                {measure.name,
+                 fmt::format("{}{}, {:.1f} standard errors (limit {:.1f})", measure.before,
+                             describe(found), std::abs(found.z), spread.limit)});
     }
 }
 
@@ -206,23 +247,29 @@ PixelFinding furthestPixel(const Picture& stored, const Picture& picture) {
     return found;
 }
 
-Verdict comparePictures(const Picture& stored, const Picture& picture, const Reference& reference) {
+Verdict comparePictures(const Picture& stored, const Picture& picture, const Reference& reference,
+                        const Picture* noise) {
     Verdict verdict;
     lookForBadValues(picture, verdict.findings);
     compareShape(stored, picture, verdict.findings);
     if (!verdict.findings.empty()) return verdict;
-    verdict.isSameBuild = isSameBuild(stored, picture);
+    const bool isBuild = std::ranges::all_of(
+        kSameBuild, [&](const char* name) { return haveSame(stored, picture, name); });
+    verdict.isSameBuild = isBuild && haveSame(stored, picture, kScene);
+    verdict.isSameBuildOfAnotherScene = isBuild && !verdict.isSameBuild;
     compareWithNumbers(stored, reference, verdict.findings);
     if (!verdict.findings.empty()) return verdict;
     compareBits(stored, picture, verdict);
     const PixelRect& window = picture.dataWindow;
-    verdict.seenChange = reference.regions.empty() ? 0 : seenChange(reference.regions[0]);
+    verdict.seenChange = seenChange(reference);
     if (verdict.isSameBuild || verdict.hasSameBits) return verdict;
+    compareInput(stored, picture, verdict);
+    comparePairs(stored, picture, reference, noise, verdict);
     const Beauty beauty = beautyOf(picture);
     compareRegions(
         window, reference.regions,
-        [&](std::int32_t side) { return RegionGrid(window, side).means(beauty); }, "region", 0,
-        verdict);
+        [&](std::int32_t side) { return RegionGrid(window, side).means(beauty); },
+        RegionMeasure{"region"}, verdict);
     const PixelFinding pixel = furthestPixel(stored, picture);
     if (std::abs(pixel.z) > reference.pixelLimit)
         verdict.findings.push_back(
@@ -244,12 +291,11 @@ std::vector<double> codeMeans(const DisplayPicture& picture, const PixelRect& wi
     return RegionGrid(window, side).means({window, {planes[0], planes[1], planes[2]}});
 }
 
-void compareCodes(const DisplayPicture& picture, const Reference& reference, double codeLimit,
-                  Verdict& verdict) {
+void compareCodes(const DisplayPicture& picture, const PixelRect& window, const DisplayNoise& noise,
+                  double codeLimit, const std::string& view, Verdict& verdict) {
     compareRegions(
-        reference.window, reference.codes,
-        [&](std::int32_t side) { return codeMeans(picture, reference.window, side); },
-        "display codes", codeLimit, verdict);
+        window, noise.codes, [&](std::int32_t side) { return codeMeans(picture, window, side); },
+        {"display codes", view, codeLimit}, verdict);
 }
 
 }  // namespace pm::host

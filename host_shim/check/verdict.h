@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -21,9 +22,12 @@ struct Finding {
 struct Verdict {
     std::vector<Finding> findings;
     bool isSameBuild{};  // by build, instruction set and hashes: then bits are compared
+    bool isSameBuildOfAnotherScene{};  // by all of these but the scene's
     bool hasSameBits{};
+    bool isPaired{};                    // it shares the reference's noise
+    std::optional<double> correlation;  // of their noise, where bits differ
     // Where bits may differ: the furthest region, as a share of its limit, and the change of one
-    // region of 16 that would be found (median of the regions).
+    // region that would be found (median of the regions), by pairs of 8 pixels, else of 16.
     double shareOfLimit{}, seenChange{};
 };
 
@@ -31,11 +35,15 @@ struct Verdict {
 // metadata come first; what is wrong there ends the comparison. Then bits where both come from the
 // same build, instruction set, scene and settings; else regions and pixels by their standard
 // errors.
-Verdict comparePictures(const Picture& stored, const Picture& picture, const Reference& reference);
+// Where the noise of both is known to be shared, regions by what twins differ by as well. noise:
+// what other seeds make of the pixels, or null.
+Verdict comparePictures(const Picture& stored, const Picture& picture, const Reference& reference,
+                        const Picture* noise = nullptr);
 
 // Regions of display pictures: those whose mean code is off by more than codeLimit beyond chance.
-void compareCodes(const DisplayPicture& picture, const Reference& reference, double codeLimit,
-                  Verdict& verdict);
+// view: before what is told.
+void compareCodes(const DisplayPicture& picture, const PixelRect& window, const DisplayNoise& noise,
+                  double codeLimit, const std::string& view, Verdict& verdict);
 
 // The means of a display picture's regions in codes of 255.
 std::vector<double> codeMeans(const DisplayPicture& picture, const PixelRect& window,

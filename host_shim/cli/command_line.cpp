@@ -240,6 +240,9 @@ void readChoices(const Typed& typed, Options& options) {
 
 void readReadRules(const Typed& typed, Options& options) {
     ReadRules& rules = options.reading;
+    if (!typed.twin.empty())
+        options.twin = static_cast<std::uint32_t>(integerValue("--twin", typed.twin, 1, 1000000));
+    if (options.inputHashes) options.settings.push_back({"--input-hashes", "inputHashes", "1"});
     if (!typed.mtlDialect.empty()) {
         const auto dialect = dialectByName(typed.mtlDialect);
         if (!dialect)

@@ -104,6 +104,9 @@ void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
                  "write the camera and light that were found for the scene to SCENE.pm.json");
     addText(app, "--subdivide", typed.subdivide, "all|tagged|none",
             "which groups become Catmull-Clark limit surfaces (tagged)");
+    addText(app, "--twin", typed.twin, "N",
+            "moves vertices by up to 1e-7 of their coordinates, N says which way: what rounds "
+            "otherwise, as another build does, differs by as much (none)");
     addText(app, "--mtl-dialect", typed.mtlDialect, "NAME",
             "which program's MTL it is: " + allDialectNames() + " (by the headers of the files)");
     app.add_flag("--bump-is-normal", options.bumpIsNormal,
@@ -243,6 +246,9 @@ void addPrintingOptions(CLI::App& app, Typed& typed, Options& options) {
     app.add_flag("--version", options.version, "print and stop");
     addText(app, "--progress", typed.progress, "auto|bar|plain|json|alf|openjd|none",
             "how progress is shown (auto)");
+    app.add_flag("--input-hashes", options.inputHashes,
+                 "--stats has a hash of each object, material, light and texture, and of the "
+                 "camera");
     addText(app, "--bucket-times", typed.bucketTimes, "FILE.csv",
             "how long each bucket took: its place in the order, its pixels, seconds, passes");
     addText(app, "--only-pixel", typed.onlyPixel, "X,Y", "render and print that one");
@@ -284,8 +290,12 @@ void addAllOfCheck(CLI::App& app, Typed& typed, Options& options) {
     app.option_defaults()->always_capture_default(false);
     addText(app, "SUITE", typed.checkSuite, "FILE.json", "the suite: scenes and their options");
     addList(app, "--only", typed.onlyScenes, "NAME[,NAME]",
-            "scenes to check; may be repeated (all)")
+            "scenes to check, or tag:NAME for all that have a tag; may be repeated (all)")
         ->delimiter(',');
+    app.add_option("--failed", check.failed,
+                   "scenes alone that were not right in an earlier check, by its --junit")
+        ->type_name("FILE.xml")
+        ->check(valueFault);
     addText(app, "--jobs", typed.jobs, "N",
             "scenes rendered at once, which share the threads; 1 to 1024 (1)");
     addText(app, "--time-budget", typed.timeBudget, "SECONDS",

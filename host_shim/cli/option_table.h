@@ -19,7 +19,7 @@ namespace pm::host {
 // reads numbers through the locale.
 struct Typed {
     std::string scene, frame, frames, size, eye, lookAt, up, fov, crop, aa, seed, subdivide,
-        onlyPixel, errorLimit, progress, checkpoint, photonMap, mtlDialect, textureCache,
+        onlyPixel, errorLimit, progress, checkpoint, photonMap, mtlDialect, twin, textureCache,
         textureCacheSize, exposure, cameraLight, environment, environmentRotation,
         environmentStrength, sun, turbidity, checkSuite, jobs, timeBudget, seeds, engine, runs, job,
         tries, atOnce, bucketTimes, copies, copiesLimit, page, interval;

@@ -40,7 +40,8 @@ struct CheckOptions {
     bool update{};                  // references are made anew
     std::string because;            // why; not empty then
     int seeds{16};                  // others that a reference is measured by
-    std::vector<std::string> only;  // names of scenes; empty: all
+    std::vector<std::string> only;  // names of scenes, or tag:NAME; empty: all
+    std::filesystem::path failed;   // of an earlier --junit: what was not right there; empty: none
     int jobs{1};                    // renders at once
     std::optional<double> timeBudgetSeconds;
     std::optional<std::uint64_t> seed;  // in place of the references' own
@@ -103,6 +104,7 @@ struct Options {
     bool bumpIsNormal{};     // bump maps are normal maps, where a material has no other
     bool alphaOfPictures{};  // of map_Kd counts as map_d, where a material has none
     bool writeSidecar{};     // and is written
+    std::uint32_t twin{};    // 0: the scene as it is; else see makeTwin
     std::string layers;      // separated by commas
     ColourOptions colour;
     ExposureOption exposure;
@@ -111,6 +113,7 @@ struct Options {
     std::filesystem::path reference;
     std::optional<double> errorLimit;
     std::string statistics;  // file, "-" = standard output, empty = none
+    bool inputHashes{};      // statistics have them
     std::filesystem::path log;
     std::filesystem::path report;       // a page, empty = none
     std::filesystem::path bucketTimes;  // how long each bucket took, empty = none

@@ -181,6 +181,7 @@ PmrTexture MaterialBuilder::make(const TextureUse& use, const BakedTexture& bake
                                  const std::string& shown) {
     tell(shown, baked);
     const std::string file = baked.file.string();
+    m_preparedFiles.emplace(file, shown);
     PmrTextureDesc desc = lookedUpAs(use);
     desc.fileName = file.c_str();
     std::ranges::copy(baked.facts.texelHash, desc.texelHash);

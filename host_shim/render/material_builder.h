@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -32,6 +33,8 @@ class MaterialBuilder {
     void prepare(const std::vector<const MaterialData*>& materials);
     // How many textures were found, made and opened; all 0 without any.
     TextureCounts textureCounts() const;
+    // Of the textures that were made: the prepared file, and the scene's own as messages name it.
+    const std::map<std::string, std::string>& preparedFiles() const { return m_preparedFiles; }
     // What shines by a picture that can't be read gives no light: that is told and the lamp put
     // out.
     void putOutLights(SceneData& data);
@@ -75,6 +78,7 @@ class MaterialBuilder {
     const WarningSink& m_warn;
     std::optional<TexturePreparer> m_preparer;
     std::set<std::string> m_told;  // texts about pictures
+    std::map<std::string, std::string> m_preparedFiles;
     std::vector<PmrTexture> m_textures;
     std::vector<PmrMaterial> m_materials;
 };

@@ -26,6 +26,10 @@ td code { white-space: nowrap; }
 figure { margin: 8px 0; }
 figcaption { color: #555; }
 img, svg { display: block; max-width: 100%; height: auto; image-rendering: pixelated; }
+.beside { display: flex; flex-wrap: wrap; gap: 12px; }
+.beside figure { flex: 1 1 300px; min-width: 0; max-width: 100%; }
+.window { overflow: auto; max-height: 80vh; } .window img { max-width: none; }
+tr.bad td { background: #fbeceb; }
 .scale { display: inline-block; width: 160px; height: 10px; margin: 0 6px; }
 .pair { position: relative; }
 .pair img + img { position: absolute; left: 0; top: 0; clip-path: inset(0 0 0 50%); }

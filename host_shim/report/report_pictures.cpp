@@ -14,11 +14,21 @@
 namespace pm::host {
 namespace {
 
-constexpr int kMostPixels = 2'000'000;  // more are not even tried
+constexpr int kMostPixels = 9'000'000;  // more are not even tried
+constexpr int kBesideWidth = 340;       // of each of three in a row
 constexpr int kLeastShownWidth = 640;   // small pictures are shown enlarged
 constexpr int kMostShownWidth = 1068;   // of a page's column
 
 using Rgb = std::array<float, 3>;
+
+constexpr const char* kScrollTogether = R"(
+for (const group of document.querySelectorAll('.beside')) {
+  const windows = [...group.querySelectorAll('.window')];
+  for (const one of windows) one.onscroll = () => {
+    for (const other of windows)
+      if (other !== one) other.scrollTo(one.scrollLeft, one.scrollTop);
+  };
+})";
 
 // Stops of viridis (Nathaniel Smith and Stefan van der Walt, 2015; CC0).
 constexpr std::array<std::uint32_t, 9> kStops{0x440154, 0x472d7b, 0x3b528b, 0x2c728e, 0x21918c,
@@ -148,6 +158,22 @@ std::string scaleHtml(const std::string& least, const std::string& most) {
         "<p>{}<span class=\"scale\" style=\"background:linear-gradient(to "
         "right{})\"></span>{}</p>\n",
         escaped(least), colours, escaped(most));
+}
+
+std::string besideHtml(const std::vector<Figure>& figures) {
+    std::string content;
+    for (const Figure& figure : figures) {
+        EmbeddedPicture picture = figure.picture;
+        const int enlarged = std::max(1, kBesideWidth / std::max(picture.width, 1));
+        picture.shownWidth = picture.width * enlarged;
+        picture.shownHeight = picture.height * enlarged;
+        content += fmt::format(
+            "<figure><div class=\"window\">{}</div><figcaption>{}</figcaption>"
+            "</figure>\n",
+            imageHtml(picture, figure.alternative), escaped(figure.caption));
+    }
+    return fmt::format("<div class=\"beside\">{}</div>\n<script>{}</script>\n", content,
+                       kScrollTogether);
 }
 
 std::string sliderHtml(const EmbeddedPicture& left, const std::string& leftName,

@@ -53,6 +53,14 @@ std::string figureHtml(const EmbeddedPicture& picture, const std::string& altern
 // "0 [colours] 0.5", HTML, for the caption of a heat map. Texts are plain.
 std::string scaleHtml(const std::string& least, const std::string& most);
 
+struct Figure {
+    EmbeddedPicture picture;
+    std::string alternative, caption;  // plain
+};
+// Pictures of one size beside each other, where the page is wide enough, pixel for pixel or
+// enlarged by a whole number; what is larger than its place scrolls there, and the others with it.
+std::string besideHtml(const std::vector<Figure>& figures);
+
 // Two pictures of one size, and a slider that moves the edge between them.
 std::string sliderHtml(const EmbeddedPicture& left, const std::string& leftName,
                        const EmbeddedPicture& right, const std::string& rightName);

@@ -266,6 +266,7 @@ void Session::handOver(SceneData& data, const CameraPose& camera, const ColourPi
         },
         sink);
     buildLit(data, camera, colour, materials, scene);
+    m_statistics.textureFiles = materials.preparedFiles();
     const TextureCounts textures = materials.textureCounts();
     if (textures.found + textures.converted > 0)
         m_log.message(Level::kDebug,

@@ -53,6 +53,18 @@ Json warningList(const Log& log, const Json& library) {
     return list;
 }
 
+// The library knows textures by their prepared files; people know them by their own.
+Json namedTextures(const Json& hashes, const std::map<std::string, std::string>& files) {
+    constexpr std::string_view kKind = "texture ";
+    Json named = Json::object();
+    for (const auto& [name, hash] : hashes.items()) {
+        const auto found =
+            name.starts_with(kKind) ? files.find(name.substr(kKind.size())) : files.end();
+        named[found == files.end() ? name : std::string(kKind) + found->second] = hash;
+    }
+    return named;
+}
+
 }  // namespace
 
 std::optional<double> Statistics::estimatedRelMse() const {
@@ -122,6 +134,7 @@ std::optional<BadSampleNote> Statistics::badSamples() const {
 
 std::string Statistics::toJson(const Log& log) const {
     Json all = parsed(library);
+    if (all.contains("hashes")) all["hashes"] = namedTextures(all["hashes"], textureFiles);
     Json mine;
     mine["schema"] = "pm-stats/1";
     mine["commandLine"] = commandLine;

@@ -33,9 +33,10 @@ struct Statistics {
     std::string pluginVersion;
     std::string colourConfig;
     std::string renderingSpace;
-    std::optional<double> exposureStops;         // of display pictures, where there are any
-    std::vector<std::string> outputs;            // that were written
-    std::map<std::string, double> phaseSeconds;  // readSceneSeconds, ...
+    std::optional<double> exposureStops;              // of display pictures, where there are any
+    std::map<std::string, std::string> textureFiles;  // prepared one -> the scene's own
+    std::vector<std::string> outputs;                 // that were written
+    std::map<std::string, double> phaseSeconds;       // readSceneSeconds, ...
     // passes done, error target, time limit, finished (without a render), error limit, interrupted,
     // terminated, failed
     std::string stopReason{"failed"};

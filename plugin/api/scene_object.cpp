@@ -48,7 +48,8 @@ void build(SceneDescription description, int threads, const std::string& isa,
     const Stopwatch watch;
     WorkerArena arena(threads);
     made.scene = arena.execute([&] { return Scene::build(std::move(description), isa, cancel); });
-    made.identity = sceneIdentity(*made.scene, *made.textures, sceneTables(), cancel);
+    made.tables = sceneTables();
+    made.identity = sceneIdentity(*made.scene, *made.textures, made.tables, cancel);
     made.buildSeconds = watch.seconds();
 }
 

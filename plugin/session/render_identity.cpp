@@ -6,8 +6,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <map>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 #include <type_traits>
 #include <variant>
@@ -108,7 +110,99 @@ void addTexture(Hasher& hasher, const TexturePicture& picture, const CancelCheck
         hasher.add(v);
 }
 
+// In place of numbers that change when something else comes or goes: 28 bits of a checksum, so that
+// it is no kNoTexture.
+template <typename Feed>
+std::uint32_t numberOf(Feed feed) {
+    constexpr std::size_t kDigits = 7;
+    return static_cast<std::uint32_t>(std::stoul(checksumOf(feed).substr(0, kDigits), nullptr, 16));
+}
+
+void putNumber(std::int32_t& texture, const SceneTextures& textures) {
+    if (texture == kNoTexture) return;
+    texture = static_cast<std::int32_t>(numberOf([&](Hasher& hasher) {
+        for (const TexturePicture* picture : textures.picturesOf(texture))
+            addTexture(hasher, *picture, {});
+    }));
+}
+
+std::uint32_t numberOf(const MaterialDescription& material) {
+    return numberOf([&](Hasher& hasher) { hasher.add(std::string_view(material.name)); });
+}
+
+MaterialDescription byNames(const MaterialDescription& material, const SceneDescription& d,
+                            const SceneTextures& textures) {
+    using M = MaterialDescription;
+    MaterialDescription named = material;
+    for (std::int32_t M::*member :
+         {&M::diffuseTexture, &M::glossyTexture, &M::glossyExponentTexture, &M::roughnessTexture,
+          &M::transmissionTexture, &M::emissionTexture, &M::opacityTexture, &M::normalTexture,
+          &M::bumpTexture, &M::weightTexture, &M::displacementTexture})
+        putNumber(named.*member, textures);
+    if (material.kind == MaterialKind::kMixture)
+        for (std::uint32_t M::*part : {&M::first, &M::second})
+            named.*part = numberOf(d.materials.at(material.*part));
+    return named;
+}
+
+InstanceDescription byNames(const InstanceDescription& instance, const SceneDescription& d) {
+    InstanceDescription named = instance;
+    for (std::uint32_t& material : named.materials) material = numberOf(d.materials.at(material));
+    return named;
+}
+
+// Checksums by name, in the order of the names.
+class NamedSums {
+  public:
+    template <typename Feed>
+    void add(const char* kind, const std::string& name, Feed feed) {
+        std::string& sum = m_sums[name.empty() ? kind : fmt::format("{} {}", kind, name)];
+        const std::string own = checksumOf(feed);
+        sum = sum.empty() ? own : checksumOf([&](Hasher& hasher) {
+            hasher.add(std::string_view(sum));
+            hasher.add(std::string_view(own));
+        });
+    }
+    Identity identity() const {
+        Identity identity;
+        for (const auto& [name, sum] : m_sums) identity.push_back({name, sum});
+        return identity;
+    }
+
+  private:
+    std::map<std::string, std::string> m_sums;
+};
+
 }  // namespace
+
+Identity sceneInputs(const Scene& scene, const SceneTextures& textures, const SceneTables& tables) {
+    const SceneDescription& d = scene.description();
+    NamedSums sums;
+    for (const InstanceDescription& instance : d.instances)
+        sums.add("object", instance.name,
+                 [&](Hasher& hasher) { addInstance(hasher, byNames(instance, d), tables); });
+    for (const MaterialDescription& material : d.materials)
+        sums.add("material", material.name, [&](Hasher& hasher) {
+            hashRows(hasher, tables.materials, byNames(material, d, textures));
+        });
+    forEachByKind(d.lights, [&](const auto& light) {
+        sums.add("light", light.name,
+                 [&](Hasher& hasher) { hashRows(hasher, tables.lights, light); });
+    });
+    if (d.environment)
+        sums.add("environment", "", [&](Hasher& hasher) {
+            EnvironmentDescription named = *d.environment;
+            putNumber(named.texture, textures);
+            hashRows(hasher, tables.environments, named);
+        });
+    if (d.camera)
+        sums.add("camera", "",
+                 [&](Hasher& hasher) { hashRows(hasher, tables.cameras, *d.camera); });
+    for (const TexturePicture* picture : textures.pictures())
+        sums.add("texture", picture->fileName,
+                 [&](Hasher& hasher) { addTexture(hasher, *picture, {}); });
+    return sums.identity();
+}
 
 Identity sceneIdentity(const Scene& scene, const SceneTextures& textures, const SceneTables& tables,
                        const CancelCheck& cancel) {

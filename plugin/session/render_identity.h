@@ -18,6 +18,11 @@ namespace pm::plugin {
 Identity sceneIdentity(const Scene& scene, const SceneTextures& textures, const SceneTables& tables,
                        const CancelCheck& cancel);
 
+// A checksum of each thing that a scene is made of: "object NAME", "material NAME", "light NAME",
+// "environment", "camera", "texture FILE". Of several of one name all in one. What an object is
+// made of counts for it by the materials' names, and for a material the texels that it looks up.
+Identity sceneInputs(const Scene& scene, const SceneTextures& textures, const SceneTables& tables);
+
 // Version and build, and every setting that changes pixels, but for the number of passes: a
 // finished render may go on with more of them.
 Identity settingsIdentity(const SettingValues& settings);

@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "integrator/scene/scene.h"
+#include "plugin/parameters/scene_tables.h"
 #include "plugin/textures/scene_textures.h"
 #include "plugin/textures/texture_system.h"
 #include "plugin/values/identity.h"
@@ -16,7 +17,8 @@ namespace pm::plugin {
 // immutable.
 struct RenderScene {
     std::shared_ptr<const Scene> scene;
-    Identity identity;  // sceneIdentity()
+    Identity identity;   // sceneIdentity()
+    SceneTables tables;  // that it was read by
     std::shared_ptr<const SceneTextures> textures;
     std::shared_ptr<TextureSystem> textureSystem;  // that all textures are of
     double buildSeconds = 0;

@@ -148,6 +148,10 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
      "and its textures, as the host knows it. A render is refused where it is above the memory "
      "limit, and the smallest limit that is told is no less.",
      "None."},
+    {Setting::kInputHashes, "inputHashes", SettingType::kInteger, "", "0", 0, 1, 1, "", false,
+     "1: the statistics have, among their hashes, one of each object, material, light and texture "
+     "by its name, and of the camera, so that a host can tell what of a scene has changed.",
+     "The statistics grow by a line for each."},
 }};
 
 static_assert(isInOrderOfIds(kSettings));

@@ -191,6 +191,10 @@ std::string Render::statisticsJson() const {
     json["versions"] = versionsJson();
     json["hashes"] = {{"scene", identityHash(m_scene->identity)},
                       {"settings", identityHash(settingsIdentity(settings()))}};
+    if (settings().integer(Setting::kInputHashes) != 0)
+        for (const IdentityPart& part :
+             sceneInputs(*m_scene->scene, *m_scene->textures, m_scene->tables))
+            json["hashes"][part.name.c_str()] = part.value;
     addPhotons(running->photons(), progress, json);
     json["isa"] = running->scene().isa();
     json["processorVendors"] = Json::array();

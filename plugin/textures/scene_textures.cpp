@@ -19,10 +19,17 @@ std::int32_t SceneTextures::add(const std::shared_ptr<const Texture>& texture) {
 
 std::vector<const TexturePicture*> SceneTextures::pictures() const {
     std::vector<const TexturePicture*> pictures;
-    for (const auto& texture : m_textures) {
-        if (texture->tiles.empty()) pictures.push_back(&texture->picture);
-        for (const TextureTile& tile : texture->tiles) pictures.push_back(&tile.picture);
-    }
+    for (std::size_t i = 0; i < m_textures.size(); ++i)
+        for (const TexturePicture* picture : picturesOf(static_cast<std::int32_t>(i)))
+            pictures.push_back(picture);
+    return pictures;
+}
+
+std::vector<const TexturePicture*> SceneTextures::picturesOf(std::int32_t index) const {
+    const Texture& texture = *m_textures[static_cast<std::size_t>(index)];
+    if (texture.tiles.empty()) return {&texture.picture};
+    std::vector<const TexturePicture*> pictures;
+    for (const TextureTile& tile : texture.tiles) pictures.push_back(&tile.picture);
     return pictures;
 }
 

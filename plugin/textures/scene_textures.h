@@ -27,6 +27,8 @@ class SceneTextures final : public TextureSource {
 
     // In the order of their numbers.
     std::vector<const TexturePicture*> pictures() const;
+    // Of one texture: its own, or those of its tiles.
+    std::vector<const TexturePicture*> picturesOf(std::int32_t index) const;
     // Bytes of all their texels, of every level.
     std::uint64_t texelBytes() const;
 

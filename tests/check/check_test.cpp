@@ -59,6 +59,13 @@ class Check : public HostProcess {
             fs::copy(kept, path("references"));
         }
     }
+    // The reference is then of another build.
+    void pretendOtherBuild(const std::string& name) const {
+        const fs::path file = path("references") / (name + ".exr");
+        Picture picture = readExr(file);
+        picture.attributes["pm:build"] = std::string("another");
+        writeExr(file, picture);
+    }
     static void expectHas(const std::string& text, const std::string& part) {
         EXPECT_NE(text.find(part), std::string::npos) << part << " in " << text;
     }
@@ -80,7 +87,9 @@ TEST_F(Check, UntouchedIsZeroAndTheBrightenedBlockIsNamed) {
     for (int seed = 2; seed < 5; ++seed) {
         const Outcome other = check({"--seed", std::to_string(seed)});
         EXPECT_EQ(other.exitCode, 0) << seed << other.out << other.err;
-        expectHas(other.out, "plain: within noise");
+        expectHas(other.out, "plain: within noise (furthest region at");
+        expectHas(other.out, "found are regions from ");
+        expectHas(other.out, "note: the noise is not the reference's");
     }
     const fs::path file = path("references") / "plain.exr";
     Picture picture = readExr(file);
@@ -100,9 +109,77 @@ TEST_F(Check, AChangeOfTheSceneIsFound) {
     write("box.mtl", "newmtl light\nKd 0 0 0\nKe 5 5 5\nnewmtl wall\nKd 0.525 0.5 0.5\n");
     const Outcome changed = check();
     EXPECT_EQ(changed.exitCode, 6) << changed.out;
+    expectHas(changed.out, "input: the scene's input changed; region");
+    expectHas(changed.out, "changed are: material wall\n");
+    expectHas(changed.out, "pair: region");
     expectHas(changed.out, "R is ");
     expectHas(changed.out, "% brighter");
     expectHas(changed.out, "standard errors (limit");
+}
+
+// Far less than what seeds differ by; never within noise, whatever it is.
+TEST_F(Check, AnotherInputIsAFindingHoweverSmall) {
+    makeReferences();
+    write("box.mtl", "newmtl light\nKd 0 0 0\nKe 5 5 5\nnewmtl wall\nKd 0.50001 0.5 0.5\n");
+    const Outcome changed = check();
+    EXPECT_EQ(changed.exitCode, 6) << changed.out;
+    expectHas(changed.out, "plain: DIFFERENT");
+    expectHas(changed.out, "input: the scene's input changed; region");
+    expectHas(changed.out, "changed are: material wall\n");
+    EXPECT_EQ(changed.out.find("within noise"), std::string::npos);
+}
+
+// Another build has other bits. Its noise is the reference's still, so 2 % of the lamp are found,
+// and rounding is not.
+TEST_F(Check, PairsSeeWhatSeedsDoNot) {
+    makeReferences();
+    pretendOtherBuild("plain");
+    const Outcome twin = check({"--junit", "junit.xml"});
+    EXPECT_EQ(twin.exitCode, 0) << twin.out << twin.err;
+    write("suite.json", suiteOf({"plain"}, "\"display\": true, \"options\": [\"--twin\", \"77\"]"));
+    const Outcome rounded = check({"--junit", "junit.xml"});
+    EXPECT_EQ(rounded.exitCode, 0) << rounded.out << rounded.err;
+    expectHas(rounded.out, "plain: within noise (furthest region at");
+    EXPECT_EQ(rounded.out.find("noise is not"), std::string::npos) << rounded.out;
+    expectHas(readText(path("junit.xml")), "<system-out>within noise: furthest region at");
+    write("suite.json", suiteOf({"plain"}));
+    write("box.mtl", "newmtl light\nKd 0 0 0\nKe 4.9 4.9 4.9\nnewmtl wall\nKd 0.5 0.5 0.5\n");
+    const Outcome darker = check();
+    EXPECT_EQ(darker.exitCode, 6) << darker.out;
+    expectHas(darker.out, "pair: region");
+    expectHas(darker.out, "% darker");
+    expectHas(darker.out, "note: of the input has changed: material light");
+}
+
+TEST_F(Check, ANewWarningIsAFinding) {
+    makeReferences();
+    write("box.mtl",
+          "newmtl light\nKd 0 0 0\nKe 5 5 5\nnewmtl wall\nKd 0.5 0.5 0.5\nmap_bump none.png\n");
+    const Outcome outcome = check({"--junit", "junit.xml", "--html", "pages"});
+    EXPECT_EQ(outcome.exitCode, 6) << outcome.out;
+    expectHas(outcome.out, "new warning: ");
+    expectHas(outcome.out, "none.png");
+    expectHas(readText(path("junit.xml")), "warning: ");
+    expectHas(readText(path("pages") / "index.html"), "none.png");
+}
+
+TEST_F(Check, ViewsAreOfOneRender) {
+    write("suite.json", suiteOf({"plain"},
+                                "\"views\": [{\"name\": \"dark\", \"options\": [\"--exposure\", "
+                                "\"-3\"]}]"));
+    const Outcome made = check({"--update", "--because", "Views.", "--seeds", "4"});
+    ASSERT_EQ(made.exitCode, 0) << made.out << made.err;
+    EXPECT_TRUE(fs::exists(path("references") / "plain.dark.png"));
+    EXPECT_FALSE(fs::exists(path("references") / "plain.png"));
+    EXPECT_EQ(check().exitCode, 0);
+    write("suite.json", suiteOf({"plain"},
+                                "\"views\": [{\"name\": \"dark\", \"options\": [\"--exposure\", "
+                                "\"-2.9\"]}]"));
+    const Outcome changed = check();
+    EXPECT_EQ(changed.exitCode, 6) << changed.out;
+    expectHas(changed.out, "display transform: view dark: ");
+    fs::remove(path("references") / "plain.dark.png");
+    EXPECT_EQ(check().exitCode, 3);
 }
 
 TEST_F(Check, AnotherViewIsFoundByTheDisplayPictureAlone) {
@@ -147,6 +224,12 @@ TEST_F(Check, JUnitAndPages) {
     expectHas(page, "The first.");
     expectHas(page, "href=\"../render/plain.html\"");
     EXPECT_TRUE(fs::exists(path("pages") / "render" / "plain.html"));
+    expectHas(page, "Old: the reference.");
+    const Outcome failed = check({"--failed", "junit.xml"});
+    EXPECT_EQ(failed.exitCode, 3);
+    expectHas(failed.out, "absent: NO REFERENCE");
+    EXPECT_EQ(failed.out.find("plain:"), std::string::npos) << failed.out;
+    EXPECT_EQ(check({"--failed", "suite.json"}).exitCode, 3);
     const std::string before = readText(path("suite.json"));
     EXPECT_EQ(check({"--junit", "suite.json"}).exitCode, 2);
     EXPECT_EQ(readText(path("suite.json")), before);
@@ -157,6 +240,12 @@ TEST_F(Check, OnlyAndTheTimeBudget) {
     const Outcome one = check({"--only", "two"});
     EXPECT_EQ(one.exitCode, 3);
     EXPECT_EQ(one.out.find("one:"), std::string::npos) << one.out;
+    write("suite.json", suiteOf({"one"}, "\"tags\": [\"quick\", \"box\"]"));
+    expectHas(check({"--only", "tag:box"}).out, "one: NO REFERENCE");
+    const Outcome untagged = check({"--only", "tag:slow"});
+    EXPECT_EQ(untagged.exitCode, 2);
+    expectHas(untagged.err, "its tags are quick, box");
+    write("suite.json", suiteOf({"one", "two"}));
     const Outcome none = check({"--only", "three"});
     EXPECT_EQ(none.exitCode, 2);
     expectHas(none.err, "one, two");
@@ -235,6 +324,12 @@ TEST_F(Check, BadSuitesAreRefused) {
     refused(suiteOf({"a"}, "\"options\": [\"--frames\", \"1-3\"]"), "--frames is not for a suite");
     refused(suiteOf({"a"}, "\"options\": [\"--frames=1-3\"]"), "--frames is not for a suite");
     refused(suiteOf({"a"}, "\"options\": [\"--write-sidecar\"]"), "--write-sidecar is not for");
+    refused(suiteOf({"a"}, "\"tags\": [\"a b\"]"), "'tags' are of letters");
+    refused(suiteOf({"a"}, "\"views\": [{\"name\": \"v\", \"options\": [\"--aa\", \"3\"]}]"),
+            "--aa is not for a view; allowed are --display");
+    refused(suiteOf({"a"}, "\"views\": [{\"name\": \"v\"}, {\"name\": \"V\"}]"), "twice");
+    refused(suiteOf({"a"}, "\"views\": [{\"name\": \"v\", \"options\": [\"--view\", \"no\"]}]"),
+            "scene 'a', view 'v': ");
     refused(suiteOf({"a"}, "\"name\": \"b\""), "'name' is there twice");
     refused(suiteOf({"a"}, "\"options\": [], \"options\": []"), "'options' is there twice");
     refused(suiteOf({"a"}, "\"options\": [\"--checkpoint\", \"c\"]"), "not for a suite");
