@@ -54,10 +54,12 @@ bool PolygonClipper::clipQuad(std::span<const Vec3d> points,
     // Twice areas times the length of the normal: both are in units of the normal squared.
     const double flat = 1e-12 * lengthSquared(normal);
     const bool bothFit = worst02 > flat && worst13 > flat;
-    // Both diagonals of a convex quad will do; the shorter follows a bent one better.
-    const bool use02 =
-        bothFit ? lengthSquared(points[2] - points[0]) <= lengthSquared(points[3] - points[1])
-                : worst02 >= worst13;
+    // Both diagonals of a convex quad will do; the shorter follows a bent one better. Those of a
+    // rectangle are alike, whatever rounding makes of them.
+    constexpr double kAlike = 1 + 1e-5;
+    const bool use02 = bothFit ? lengthSquared(points[2] - points[0]) <=
+                                     kAlike * lengthSquared(points[3] - points[1])
+                               : worst02 >= worst13;
     if (use02) {
         triangles.push_back({0, 1, 2});
         triangles.push_back({0, 2, 3});

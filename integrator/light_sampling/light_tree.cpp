@@ -23,6 +23,7 @@ constexpr std::size_t kMostLeaves = 1 << 16;
 // A node is divided in the middle of its longest axis, unless one part then has less than this
 // share of the lights: the tree stays shallow.
 constexpr std::size_t kLeastShare = 8;
+constexpr double kAlike = 1e-5;  // sides that differ by less, relative
 // Parts with fewer lights than this are not worth a thread of their own.
 constexpr std::size_t kFewLights = 4096;
 // Of a leaf's choices this share is made evenly, so that no light is forgotten.
@@ -137,11 +138,14 @@ class LightTree::Builder {
             }
         }
         const Vec3d size = hi - lo;
-        const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        // Of sides that are alike the first, whatever rounding makes of them.
+        int axis = 0;
+        for (const int other : {1, 2})
+            if (size[other] > (1 + kAlike) * size[axis]) axis = other;
         const auto first = m_tree.m_order.begin();
         const auto from = first + static_cast<std::ptrdiff_t>(begin);
         const auto to = first + static_cast<std::ptrdiff_t>(end);
-        const double half = 0.5 * (lo[axis] + hi[axis]);
+        const double half = 0.5 * (lo[axis] + hi[axis]) + kAlike * size[axis];
         const auto inTheMiddle = std::stable_partition(
             from, to, [&](std::uint32_t light) { return centre(light)[axis] < half; });
         const auto middle = static_cast<std::size_t>(inTheMiddle - first);

@@ -8,6 +8,13 @@
 
 namespace pm {
 
+namespace {
+
+// Extents that differ by less, relative, are alike: rounding is not to choose between them.
+constexpr float kAlike = 1e-5f;
+
+}  // namespace
+
 class PlaceCells::Builder {
   public:
     Builder(PlaceCells& cells, std::span<const Receiver> places, std::size_t placesOfALeaf)
@@ -64,7 +71,7 @@ class PlaceCells::Builder {
                 hi[k] = std::max(hi[k], m_keys[m_order[i]][k]);
             }
         for (std::size_t k = 1; k < lo.size(); ++k)
-            if (hi[k] - lo[k] > hi[axis] - lo[axis]) axis = k;
+            if (hi[k] - lo[k] > (1 + kAlike) * (hi[axis] - lo[axis])) axis = k;
         if (!(hi[axis] > lo[axis])) return begin;
         const auto first = m_order.begin() + static_cast<std::ptrdiff_t>(begin);
         const auto last = m_order.begin() + static_cast<std::ptrdiff_t>(end);

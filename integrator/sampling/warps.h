@@ -17,12 +17,17 @@ inline constexpr float kPi = std::numbers::pi_v<float>;
 inline constexpr float kInvPi = std::numbers::inv_pi_v<float>;
 
 // An orthonormal frame around a unit vector. Source: Duff et al., "Building an Orthonormal Basis,
-// Revisited", JCGT 6(1), 2017.
+// Revisited", JCGT 6(1), 2017. It jumps where their sign does: there, by z, it would turn at every
+// wall along z by what rounding makes of 0, and with it all directions that are sampled. So the
+// sign is of a plane that no axis nor diagonal lies in.
 struct Frame {
+    // Small enough that sign + n.z is no less than 2/3.
+    static constexpr float kTiltX = 0.31f, kTiltY = 0.17f;
+
     Vec3f tangent, bitangent, normal;
 
     explicit Frame(const Vec3f& n) : normal(n) {
-        const float sign = std::copysign(1.0f, n.z);
+        const float sign = std::copysign(1.0f, kTiltX * n.x + kTiltY * n.y + n.z);
         const float a = -1.0f / (sign + n.z);
         const float b = n.x * n.y * a;
         tangent = {1.0f + sign * n.x * n.x * a, sign * b, -sign * n.x};

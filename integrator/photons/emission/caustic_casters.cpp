@@ -16,6 +16,9 @@ namespace pm {
 
 namespace {
 
+// What differs by less is alike, and the first is taken: rounding is not to choose between sides of
+// what is symmetric, nor to divide what lies in one place.
+constexpr double kAlike = 1e-5;
 // A division stays when it leaves at most this share of the solid angle.
 constexpr double kWorthDividing = 0.9;
 constexpr std::size_t kBins = 16;
@@ -149,13 +152,17 @@ struct Division {
 
 std::size_t binOf(const Item& item, const Box& middles, int axis) {
     const double extent = middles.hi[axis] - middles.lo[axis];
+    // Simple fractions of the extent are not where bins meet.
+    constexpr double kShift = 0.37;
     const double place =
-        (static_cast<double>(middle(item, axis)) - middles.lo[axis]) / extent * kBins;
-    return static_cast<std::size_t>(std::clamp(place, 0.0, kBins - 1.0));
+        (static_cast<double>(middle(item, axis)) - middles.lo[axis]) / extent * (kBins - 1.0);
+    return static_cast<std::size_t>(std::clamp(place + kShift, 0.0, kBins - 1.0));
 }
 
-void tryAxis(std::span<const Item> items, const Box& middles, int axis, Division& best) {
-    if (!(middles.hi[axis] > middles.lo[axis])) return;
+void tryAxis(std::span<const Item> items, const Box& middles, const Box& whole, int axis,
+             Division& best) {
+    const double extent = middles.hi[axis] - middles.lo[axis];
+    if (!(extent * extent > kAlike * kAlike * whole.squaredDiagonal())) return;
     std::array<Box, kBins> bins, after;
     for (std::size_t i = 0; i < items.size(); i += 1 + items.size() / kJudges)
         bins[binOf(items[i], middles, axis)].grow(items[i]);
@@ -167,7 +174,9 @@ void tryAxis(std::span<const Item> items, const Box& middles, int axis, Division
     for (std::size_t i = 0; i + 1 < kBins; ++i) {
         before.grow(bins[i]);
         const double cost = before.squaredDiagonal() + after[i].squaredDiagonal();
-        if (cost < best.cost) best = {axis, i, cost};
+        if (best.cost == std::numeric_limits<double>::infinity() ||
+            cost < best.cost - kAlike * whole.squaredDiagonal())
+            best = {axis, i, cost};
     }
 }
 
@@ -213,7 +222,7 @@ class CasterTree {
             for (std::size_t i = 0; i < m_nodes.size(); ++i)
                 if (m_nodes[i].divisible && m_nodes[i].firstChild == 0 &&
                     (largest == m_nodes.size() ||
-                     m_nodes[i].bounds.radius > m_nodes[largest].bounds.radius))
+                     m_nodes[i].bounds.radius > (1 + kAlike) * m_nodes[largest].bounds.radius))
                     largest = i;
             if (largest == m_nodes.size()) return false;
             if (divide(largest)) return true;
@@ -224,11 +233,13 @@ class CasterTree {
     bool divide(std::size_t index) {
         const Node node = m_nodes[index];
         const std::span<Item> items = itemsOf(node);
-        Box middles;
-        for (std::size_t i = 0; i < items.size(); i += 1 + items.size() / kJudges)
+        Box middles, whole;
+        for (std::size_t i = 0; i < items.size(); i += 1 + items.size() / kJudges) {
             middles.grow(middle(items[i]), 0);
+            whole.grow(items[i]);
+        }
         Division best;
-        for (int axis = 0; axis < 3; ++axis) tryAxis(items, middles, axis, best);
+        for (int axis = 0; axis < 3; ++axis) tryAxis(items, middles, whole, axis, best);
         if (best.cost == std::numeric_limits<double>::infinity()) return false;
         const auto split = std::stable_partition(items.begin(), items.end(), [&](const Item& item) {
             goOn(m_cancel);

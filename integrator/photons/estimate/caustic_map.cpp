@@ -98,7 +98,8 @@ TwoRadii CausticMap::irradiance(const Vec3f& position, const Vec3f& normal, Near
         SurfacePatch spare;
         const SurfacePatch& patch = m_patches->at(position, normal, radius, spare);
         if (!patch.speaksFor(scene, position, normal, radius)) {
-            return SurfaceEstimate(scene, m_map, radius).at(position, normal, patternAt(position));
+            return SurfaceEstimate(scene, m_map, radius)
+                .at(position, normal, patternAt(position, radius));
         }
         share = patch.shares(position, radius);
         flux = patch.countedFlux(scene, m_map, position, normal, radius, flux);

@@ -53,10 +53,10 @@ void store(const std::array<float, N>& values, std::array<std::atomic<float>, N>
     for (std::size_t i = 0; i < N; ++i) to[i].store(values[i], std::memory_order_relaxed);
 }
 
-// Of the cells: another one in each pass, as radii differ from pass to pass.
-Vec3f originOf(const PhotonMap& map, float radius) {
+// Of the cells.
+Vec3f originOf(float radius, std::uint64_t key) {
     Vec3f origin;
-    std::uint64_t random = mixBits(std::bit_cast<std::uint32_t>(radius) + map.size());
+    std::uint64_t random = mixBits(key);
     for (int axis = 0; axis < 3; ++axis) {
         random = mixBits(random + 1);
         origin[axis] = kCellSize * radius * toUnitFloat(static_cast<std::uint32_t>(random));
@@ -68,9 +68,9 @@ Vec3f originOf(const PhotonMap& map, float radius) {
 
 IrradianceSites::IrradianceSites(const Scene& scene, const PhotonMap& map, float radius,
                                  const SurfacePatches* patches, float radiusFactor,
-                                 const Focus& focus, float room)
+                                 const Focus& focus, float room, std::uint64_t key)
     : m_estimate(scene, map, radius, patches),
-      m_cells(scene, kCellSize * radius, originOf(map, radius), focus),
+      m_cells(scene, kCellSize * radius, originOf(radius, key), focus),
       m_slotCount(slotsFor(map.size(), radiusFactor, room)),
       m_slots(makeBigZeroedArray<Slot>(m_slotCount)) {}
 
@@ -181,7 +181,7 @@ TwoRadii IrradianceSites::at(const Vec3f& position, const Vec3f& normal) const {
     for (int halvings = 1; halvings <= kMostHalvings; ++halvings)
         if (const auto found = ask(m_cells.at(position, normal, halvings), position, normal))
             return *found;
-    return estimate(position, normal, patternAt(position));
+    return estimate(position, normal, patternAt(position, m_estimate.radius()));
 }
 
 void IrradianceSites::fill(const CancelCheck& cancel) const {

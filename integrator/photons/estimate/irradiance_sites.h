@@ -26,10 +26,11 @@ class IrradianceSites {
     // patches: see SurfaceEstimate. radiusFactor: this pass's radii over the first pass's, by which
     // room is made for more sites, in (0, 1]. focus: where the radius is as given; beyond it
     // estimates are wider. room: the share of the usual room for sites, in (0, 1]; what is not kept
-    // is estimated again when it is asked for, to the same bits.
+    // is estimated again when it is asked for, to the same bits. key: of the seed and the pass,
+    // says where the sites are.
     IrradianceSites(const Scene& scene, const PhotonMap& map, float radius,
                     const SurfacePatches* patches = nullptr, float radiusFactor = 1.0f,
-                    const Focus& focus = {}, float room = 1.0f);
+                    const Focus& focus = {}, float room = 1.0f, std::uint64_t key = 0);
 
     // Irradiance, W m^-2, at a site near the point, on the side of the normal, that the point is
     // seen from; estimated at the point itself where none is.

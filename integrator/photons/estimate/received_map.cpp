@@ -67,7 +67,7 @@ TwoRadii ReceivedMap::radiance(const Place& place, const Value& value,
         std::max(wanted, kWidestDot * place.pixelWidth - kDotSlope * wanted) * m_radiusFactor;
     const Weights weights(*this, place, value, scratch);
     return SurfaceEstimate(m_scene, m_map, radius, weights)
-        .at(place.position, place.normal, patternAt(place.position));
+        .at(place.position, place.normal, patternAt(place.position, radius));
 }
 
 }  // namespace pm

@@ -82,10 +82,14 @@ bool isSeenFrom(const Scene& scene, const Vec3f& apex, const Vec3f& position, co
     return !(distance > 0.0f) || !scene.occluded({apex, way * (1.0f / distance), distance});
 }
 
-std::uint32_t patternAt(const Vec3f& position) {
-    const auto bits = [](float x) { return std::uint64_t{std::bit_cast<std::uint32_t>(x)}; };
+std::uint32_t patternAt(const Vec3f& position, float radius) {
+    // Of the radius. Walls at round coordinates are not to lie where cells meet.
+    constexpr float kCell = 1.0f / 256.0f, kShift = 0.37f;
+    const auto cell = [&](float x) {
+        return std::bit_cast<std::uint32_t>(std::floor(x / (kCell * radius) + kShift));
+    };
     return static_cast<std::uint32_t>(
-        combineBits(bits(position.x) << 32 | bits(position.y), bits(position.z)));
+        combineBits(std::uint64_t{cell(position.x)} << 32 | cell(position.y), cell(position.z)));
 }
 
 SeenArea SurfaceEstimate::lookAt(const View& view, float turns, float radii) const {

@@ -46,8 +46,9 @@ class PhotonWeights {
     NearestPhotons& scratch;  // for queries
 };
 
-// A pattern of rays that depends on the place alone.
-std::uint32_t patternAt(const Vec3f& position);
+// A pattern of rays that depends on the place alone, to 1/256 of the estimate's radius: what
+// rounding makes of a place does not change it.
+std::uint32_t patternAt(const Vec3f& position, float radius);
 
 // Irradiance of a photon map at a point of a surface.
 //

@@ -222,9 +222,9 @@ void PhotonPass::buildIndirect(PassMaps& maps, TracedPhotons descended, Control&
     maps.global = std::make_unique<PhotonMap>(
         traced.photons.intoMap(CancelCheck(control.cancelled), m_scene.coreRadiusIfAny()));
     noteBuilding(maps, maps.global->size());
-    maps.sites = std::make_unique<IrradianceSites>(m_scene, *maps.global, m_globalRadius * factor,
-                                                   patchesOfSites(m_globalRadius), factor, m_focus,
-                                                   m_paging.roomForSites);
+    maps.sites = std::make_unique<IrradianceSites>(
+        m_scene, *maps.global, m_globalRadius * factor, patchesOfSites(m_globalRadius), factor,
+        m_focus, m_paging.roomForSites, combineBits(m_settings.seed, maps.pass));
     if (fillsSites(*maps.global)) maps.sites->fill(CancelCheck(control.cancelled));
     const GatherPoints::Request request{.width = m_settings.width,
                                         .height = m_settings.height,

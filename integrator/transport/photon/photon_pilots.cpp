@@ -73,7 +73,8 @@ void PhotonPass::aim(Control& control) {
 void PhotonPass::chooseGatherRays(const PhotonMap& pilot, const CancelCheck& check) {
     m_raysOfPoint = m_plan.gatherRays;
     if (!m_plan.gatherRaysByPilot) return;
-    const IrradianceSites sites(m_scene, pilot, m_globalRadius, nullptr, 1.0f, m_focus);
+    const IrradianceSites sites(m_scene, pilot, m_globalRadius, nullptr, 1.0f, m_focus, 1.0f,
+                                m_settings.seed);
     std::optional<VirtualLamps> lamps;
     if (m_plan.descent > 0.0f)
         lamps.emplace(m_scene, m_causticRadius->photons(), radiusOfGathered(), nullptr, 1.0f,

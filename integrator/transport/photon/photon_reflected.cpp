@@ -120,7 +120,7 @@ void PhotonPath::addRefocused(const GatherPoints::Place& place, float clearance,
                               const Rgb& reflected, const PhotonBranch& branch) {
     const float probability = std::min(1.0f, share / kLeastRefocused);
     if (!(branch.random.get1D(Purpose::kRefocused) < probability)) return;
-    const std::uint32_t pattern = patternAt(place.position);
+    const std::uint32_t pattern = patternAt(place.position, m_maps.refocused->radius());
     const TwoRadii irradiance =
         m_maps.points ? m_maps.points->refocusedAt(place, clearance, pattern)
                       : m_maps.refocused->at(place.position, place.geometricNormal, pattern);

@@ -24,6 +24,37 @@ double z(const Vec3f& d) {
     return static_cast<double>(d.z);
 }
 
+// What rounding makes of walls along axes and diagonals turns no frame, nor the directions that are
+// sampled in it; and every frame is one, close to where its sign changes too.
+TEST(Warps, FramesDontJumpAtWalls) {
+    constexpr float kRounding = 1e-7f;
+    for (int x = -1; x <= 1; ++x)
+        for (int y = -1; y <= 1; ++y)
+            for (int z = -1; z <= 1; ++z) {
+                if (x == 0 && y == 0 && z == 0) continue;
+                const Vec3f wall(static_cast<float>(x), static_cast<float>(y),
+                                 static_cast<float>(z));
+                const Frame frame(normalize(wall));
+                for (int i = 0; i < 8; ++i) {
+                    const auto off = [&](int bit) {
+                        return (i >> bit & 1) ? kRounding : -kRounding;
+                    };
+                    const Frame moved(normalize(wall + Vec3f(off(0), off(1), off(2))));
+                    EXPECT_LT(length(moved.tangent - frame.tangent), 1e-6f) << x << y << z;
+                    EXPECT_LT(length(moved.bitangent - frame.bitangent), 1e-6f) << x << y << z;
+                }
+            }
+    Random random(4);
+    for (int i = 0; i < 100000; ++i) {
+        const Frame frame(sampleUniformSphere(random.next2D()));
+        EXPECT_NEAR(dot(frame.tangent, frame.normal), 0, 1e-6);
+        EXPECT_NEAR(dot(frame.bitangent, frame.normal), 0, 1e-6);
+        EXPECT_NEAR(dot(frame.tangent, frame.bitangent), 0, 1e-6);
+        EXPECT_NEAR(length(frame.tangent), 1, 1e-6);
+        EXPECT_NEAR(length(frame.bitangent), 1, 1e-6);
+    }
+}
+
 TEST(Warps, CosineHemisphere) {
     Random random(1);
     const auto sample = [&] { return sampleCosineHemisphere(random.next2D()); };
