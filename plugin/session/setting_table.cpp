@@ -148,6 +148,11 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
      "and its textures, as the host knows it. A render is refused where it is above the memory "
      "limit, and the smallest limit that is told is no less.",
      "None."},
+    {Setting::kErrorScale, "errorScale", SettingType::kText, "stops", "auto", 0, 0, 1, "", true,
+     "Errors are judged of values times 2^this, a whole number from -40 to 40: relMSE is the mean "
+     "of (x - r)^2 / (r^2 + 0.01 * 4^-this). auto: the number that brings the log-average "
+     "luminance of a pilot to 0.18, 0 where that is within -3 to 3.",
+     "None; of auto a few milliseconds."},
 }};
 
 static_assert(isInOrderOfIds(kSettings));

@@ -48,6 +48,7 @@ enum class Setting : std::size_t {
     kPhotonPages,
     kScratchFolder,
     kHostPeak,
+    kErrorScale,
     kCount
 };
 inline constexpr std::size_t kSettingCount = static_cast<std::size_t>(Setting::kCount);
