@@ -101,7 +101,8 @@ RayFootprint widened(RayFootprint footprint, const FrameLattice& lattice) {
 }
 
 Cells look(const Scene& scene, const RenderSettings& settings, const CancelCheck& cancel) {
-    const LightSampler lights(scene, cancel);
+    // By power: a choice of many lights takes a tree, and time that a start hasn't got.
+    const LightSampler lights = LightSampler::forPhotons(scene);
     const Camera camera(scene, settings.width, settings.height);
     const PathIntegrator paths(scene, lights);
     const Luminance luminance(scene);
