@@ -60,6 +60,7 @@ TEST_F(ErrorScale, MakesErrorsAndSamplesOfAnyUnitTheSame) {
                   plain.at("counters").at("cameraSamples"));
         EXPECT_EQ(found.at("plan").at("gatherRaysPerPoint"),
                   plain.at("plan").at("gatherRaysPerPoint"));
+        if (stops != -20 && stops != 8) continue;
         const auto without = render("without", {"--error-scale", "0"});
         EXPECT_GT(std::abs(std::log(without.at("relMseEstimate").get<double>() /
                                     plain.at("relMseEstimate").get<double>())),
