@@ -26,7 +26,7 @@ namespace {
 // rays than this were traced: where little is absorbed a single path takes thousands.
 constexpr std::int32_t kSide = 16;
 constexpr std::uint32_t kRounds = 16;
-constexpr std::uint64_t kEnoughRays = 1 << 15;
+constexpr std::uint64_t kEnoughRays = 1 << 14;
 constexpr std::uint64_t kSeed = 0x6572726f72736361ull;
 
 constexpr double kMiddleGrey = 0.18, kMostHighlight = 2, kHighlightShare = 0.02;
