@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "host_shim/cli/frame_options.h"
@@ -44,6 +46,7 @@ int runFrames(const Options& options, Log& log) {
     const std::vector<Options> frames = perFrame(options);
     tellEqualFrames(frames, log);
     int code = 0;
+    std::optional<std::int32_t> scale;
     std::unique_ptr<Rendered> last;
     std::size_t ofLast = 0;
     for (std::size_t i = 0; i < frames.size(); ++i) {
@@ -51,12 +54,13 @@ int runFrames(const Options& options, Log& log) {
         int its = 0;
         if (last && areSameRender(frames[i], frames[ofLast]) &&
             last->session.canWriteAgain(frames[i])) {
-            its = last->session.writeAgain(frames[i], options.frames[ofLast]);
+            its = last->session.writeAgain(ofErrorScale(frames[i], scale), options.frames[ofLast]);
         } else {
             last.reset();  // its memory is for the next
-            last = std::make_unique<Rendered>(frames[i], log);
+            last = std::make_unique<Rendered>(ofErrorScale(frames[i], scale), log);
             ofLast = i;
             its = last->session.run();
+            if (!scale) scale = last->session.errorScale();
         }
         if (interruptSignal() != 0) return its;
         if (code == 0) code = its;

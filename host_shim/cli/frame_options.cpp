@@ -72,6 +72,21 @@ std::vector<Options> perFrame(const Options& options) {
     return frames;
 }
 
+bool tellsErrorScale(const Options& options) {
+    bool tells = false;
+    for (const GivenSetting& given : options.settings)
+        if (given.name == "errorScale") tells = given.value != "auto";
+    return tells;
+}
+
+Options ofErrorScale(Options frame, std::optional<std::int32_t> stops) {
+    if (!stops || !frame.merge.empty() || tellsErrorScale(frame)) return frame;
+    const std::string text = std::to_string(*stops);
+    frame.settings.push_back({"--error-scale", "errorScale", text});
+    frame.commandLine.insert(frame.commandLine.begin(), {"--error-scale", text});
+    return frame;
+}
+
 bool areSameRender(const Options& frame, const Options& other) {
     return frame.scene == other.scene && frame.merge == other.merge &&
            settingsOf(frame) == settingsOf(other);

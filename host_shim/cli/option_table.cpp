@@ -13,7 +13,7 @@
 namespace pm::host {
 namespace {
 
-constexpr std::array<SettingOption, 19> kSettingOptions{{
+constexpr std::array<SettingOption, 20> kSettingOptions{{
     {"--threads", "threads", "N"},
     {"--bucket-size", "bucketSize", "N|auto"},
     {"--bucket-order", "bucketOrder", "NAME"},
@@ -29,6 +29,7 @@ constexpr std::array<SettingOption, 19> kSettingOptions{{
     {"--passes", "passes", "N"},
     {"--time-limit", "timeLimitSeconds", "SECONDS"},
     {"--error-target", "errorTarget", "RELMSE"},
+    {"--error-scale", "errorScale", "STOPS|auto"},
     {"--seed", "seed", "N|frame"},
     {"--memory-limit", "memoryLimitGib", "GIB"},
     {"--photon-pages", "photonPagesMib", "MIB"},

@@ -7,8 +7,10 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 #include <thread>
 
+#include "host_shim/cli/frame_options.h"
 #include "host_shim/cli/option_values.h"
 #include "host_shim/farm/farm_words.h"
 #include "host_shim/farm/instruction_set.h"
@@ -67,6 +69,7 @@ class Planning {
     FarmPlan make(const std::vector<FarmMachine>& machines) {
         m_log.info("a small picture is rendered, to see what costs how much");
         m_pilot = renderFarmPilot(m_frames.front(), pilotWords(), m_bucketSize);
+        findErrorScale();
         FarmPlan plan;
         plan.program = fs::read_symlink("/proc/self/exe");
         plan.folder = fs::current_path();
@@ -98,6 +101,12 @@ class Planning {
         if (const std::string* isa = givenValue(m_farm, "--isa"))
             words.insert(words.end(), {"--isa", *isa});
         return words;
+    }
+    // A shot has its first frame's, as where one machine renders it; what a task finds alone is the
+    // same for all of its picture.
+    void findErrorScale() {
+        if (m_frames.size() < 2 || tellsErrorScale(m_frames.front())) return;
+        m_errorScale = findFarmErrorScale(m_frames.front(), pilotWords());
     }
     void addPhotons(FarmPlan& plan) const {
         if (!m_pilot.hasPhotons || m_farm.photonsEach || !m_frames.front().photonMap.empty())
@@ -157,6 +166,8 @@ class Planning {
                                !m_frames[frame].reference.empty();
         if (m_pilot.measuresExposure && !isDecided)
             task.words.insert(task.words.end(), {"--exposure", "auto"});
+        if (m_errorScale)
+            task.words.insert(task.words.end(), {"--error-scale", std::to_string(*m_errorScale)});
         task.words.insert(task.words.end(),
                           {"--bucket-size", std::to_string(m_bucketSize), "--buckets",
                            fmt::format("{}:{}", run.first, run.last), "-o", task.product.string()});
@@ -184,6 +195,7 @@ class Planning {
     Log& m_log;
     std::int32_t m_bucketSize;
     PilotFindings m_pilot;
+    std::optional<std::int32_t> m_errorScale;  // of a shot that tells none
 };
 
 using Values = std::map<std::string, std::vector<std::string>>;

@@ -73,10 +73,15 @@ void readBucketTimes(const fs::path& file, PilotFindings& findings) {
     }
 }
 
-void readStatistics(const fs::path& file, PilotFindings& findings) {
-    const auto json = parseJsonFile(file, throwIfInterrupted);
+auto statisticsOf(const fs::path& file) {
+    auto json = parseJsonFile(file, throwIfInterrupted);
     if (!json.is_object() || !json.contains("isa"))
         throw HostError(ExitCode::kInternal, "the pilot's statistics can't be read");
+    return json;
+}
+
+void readStatistics(const fs::path& file, PilotFindings& findings) {
+    const auto json = statisticsOf(file);
     findings.isa = json.at("isa").get<std::string>();
     findings.hasPhotons = json.at("plan").value("tracePhotons", false);
     const auto& phases = json.at("phases");
@@ -130,6 +135,16 @@ PilotFindings renderFarmPilot(const Options& options, std::vector<std::string> w
     readBucketTimes(file("times"), findings);
     readStatistics(file("stats"), findings);
     return findings;
+}
+
+std::int32_t findFarmErrorScale(const Options& options, std::vector<std::string> words) {
+    TemporaryFolder folder;
+    const auto file = [&](const char* name) { return (folder.path() / name).string(); };
+    words.insert(words.end(), {"--size", fmt::format("{}x{}", options.width, options.height),
+                               "--crop", "0,0,8,8", "--passes", "1", "--photons", "1000", "--stats",
+                               file("stats"), "-o", file("pilot.exr"), "--progress", "none", "-q"});
+    runPilot(std::move(words), folder.path());
+    return statisticsOf(file("stats")).value("errorScaleStops", 0);
 }
 
 }  // namespace pm::host

@@ -2,6 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -25,5 +26,9 @@ struct PilotFindings {
 // Errors: those of the render, kBadInput where it fails otherwise; Interrupted.
 PilotFindings renderFarmPilot(const Options& options, std::vector<std::string> words,
                               std::int32_t bucketSize);
+
+// The error scale that a render with these words finds, stops: of the frame as large as it is,
+// since to a pixel it hangs on that; of it one bucket is rendered. Errors: as of renderFarmPilot.
+std::int32_t findFarmErrorScale(const Options& options, std::vector<std::string> words);
 
 }  // namespace pm::host

@@ -69,7 +69,25 @@ void checkWindows(const Picture& reference, std::int32_t width, std::int32_t hei
     }
 }
 
-ErrorReport compareRelMse(const Picture& reference, const Picture& picture) {
+double errorOffset(std::int32_t errorScaleStops) {
+    return std::ldexp(0.01, -2 * errorScaleStops);
+}
+
+std::optional<std::int32_t> errorScaleOf(const Picture& picture) {
+    constexpr std::int32_t kMost = 40;
+    const auto found = picture.attributes.find("pm:errorScale");
+    if (found == picture.attributes.end()) return std::nullopt;
+    const auto* const stops = std::get_if<std::int32_t>(&found->second);
+    if (stops == nullptr || *stops < -kMost || *stops > kMost) return std::nullopt;
+    return *stops;
+}
+
+std::string errorScaleText(std::int32_t errorScaleStops) {
+    if (errorScaleStops == 0) return {};
+    return fmt::format(" at an error scale of {} stops", errorScaleStops);
+}
+
+ErrorReport compareRelMse(const Picture& reference, const Picture& picture, double offset) {
     checkWindows(reference, picture.width, picture.height, picture.dataWindow);
     ErrorReport report;
     forEachPair(reference, picture, [&](float r, float x) {
@@ -80,7 +98,7 @@ ErrorReport compareRelMse(const Picture& reference, const Picture& picture) {
     double sum = 0.0;
     forEachPair(reference, picture, [&](float rf, float xf) {
         const double r = rf, x = xf;
-        sum += (x - r) * (x - r) / (r * r + 0.01);
+        sum += (x - r) * (x - r) / (r * r + offset);
     });
     report.relMse = sum / (3.0 * static_cast<double>(picture.dataWindow.area()));
     return report;

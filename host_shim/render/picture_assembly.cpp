@@ -87,6 +87,10 @@ void addStatistics(const PictureSource& source, Picture& picture) {
         if (reason == "error target" || reason == "time limit")
             picture.attributes["pm:passes"] = done->dump();
     }
+    // As a number, by which values are to be compared: of auto what was found.
+    if (const auto scale = json.find("errorScaleStops");
+        scale != json.end() && scale->is_number_integer())
+        picture.attributes["pm:errorScale"] = scale->get<std::int32_t>();
     const auto hashes = json.find("hashes");
     if (hashes == json.end()) return;
     for (const auto& [name, value] : hashes->items())

@@ -109,14 +109,14 @@ DisplayPicture heatMap(const Plane& plane, float least, float most) {
 
 Plane relativeDifference(std::int32_t width, std::int32_t height,
                          const std::array<const float*, 3>& reference,
-                         const std::array<const float*, 3>& picture) {
+                         const std::array<const float*, 3>& picture, double offset) {
     Plane plane{width, height, {}};
     plane.values.resize(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
     for (std::size_t i = 0; i < plane.values.size(); ++i) {
         double sum = 0;
         for (std::size_t c = 0; c < 3; ++c) {
             const double r = reference[c][i], x = picture[c][i];
-            sum += (x - r) * (x - r) / (r * r + 0.01);
+            sum += (x - r) * (x - r) / (r * r + offset);
         }
         plane.values[i] = static_cast<float>(std::sqrt(sum / 3));
     }

@@ -35,10 +35,10 @@ EmbeddedPicture embedded(const DisplayPicture& picture, std::size_t mostBytes);
 DisplayPicture heatMap(const Plane& plane, float least, float most);
 
 // Of each pixel what a picture is off by from a reference, as relMSE counts it: the root of the
-// mean over the channels of (x - r)^2 / (r^2 + 0.01).
+// mean over the channels of (x - r)^2 / (r^2 + offset). offset: errorOffset().
 Plane relativeDifference(std::int32_t width, std::int32_t height,
                          const std::array<const float*, 3>& reference,
-                         const std::array<const float*, 3>& picture);
+                         const std::array<const float*, 3>& picture, double offset = 0.01);
 
 // The value that a share of the finite ones, in [0,1], does not exceed; 0 without any.
 float quantile(const Plane& plane, double share);

@@ -146,6 +146,14 @@ std::string commandHtml(const Json& json) {
     return section("command", "Command", html);
 }
 
+// What x and r are where the picture is far from a middle grey.
+std::string scaledValues(const Json& json) {
+    const double stops = number(json, "errorScaleStops");
+    if (stops == 0) return {};
+    return fmt::format(" of values times 2^{:.0f}, which make it as bright as a middle grey",
+                       stops);
+}
+
 std::string errorHtml(const Json& json) {
     std::vector<Curve> curves{{"noise in it", "#8a8a8a", {}}, {"estimate", "#1f4e9c", {}}};
     for (const Json& point : part(json, "errorCurve")) {
@@ -162,10 +170,11 @@ std::string errorHtml(const Json& json) {
                                  "that were merged carry no times."));
     return section(
         "error", "Error over time",
-        chart +
-            paragraph("relMSE, the picture's mean of (x - r)\u00B2 / (r\u00B2 + "
-                      "0.01), as the render estimated it after its passes. The estimate covers: " +
-                      text(json, "relMseEstimateCovers")));
+        chart + paragraph("relMSE, the picture's mean of (x - r)\u00B2 / (r\u00B2 + "
+                          "0.01)" +
+                          scaledValues(json) +
+                          ", as the render estimated it after its passes. The estimate covers: " +
+                          text(json, "relMseEstimateCovers")));
 }
 
 std::string figuresHtml(const Json& json) {
@@ -256,7 +265,8 @@ std::string Report::layersHtml() const {
         "stderr", "Standard error",
         figureHtml(m_standardError, "standard error",
                    "Noise only, from the spread between passes, over the value: root of the mean "
-                   "over R, G, B of stderr\u00B2 / (value\u00B2 + 0.01); 0 with one pass.") +
+                   "over R, G, B of stderr\u00B2 / (value\u00B2 + offset), as in relMSE; 0 with "
+                   "one pass.") +
             scaleHtml("0", fmt::format("{:.3g} (1 pixel in 100 has more)", m_mostStandardError)));
     return html + section("levels", "Levels of anti-aliasing",
                           figureHtml(m_levels, "levels of anti-aliasing",

@@ -50,6 +50,7 @@ class Report {
 
     BucketTimes m_bucketTimes;
     PixelRect m_window;
+    double m_offset = 0;  // of relMSE's denominator, by the picture's error scale
     EmbeddedPicture m_picture, m_reference, m_difference, m_standardError, m_levels;
     EmbeddedPicture m_bucketSamples;  // only where no bucket was timed
     float m_mostDifference{}, m_mostStandardError{}, m_leastLevel{}, m_mostLevel{};

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "host_shim/colour/display_picture.h"
+#include "host_shim/pictures/compare.h"
 #include "host_shim/session/report.h"
 
 namespace pm::host {
@@ -65,9 +66,9 @@ std::vector<float> layer(const PictureSource& source, const PixelRect& window, c
     return pixels;
 }
 
-// Of relMSE's kind: difference squared over value squared, with the same guard.
-double relative(double difference, double value) {
-    return difference * difference / (value * value + 0.01);
+// Of relMSE's kind: difference squared over value squared, with the same offset.
+double relative(double difference, double value, double offset) {
+    return difference * difference / (value * value + offset);
 }
 
 }  // namespace
@@ -77,6 +78,7 @@ void Report::takePicture(const PictureSource& source, const Picture& picture,
                          const std::array<double, 3>& luminance) {
     m_window = picture.dataWindow;
     m_picture = embedded(makeDisplayPicture(picture, display).picture, kPictureBytes);
+    m_offset = errorOffset(errorScaleOf(picture).value_or(0));
     if (reference != nullptr) takeReference(picture, *reference, display);
     takeStandardError(source, picture);
     takeLevels(source);
@@ -88,8 +90,9 @@ void Report::takeReference(const Picture& picture, const Picture& reference,
                            const DisplayTransform& display) {
     const Picture same = cropped(reference, m_window);
     m_reference = embedded(makeDisplayPicture(same, display).picture, kPictureBytes);
-    const Plane plane =
-        relativeDifference(m_window.width(), m_window.height(), beauty(same), beauty(picture));
+    const auto scale = errorScaleOf(reference);
+    const Plane plane = relativeDifference(m_window.width(), m_window.height(), beauty(same),
+                                           beauty(picture), scale ? errorOffset(*scale) : m_offset);
     m_mostDifference = quantile(plane, kShareOfScale);
     m_difference = embedded(heatMap(plane, 0, m_mostDifference), kDifferenceBytes);
 }
@@ -101,7 +104,8 @@ void Report::takeStandardError(const PictureSource& source, const Picture& pictu
     const auto colours = beauty(picture);
     for (std::size_t i = 0; i < plane.values.size(); ++i) {
         double sum = 0;
-        for (std::size_t c = 0; c < 3; ++c) sum += relative(errors[3 * i + c], colours[c][i]);
+        for (std::size_t c = 0; c < 3; ++c)
+            sum += relative(errors[3 * i + c], colours[c][i], m_offset);
         plane.values[i] = static_cast<float>(std::sqrt(sum / 3));
     }
     m_mostStandardError = quantile(plane, kShareOfScale);

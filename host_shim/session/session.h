@@ -39,6 +39,8 @@ class Session {
     // Writes the files of run() again under a frame's names, with its command line; returns the
     // exit code. ofFrame: the number of the frame that run() was for.
     int writeAgain(const Options& frame, std::int64_t ofFrame);
+    // That the render's errors are of, stops; nothing before it has planned.
+    std::optional<std::int32_t> errorScale() const { return m_statistics.errorScaleStops(); }
     // Of pm_host watch: writes the pictures with the buckets that are there; the others are
     // transparent black, and pm:complete is 0. isShown: the answer is the display picture, for a
     // page; else empty. Errors: as run's, thrown.

@@ -92,8 +92,9 @@ void Session::warnOfClamped(const fs::path& file, const ExrReport& report) {
 std::string Session::errorText() const {
     const auto estimate = m_statistics.estimatedRelMse();
     if (!estimate) return "";
-    return fmt::format(", estimated relMSE {:.2e} (noise and bias, from what passes differ by{})",
-                       *estimate, m_statistics.estimateDoubts());
+    return fmt::format(", estimated relMSE {:.2e}{} (noise and bias, from what passes differ by{})",
+                       *estimate, errorScaleText(m_statistics.errorScaleStops().value_or(0)),
+                       m_statistics.estimateDoubts());
 }
 
 void Session::writeOutputs(const Picture& picture, bool complete,
@@ -134,15 +135,19 @@ void Session::writeOutput(const fs::path& file, const Picture& picture,
 }
 
 int Session::compareWithReference(const Picture& picture) {
-    const ErrorReport report = compareRelMse(*m_reference, picture);
+    // Of two pictures of one scene in unlike units the error is that of the reference's.
+    const std::int32_t scale =
+        errorScaleOf(*m_reference).value_or(m_statistics.errorScaleStops().value_or(0));
+    const ErrorReport report = compareRelMse(*m_reference, picture, errorOffset(scale));
     if (!report.relMse) {
         print("relMSE nan\n");
         warn(Warning::kOutput,
              fmt::format("{} values of the picture and {} of the reference are not finite",
                          report.badInPicture, report.badInReference));
     } else {
-        print(fmt::format("relMSE {}\n", *report.relMse));
+        print(fmt::format("relMSE {}{}\n", *report.relMse, errorScaleText(scale)));
         m_statistics.referenceRelMse = report.relMse;
+        m_statistics.referenceErrorScale = scale;
     }
     return judgeAgainstLimit("relMSE", report.relMse);
 }

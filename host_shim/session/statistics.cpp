@@ -74,6 +74,13 @@ std::optional<double> Statistics::estimatedRelMse() const {
     return found->get<double>();
 }
 
+std::optional<std::int32_t> Statistics::errorScaleStops() const {
+    const Json json = parsed(library);
+    const auto found = json.find("errorScaleStops");
+    if (found == json.end() || !found->is_number_integer()) return std::nullopt;
+    return found->get<std::int32_t>();
+}
+
 std::string Statistics::estimateDoubts() const {
     constexpr int kFewPasses = 4;
     const Json json = parsed(library);
@@ -154,7 +161,10 @@ std::string Statistics::toJson(const Log& log) const {
     mine["phases"]["elapsedSeconds"] = log.elapsedSeconds();
     mine["stopReason"] = stopReason;
     mine["error"] = error;
-    if (referenceRelMse) mine["relMseReference"] = *referenceRelMse;
+    if (referenceRelMse) {
+        mine["relMseReference"] = *referenceRelMse;
+        mine["relMseReferenceErrorScaleStops"] = referenceErrorScale;
+    }
     if (referenceCodes)
         mine["referenceCodes"] = {{"rms", referenceCodes->rms},
                                   {"mean", referenceCodes->mean},

@@ -42,12 +42,15 @@ struct Statistics {
     std::string stopReason{"failed"};
     std::string error;
     std::optional<double> referenceRelMse;
+    std::int32_t referenceErrorScale{};               // stops, of that
     std::optional<DisplayDifference> referenceCodes;  // of a display picture
     std::string library;  // the plugin's own statistics, JSON, empty when there was no render
     int exitCode{1};
 
     // Estimated relMSE of the picture, from the plugin's statistics.
     std::optional<double> estimatedRelMse() const;
+    // That it is of, stops; nothing before the plugin has planned.
+    std::optional<std::int32_t> errorScaleStops() const;
     // How far that is to be trusted, for people; empty where there is nothing to say.
     std::string estimateDoubts() const;
     // Why the library's render ended, in its words; "finished" when it doesn't say.

@@ -54,7 +54,7 @@ class LightSampler {
     // Of many lights in parallel in the calling TBB arena. Throws Error(kCancelled) soon after
     // cancel is set.
     explicit LightSampler(const Scene& scene, const CancelCheck& cancel = {});
-    // For photons alone, aimed or not: takes next to no time.
+    // For photons, aimed or not, and for pilots: by power alone; takes next to no time.
     static LightSampler forPhotons(const Scene& scene);
 
     // More lights than this, those infinitely far not counted, are many.

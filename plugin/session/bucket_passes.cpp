@@ -35,8 +35,8 @@ BucketInfo BucketPasses::info(std::uint32_t cell, const Rect& rect) const {
 void BucketPasses::begin(std::uint32_t cell, const Rect& rect, EventQueue& events) {
     RenderSettings settings = m_frame.settings;
     settings.window = intersect(rect, settings.window);
-    m_shelf.put(m_frame.placeOf[cell],
-                std::make_shared<FrameStore>(makeFrame(settings, m_frame.sharesNoise)));
+    m_shelf.put(m_frame.placeOf[cell], std::make_shared<FrameStore>(makeFrame(
+                                           settings, m_frame.sharesNoise, m_frame.errorScale)));
     events.bucketStarted(info(cell, rect));
 }
 

@@ -37,6 +37,7 @@ class BucketPasses {
         BucketMisses& misses;
         int workers = 1;
         bool sharesNoise = true;  // SampleRule::sharesNoise
+        ErrorScale errorScale{};
     };
     // bucketsHeld: in work or waiting for the host, at most.
     BucketPasses(const Frame& frame, std::uint32_t bucketsHeld);

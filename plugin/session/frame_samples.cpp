@@ -26,13 +26,15 @@ SampleRun samplesFromGroups(const FrameStore::NextSamples& next, std::uint32_t p
 
 }  // namespace
 
-FrameStore makeFrame(const RenderSettings& settings, bool sharesNoise) {
+FrameStore makeFrame(const RenderSettings& settings, bool sharesNoise,
+                     const ErrorScale& errorScale) {
     const ChannelLayout layout = channelLayout(settings);
     std::optional<SampleRule> rule;
     if (settings.isAdaptive())
         rule =
             sampleRule(settings.aaLevel, settings.aaLevelMost, settings.aaThreshold, sharesNoise);
-    return {settings.window, layout.count, layout.beauty, layout.biasProbe, layout.emission, rule};
+    return {settings.window, layout.count, layout.beauty, layout.biasProbe,
+            layout.emission, rule,         errorScale};
 }
 
 std::uint64_t frameMemoryBytes(const RenderSettings& settings) {

@@ -13,8 +13,9 @@
 namespace pm::plugin {
 
 // The empty frame of a render with these settings. sharesNoise: SampleRule::sharesNoise, which the
-// plan knows (tracePhotons). Errors: those of FrameStore.
-FrameStore makeFrame(const RenderSettings& settings, bool sharesNoise);
+// plan knows (tracePhotons), as errorScale. Errors: those of FrameStore.
+FrameStore makeFrame(const RenderSettings& settings, bool sharesNoise,
+                     const ErrorScale& errorScale);
 
 // What it takes, in bytes.
 std::uint64_t frameMemoryBytes(const RenderSettings& settings);

@@ -65,7 +65,8 @@ Merge::Picture::Picture(PieceHead partHead, std::string fileName)
     const RenderSettings render = settings.toRenderSettings();
     checkSize(firstFile, head, render);
     layout = channelLayout(render);
-    frame = std::make_unique<FrameStore>(makeFrame(render, head.sharesNoise));
+    errorScale = render.errorScale.value_or(ErrorScale());
+    frame = std::make_unique<FrameStore>(makeFrame(render, head.sharesNoise, errorScale));
     files.resize(head.bucketCount);
 }
 
@@ -203,7 +204,7 @@ std::string Merge::statisticsJson() const {
     json["error"] = "";
     json["passesDone"] = head.passes;
     json["passesPlanned"] = head.passes;
-    addError(picture().frame->estimateError(), json);
+    addError(picture().frame->estimateError(), picture().errorScale, json);
     json["buckets"] = {{"count", head.bucketCount}, {"sizePixels", picture().bucketSize}};
     json["settings"] = settingsJson(picture().settings);
     return json.dump(2);

@@ -44,6 +44,7 @@ class Merge {
         std::string firstFile;
         SettingValues settings;
         ChannelLayout layout;
+        ErrorScale errorScale;
         std::unique_ptr<FrameStore> frame;
         std::int32_t bucketSize = 0;       // pixels; of the buckets that are there
         std::vector<std::string> notes;    // of the host, in the order in which they came

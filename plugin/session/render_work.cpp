@@ -75,8 +75,8 @@ void RenderWork::orderBuckets(const Identity& sceneIdentity, const SettingValues
     m_order = order.cells(m_grid.columns(), m_grid.rows(), m_settings.seed);
     m_isCorrelated = order.isCorrelated;
     if (!m_memory.byBuckets)
-        m_pieces =
-            std::make_unique<RenderPieces>(values, sceneIdentity, m_grid, m_isCorrelated, m_order);
+        m_pieces = std::make_unique<RenderPieces>(values.with(m_plan.errorScale), sceneIdentity,
+                                                  m_grid, m_isCorrelated, m_order);
     m_orderIndex.resize(m_grid.cellCount());
     for (std::uint32_t i = 0; i < m_order.size(); ++i) m_orderIndex[m_order[i]] = i;
 }
@@ -87,11 +87,12 @@ void RenderWork::makePlaces() {
     if (m_memory.byBuckets) {
         m_buckets = std::make_unique<BucketPasses>(
             BucketPasses::Frame{m_settings, m_grid, m_order, m_orderIndex, *m_bucketMisses,
-                                m_arena.threads(), m_plan.tracePhotons},
+                                m_arena.threads(), m_plan.tracePhotons, m_plan.errorScale},
             m_memory.bucketsHeld);
         return;
     }
-    m_frame = std::make_shared<FrameStore>(makeFrame(m_settings, m_plan.tracePhotons));
+    m_frame =
+        std::make_shared<FrameStore>(makeFrame(m_settings, m_plan.tracePhotons, m_plan.errorScale));
     m_bucketTimes.resize(m_grid.cellCount());
     if (m_isCorrelated && m_scene->groupCache())
         m_bucketNeeds = std::make_unique<BucketNeeds>(m_grid, *m_scene->groupCache());

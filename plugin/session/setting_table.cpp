@@ -152,6 +152,11 @@ constexpr std::array<SettingSpec, kSettingCount> kSettings = {{
      "1: the statistics have, among their hashes, one of each object, material, light and texture "
      "by its name, and of the camera, so that a host can tell what of a scene has changed.",
      "The statistics grow by a line for each."},
+    {Setting::kErrorScale, "errorScale", SettingType::kText, "stops", "auto", 0, 0, 1, "", true,
+     "Errors are judged of values times 2^this, a whole number from -40 to 40: relMSE is the mean "
+     "of (x - r)^2 / (r^2 + 0.01 * 4^-this). auto: the number that brings the log-average "
+     "luminance of a pilot to 0.18, 0 where that is within -3 to 3.",
+     "None; of auto a few milliseconds."},
 }};
 
 static_assert(isInOrderOfIds(kSettings));

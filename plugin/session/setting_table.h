@@ -49,6 +49,7 @@ enum class Setting : std::size_t {
     kScratchFolder,
     kHostPeak,
     kInputHashes,
+    kErrorScale,
     kCount
 };
 inline constexpr std::size_t kSettingCount = static_cast<std::size_t>(Setting::kCount);

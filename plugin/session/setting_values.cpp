@@ -20,6 +20,7 @@ namespace {
 
 // Crops may exceed the frame, but not by more than this on each side.
 constexpr std::int32_t kMaxOverscanPixels = 65536;
+constexpr std::string_view kAutoErrorScale = "auto";
 
 const SettingSpec& specOf(std::string_view name) {
     const SettingSpec* spec = findSetting(name);
@@ -92,17 +93,28 @@ std::string checkedLayers(std::string_view value) {
     return std::string(value);
 }
 
-std::string checkedFreeText(const SettingSpec& spec, std::string_view value) {
-    if (spec.id == Setting::kLayers) return checkedLayers(value);
-    if (spec.id == Setting::kCrop) parseCrop(value);
-    if (spec.id == Setting::kBuckets) checkBucketRange(value);
-    return std::string(value);
-}
-
 template <typename Number>
 bool parse(std::string_view text, Number& value) {
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     return error == std::errc() && end == text.data() + text.size();
+}
+
+std::string checkedErrorScale(const SettingSpec& spec, std::string_view value) {
+    std::int32_t stops = 0;
+    if (value == kAutoErrorScale ||
+        (parse(value, stops) && std::abs(stops) <= ErrorScale::kMostStops))
+        return value == kAutoErrorScale ? std::string(value) : fmt::format("{}", stops);
+    throw argumentError(
+        fmt::format("setting {} is '{}'; it must be {}, or whole stops from {} to {}", spec.name,
+                    value, kAutoErrorScale, -ErrorScale::kMostStops, ErrorScale::kMostStops));
+}
+
+std::string checkedFreeText(const SettingSpec& spec, std::string_view value) {
+    if (spec.id == Setting::kLayers) return checkedLayers(value);
+    if (spec.id == Setting::kCrop) parseCrop(value);
+    if (spec.id == Setting::kBuckets) checkBucketRange(value);
+    if (spec.id == Setting::kErrorScale) return checkedErrorScale(spec, value);
+    return std::string(value);
 }
 
 }  // namespace
@@ -131,6 +143,12 @@ std::optional<Rect> parseCrop(std::string_view text) {
     return crop;
 }
 
+SettingValues SettingValues::with(const ErrorScale& found) const {
+    SettingValues values = *this;
+    values.setInteger("errorScale", found.stops());
+    return values;
+}
+
 SettingValues::SettingValues() {
     for (const SettingSpec& spec : settingSpecs()) setText(spec.name, spec.defaultText);
     m_passesAreSet = false;
@@ -142,6 +160,8 @@ void SettingValues::setInteger(std::string_view name, std::int64_t value) {
         at(spec.id) = checkedInteger(spec, value);
     else if (spec.type == SettingType::kNumber)
         at(spec.id) = checkedNumber(spec, static_cast<double>(value));
+    else if (spec.id == Setting::kErrorScale)
+        at(spec.id) = checkedErrorScale(spec, fmt::format("{}", value));
     else
         throw refuse(spec, fmt::format("given as the number {}", value));
 }
@@ -246,6 +266,9 @@ RenderSettings SettingValues::toRenderSettings() const {
     settings.aaThreshold = number(Setting::kAaThreshold);
     settings.filter =
         word(Setting::kFilter) == "gaussian" ? PixelFilter::kGaussian : PixelFilter::kBox;
+    std::int32_t stops = 0;
+    if (parse(std::string_view(word(Setting::kErrorScale)), stops))
+        settings.errorScale = ErrorScale(stops);
     settings.seed = static_cast<std::uint64_t>(integer(Setting::kSeed));
     settings.wantAlbedo = wantsLayer("albedo");
     settings.wantNormal = wantsLayer("N");

@@ -47,6 +47,8 @@ class SettingValues {
     // Passes at most: the most there can be where limitsPasses() is false.
     std::uint32_t passLimit() const;
     RenderSettings toRenderSettings() const;
+    // The same with the error scale that the plan found: what a render's pieces and hash are of.
+    SettingValues with(const ErrorScale& found) const;
 
   private:
     using Value = std::variant<std::int64_t, double, std::string>;

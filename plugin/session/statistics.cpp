@@ -161,7 +161,7 @@ void addPasses(const RenderWork& work, const RenderWork::Progress& progress, Jso
     json["delivery"] = work.memory().byBuckets ? "buckets" : "frame";
     // Of a torn picture it would be that of its finished buckets alone.
     const bool isTorn = work.memory().byBuckets && progress.passesDone == 0;
-    addError(isTorn ? std::nullopt : work.estimateError(), json);
+    addError(isTorn ? std::nullopt : work.estimateError(), work.plan().errorScale, json);
     json["errorCurve"] = curveJson(progress.curve);
 }
 
@@ -189,8 +189,9 @@ std::string Render::statisticsJson() const {
     Json json;
     json["schema"] = "pm-stats/1";
     json["versions"] = versionsJson();
-    json["hashes"] = {{"scene", identityHash(m_scene->identity)},
-                      {"settings", identityHash(settingsIdentity(settings()))}};
+    json["hashes"] = {
+        {"scene", identityHash(m_scene->identity)},
+        {"settings", identityHash(settingsIdentity(settings().with(running->plan().errorScale)))}};
     if (settings().integer(Setting::kInputHashes) != 0)
         for (const IdentityPart& part :
              sceneInputs(*m_scene->scene, *m_scene->textures, m_scene->tables))

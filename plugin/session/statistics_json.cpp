@@ -43,7 +43,7 @@ Json cacheJson(const CacheCounts& counts, std::uint64_t budget, const char* made
             {"missesOf", missesOfJson(counts.missesOf)}};
 }
 
-void addError(const std::optional<FrameError>& error, Json& json) {
+void addError(const std::optional<FrameError>& error, const ErrorScale& scale, Json& json) {
     const auto put = [&](const char* key, auto figure) {
         json[key] = error ? Json(figure(*error)) : Json(nullptr);
     };
@@ -62,6 +62,7 @@ void addError(const std::optional<FrameError>& error, Json& json) {
         [](const FrameError& e) { return Json(e.unresolvedShare); });
     put("relMseEstimateIsLowerBound", [](const FrameError& e) { return Json(e.isLowerBound()); });
     json["relMseEstimateCovers"] = kEstimateCovers;
+    json["errorScaleStops"] = scale.stops();
 }
 
 }  // namespace pm::plugin

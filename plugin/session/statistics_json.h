@@ -8,6 +8,7 @@
 #include <optional>
 
 #include "integrator/caches/bounded_cache.h"
+#include "integrator/values/error_scale.h"
 #include "plugin/session/setting_values.h"
 #include "plugin/values/json.h"
 #include "scheduler/film/frame_error.h"
@@ -22,7 +23,8 @@ Json missesOfJson(const std::array<std::uint64_t, kCacheUsers>& misses);
 // budget: bytes. made: the name of what it made or read, in bytes.
 Json cacheJson(const CacheCounts& counts, std::uint64_t budget, const char* made);
 
-// Adds the estimates of the error; with one pass nothing is known of it.
-void addError(const std::optional<FrameError>& error, Json& json);
+// Adds the estimates of the error, and the scale that they are of; with one pass nothing is known
+// of them.
+void addError(const std::optional<FrameError>& error, const ErrorScale& scale, Json& json);
 
 }  // namespace pm::plugin

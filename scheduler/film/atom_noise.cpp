@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "scheduler/film/frame_error.h"
-
 namespace pm {
 namespace {
 
@@ -53,23 +51,24 @@ std::size_t colourOf(std::size_t pixel) {
 
 }  // namespace
 
-double relativeVariance(const SeenSamples& seen) {
+double relativeVariance(const SeenSamples& seen, double offset) {
     if (!(seen.samples > 1)) return 0;
     const double share = 1 / seen.samples;
     double ofMean = 0;
     for (const double sum : seen.sums) ofMean += (sum * share) * (sum * share);
     const double apart = std::max(0.0, seen.square * share - ofMean);
-    return apart / ((1 - share) * (ofMean + 3 * kRelMseOffset));
+    return apart / ((1 - share) * (ofMean + 3 * offset));
 }
 
-AtomNoise::AtomNoise(std::span<const SeenSamples, kAtomPixels> seen) : m_seen(seen) {
+AtomNoise::AtomNoise(std::span<const SeenSamples, kAtomPixels> seen, const ErrorScale& scale)
+    : m_seen(seen), m_offset(scale.offset()) {
     for (std::size_t i = 0; i < kAtomPixels; ++i) {
-        m_scales[i] = 3 * kRelMseOffset;
+        m_scales[i] = 3 * m_offset;
         for (std::size_t c = 0; c < 3; ++c) {
             m_means[i][c] = seen[i].sums[c] / seen[i].samples;
             m_scales[i] += m_means[i][c] * m_means[i][c];
         }
-        m_ofOwn[i] = m_variance[i] = relativeVariance(seen[i]);
+        m_ofOwn[i] = m_variance[i] = relativeVariance(seen[i], m_offset);
     }
     for (std::size_t i = 0; i < kAtomPixels; ++i) {
         for (Together* const to : {&m_all, &m_ofColour[colourOf(i)]}) {
@@ -79,7 +78,7 @@ AtomNoise::AtomNoise(std::span<const SeenSamples, kAtomPixels> seen) : m_seen(se
         if (seen[i].samples > 1) continue;
         SeenSamples about;
         visitAround(i, [&](std::size_t at) { addTo(about, seen[at]); });
-        m_variance[i] = relativeVariance(about);
+        m_variance[i] = relativeVariance(about, m_offset);
     }
     for (Together* const together : {&m_all, &m_ofColour[0], &m_ofColour[1]}) together->finish();
     m_ofEdges = varianceOfEdges();
@@ -111,7 +110,7 @@ double AtomNoise::around(std::size_t pixel, bool withIt) const {
         sum += variances[at];
         ++count;
     });
-    return (sum / count + relativeVariance(together)) / 2;
+    return (sum / count + relativeVariance(together, m_offset)) / 2;
 }
 
 // The square of how much the pixel's mean differs from the middle of two others on either side,

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <span>
 
+#include "integrator/values/error_scale.h"
 #include "scheduler/buckets/bucket_grid.h"
 
 namespace pm {
@@ -21,15 +22,15 @@ struct SeenSamples {
     double ofPasses = 0;
 };
 
-// Relative variance of samples taken together: over r^2 + 0.01, r their mean, the mean of the
-// channels; 0 of fewer than two.
-double relativeVariance(const SeenSamples& seen);
+// Relative variance of samples taken together: over r^2 + offset, r their mean, the mean of the
+// channels; 0 of fewer than two. offset: of an ErrorScale.
+double relativeVariance(const SeenSamples& seen, double offset);
 
 // What the seen samples of an atom's 8 x 8 pixels, row by row, lead to expect of the relative
 // variance of each pixel's samples.
 class AtomNoise {
   public:
-    explicit AtomNoise(std::span<const SeenSamples, kAtomPixels> seen);
+    AtomNoise(std::span<const SeenSamples, kAtomPixels> seen, const ErrorScale& scale);
 
     // By the pixel's own samples and by its neighbours, which count as so many of its own; of a
     // pixel with an edge also by what the atom's edges have shown, and are taken for before.
@@ -90,8 +91,9 @@ class AtomNoise {
     double missed(std::size_t pixel) const;            // relative variance
 
     std::span<const SeenSamples, kAtomPixels> m_seen;
+    double m_offset;  // of relMSE's denominator
     std::array<std::array<double, 3>, kAtomPixels> m_means{};
-    Values m_scales{};    // sum over the channels of r^2 + 0.01
+    Values m_scales{};    // sum over the channels of r^2 + offset
     Values m_ofOwn{};     // variances of the pixels' samples
     Values m_variance{};  // the same, or of what is around where one sample has no spread
     Together m_all;

@@ -15,11 +15,8 @@
 
 namespace pm {
 
-// The offset of relMSE's denominator.
-inline constexpr double kRelMseOffset = 0.01;
-
 // How far a frame is from the truth, as relMSE (mean over pixels and channels of
-// (x - r)^2 / (r^2 + 0.01)), told without a reference.
+// (x - r)^2 / (r^2 + offset), the offset of an ErrorScale), told without a reference.
 //
 // What it rests on: the passes fall into two halves, even and odd ones, that share no random
 // number. What the halves of a pixel differ by is noise, whatever the samples within a half share
@@ -29,7 +26,7 @@ inline constexpr double kRelMseOffset = 0.01;
 //   bias:  each half's mean d of the probe, the same picture with radii narrowed by sqrt(2) minus
 //          the picture. E[d_even d_odd] is its square, free of noise; bias squared is so many times
 //          as much (kBiasPerProbe, frame_store_error.cpp).
-// Both are divided by m^2 + 0.01, m a stand-in for the reference out of the pixel's mean and its
+// Both are divided by m^2 + offset, m a stand-in for the reference out of the pixel's mean and its
 // neighbours' (see standIn). Where a pixel sees a lamp neither will do (see SeldomLight).
 //
 // What it does not see: light that no pass has found yet; bias that narrowing by sqrt(2) doesn't
@@ -111,7 +108,7 @@ struct Neighbours {
 // A pixel that few samples saw a lamp from: at its rim, in a mirror or through glass. Its own mean
 // is the worse a guess the larger the error is: had the lamp's true share of the pixel been a tenth
 // of what came up by chance, the relative error would be a hundredfold of what the mean makes of
-// it. So the mean of 1 / (r^2 + 0.01) over what r may be. How many samples saw the lamp is told
+// it. So the mean of 1 / (r^2 + offset) over what r may be. How many samples saw the lamp is told
 // from the noise, (mean / its standard error)^2 as of a Poisson count; where any share of the pixel
 // was as likely as another, the count to be expected has the Gamma distribution of shape one more.
 class SeldomLight {

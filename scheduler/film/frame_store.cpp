@@ -80,19 +80,21 @@ void checkOptional(const char* name, std::int32_t first, std::int32_t channels) 
 
 FrameStore::FrameStore(const Rect& window, std::int32_t channels, std::int32_t beautyFirst,
                        std::int32_t biasProbeFirst, std::int32_t emissionFirst,
-                       const std::optional<SampleRule>& rule)
+                       const std::optional<SampleRule>& rule, const ErrorScale& errorScale)
     : m_window(window),
       m_area(wholeAtoms(window)),
       m_channels(channels - ruleChannels(rule.has_value(), rule && rule->groups)),
       m_beautyFirst(beautyFirst),
       m_biasProbeFirst(biasProbeFirst),
       m_emissionFirst(emissionFirst),
-      m_rule(rule) {
+      m_rule(rule),
+      m_errorScale(errorScale) {
     checkNotEmpty(window);
     checkChannels(m_channels, beautyFirst);
     checkOptional("bias probe", biasProbeFirst, m_channels);
     checkOptional("emission", emissionFirst, m_channels);
     if (rule) checkSampleRule(*rule);
+    if (m_rule) m_rule->errorScale = errorScale;
     try {
         allocate();
     } catch (const std::exception&) {  // bad_alloc, or length_error for sizes beyond any memory

@@ -12,6 +12,7 @@
 #include <span>
 #include <vector>
 
+#include "integrator/values/error_scale.h"
 #include "integrator/values/rect.h"
 #include "scheduler/film/frame_error.h"
 #include "scheduler/film/sample_allotment.h"
@@ -65,10 +66,12 @@ class FrameStore {
     // sees, -1 where that is not told apart. rule: of adaptive renders; there the last 6 channels
     // of a pass are its SeenSamples up to `edges`, added up by halves, which can't be read; with
     // groups one more follows, the contribution: any number from 0 on that is alike where samples
-    // show the same. Errors: kInvalidArgument outside of that; kOutOfMemory.
+    // show the same. errorScale: of errors, and of the rule in place of its own. Errors:
+    // kInvalidArgument outside of that; kOutOfMemory.
     FrameStore(const Rect& window, std::int32_t channels, std::int32_t beautyFirst,
                std::int32_t biasProbeFirst = -1, std::int32_t emissionFirst = -1,
-               const std::optional<SampleRule>& rule = std::nullopt);
+               const std::optional<SampleRule>& rule = std::nullopt,
+               const ErrorScale& errorScale = {});
 
     const Rect& window() const { return m_window; }
     std::int32_t channels() const { return m_channels; }
@@ -193,6 +196,7 @@ class FrameStore {
     std::int32_t m_biasProbeFirst{};
     std::int32_t m_emissionFirst{};
     std::optional<SampleRule> m_rule;
+    ErrorScale m_errorScale;
 
     ZeroedVector<double> m_sums;           // sum w_k x_k, for each pixel and channel
     ZeroedVector<double> m_weights;        // W, for each pixel

@@ -53,13 +53,14 @@ struct PixelMeans {
 };
 
 // 1 / (r^2 + offset) of a pixel's channels, r what stands for the reference.
-Channels inverseSquares(const PixelMeans& pixel, std::size_t column, const NeighbourRows& rows) {
+Channels inverseSquares(const PixelMeans& pixel, std::size_t column, const NeighbourRows& rows,
+                        double offset) {
     double lampSquare = 0, variance = 0;
     Channels inverses{};
     for (std::size_t i = 0; i < inverses.size(); ++i) {
         const double like = standIn(pixel.beauty[i], pixel.passes[i], rows.around(column, i));
         const double reference = std::max(like, kBelievedEmission * pixel.lamps[i]);
-        inverses[i] = 1 / (reference * reference + kRelMseOffset);
+        inverses[i] = 1 / (reference * reference + offset);
         lampSquare += pixel.lamps[i] * pixel.lamps[i];
         variance += pixel.halves[i];
     }
@@ -69,8 +70,7 @@ Channels inverseSquares(const PixelMeans& pixel, std::size_t column, const Neigh
     const SeldomLight seldom(lampSquare, variance);
     for (std::size_t i = 0; i < inverses.size(); ++i) {
         const double rest = std::max(0.0, pixel.beauty[i] - pixel.lamps[i]);
-        inverses[i] =
-            std::max(inverses[i], seldom.meanInverse(pixel.lamps[i], rest, kRelMseOffset));
+        inverses[i] = std::max(inverses[i], seldom.meanInverse(pixel.lamps[i], rest, offset));
     }
     return inverses;
 }
@@ -115,8 +115,9 @@ void FrameStore::visitError(std::int32_t x, std::int32_t y, const NeighbourRows&
         means.halves[to] = apart * apart * share * (1 - share);
         means.passes[to] = varianceOfMean(pixel, i);
     }
+    const double offset = m_errorScale.offset();
     const Channels inverses =
-        inverseSquares(means, static_cast<std::size_t>(x - m_window.x0), rows);
+        inverseSquares(means, static_cast<std::size_t>(x - m_window.x0), rows, offset);
     PixelError error;
     double change = 0, light = 0;
     for (std::int32_t i = 0; i < kBeautyChannels; ++i) {
@@ -128,7 +129,7 @@ void FrameStore::visitError(std::int32_t x, std::int32_t y, const NeighbourRows&
         error.bias += kBiasPerProbe * square * inverse;
         const double own = means.beauty[to] - means.lamps[to];
         change += square;
-        light += own * own + kRelMseOffset;
+        light += own * own + offset;
     }
     error.isUnresolved = change > kUnresolvedChange * kUnresolvedChange * light;
     visit(x, y, error);

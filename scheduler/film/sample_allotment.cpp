@@ -102,7 +102,8 @@ bool isDivided(const SampleRule& rule, const SeenSamples& even, const SeenSample
     for (std::size_t c = 0; c < 3; ++c) both.sums[c] += odd.sums[c];
     both.square += odd.square;
     // Also where it is not a number.
-    return !(std::sqrt(relativeVariance(both)) <= kSamplesThatDivide * rule.threshold);
+    return !(std::sqrt(relativeVariance(both, rule.errorScale.offset())) <=
+             kSamplesThatDivide * rule.threshold);
 }
 
 bool allotsAfter(const SampleRule& rule, std::uint32_t passes) {
@@ -139,7 +140,7 @@ double madeUp(const SampleRule& rule, std::uint32_t pass, double had, double all
 void allotSamples(const SampleRule& rule, std::uint32_t passes,
                   std::span<const SeenSamples, kAtomPixels> seen, std::span<std::uint16_t> samples,
                   std::span<std::uint16_t> weights) {
-    const AtomNoise noise(seen);
+    const AtomNoise noise(seen, rule.errorScale);
     const double shared = rule.isAlone() ? 0 : std::sqrt(noise.shared(rule.least));
     for (std::size_t i = 0; i < kAtomPixels; ++i) {
         if (!rule.isAlone()) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "integrator/values/error_scale.h"
 #include "scheduler/film/atom_noise.h"
 
 namespace pm {
@@ -28,10 +29,10 @@ namespace pm {
 // the third pass on, where samples have met an edge, it does so from a spread of 0.25 on: beside
 // edges such light is common.
 //
-// Relative means: to sqrt(r^2 + 0.01), r the mean, as in relMSE. The first passes show little:
-// after two passes the threshold is halved, after four divided by sqrt(8). Samples are rounded to a
-// power of two: low-discrepancy sequences are at their best there, and a pixel that needs no more
-// samples than another is not to have some more.
+// Relative means: to sqrt(r^2 + offset), r the mean, as in relMSE (ErrorScale). The first passes
+// show little: after two passes the threshold is halved, after four divided by sqrt(8). Samples are
+// rounded to a power of two: low-discrepancy sequences are at their best there, and a pixel that
+// needs no more samples than another is not to have some more.
 //
 // Where passes differ by more than their samples explain, by photons, more samples of a pass don't
 // help. With r^2 the relative variance of that, t the time of a pass without samples, u that of one
@@ -69,6 +70,7 @@ struct SampleRule {
     bool groups = false;
     // The samples of a pass share noise.
     bool sharesNoise = true;
+    ErrorScale errorScale{};  // of what spreads are relative to
 
     // Pixels have samples of their own in each pass, which share no noise.
     bool isAlone() const { return !sharesNoise && least > 0; }

@@ -47,7 +47,7 @@ TEST(Settings, EnumerationIsWhole) {
           "gatherRays",  "passes",           "seed",         "layers",      "memoryLimitGib",
           "errorTarget", "timeLimitSeconds", "plan",         "buckets",     "part",
           "checkpoint",  "resume",           "hostIdentity", "aaLevelMost", "aaThreshold",
-          "filter",      "hostNote"})
+          "filter",      "hostNote",         "errorScale"})
         EXPECT_EQ(1u, names.count(name)) << name;
     EXPECT_EQ(PMR_OK, api().destroyRender(render));
 }
@@ -93,6 +93,24 @@ TEST(Settings, NumbersAndIntegers) {
     EXPECT_EQ(PMR_ERROR_ARGUMENT, api().setSettingInteger(render, "integrator", 1));
     EXPECT_EQ(PMR_OK, api().setSettingInteger(render, "seed", INT64_MAX));
     EXPECT_EQ("9223372036854775807", get(render, "seed"));
+    EXPECT_EQ(PMR_OK, api().destroyRender(render));
+}
+
+// Whole stops by number or text, or auto.
+TEST(Settings, ErrorScale) {
+    const BoxHost host;
+    const PmrRender render = host.makeRender({});
+    EXPECT_EQ("auto", get(render, "errorScale"));
+    EXPECT_EQ(PMR_OK, api().setSettingInteger(render, "errorScale", -13));
+    EXPECT_EQ("-13", get(render, "errorScale"));
+    EXPECT_EQ(PMR_OK, api().setSettingText(render, "errorScale", "40"));
+    for (const char* text : {"41", "-41", "1.5", "", "Auto", " 3", "+3"})
+        EXPECT_EQ(PMR_ERROR_ARGUMENT, api().setSettingText(render, "errorScale", text)) << text;
+    EXPECT_EQ(PMR_ERROR_ARGUMENT, api().setSettingInteger(render, "errorScale", 41));
+    EXPECT_EQ("setting errorScale is '41'; it must be auto, or whole stops from -40 to 40",
+              host.lastError());
+    EXPECT_EQ("40", get(render, "errorScale"));
+    EXPECT_EQ(PMR_OK, api().setSettingText(render, "errorScale", "auto"));
     EXPECT_EQ(PMR_OK, api().destroyRender(render));
 }
 

@@ -2,7 +2,9 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/pictures/compare.h"
 
+#include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "tests/colour/scratch.h"
 #include "tests/colour/test_pictures.h"
@@ -79,6 +81,30 @@ TEST(RelMse, UnlikePicturesAreRefused) {
         refusesWith(refusal([&] { compareRelMse(grey, picture); }), 3, {"reference", "channel G"}));
     EXPECT_TRUE(
         refusesWith(refusal([&] { compareRelMse(picture, grey); }), 3, {"picture", "channel G"}));
+}
+
+// Of the unit of the pictures: 2^-13 of both at a scale of 13 stops.
+TEST(RelMse, errorScaleIsOfTheUnit) {
+    const float dim = 1.0f / 8192;
+    const auto relMse = [&](float factor, std::int32_t scale) {
+        return *compareRelMse(constantPicture(0.5f * factor), constantPicture(0.6f * factor),
+                              errorOffset(scale))
+                    .relMse;
+    };
+    EXPECT_NEAR(relMse(dim, 13), relMse(1.0f, 0), 1e-9);
+    EXPECT_LT(relMse(dim, 0), 1e-6);
+    auto picture = constantPicture(0.5f);
+    EXPECT_EQ(errorScaleOf(picture), std::nullopt);
+    picture.attributes["pm:errorScale"] = std::string("13");
+    EXPECT_EQ(errorScaleOf(picture), std::nullopt);
+    for (const std::int32_t out : {-41, 41}) {
+        picture.attributes["pm:errorScale"] = out;
+        EXPECT_EQ(errorScaleOf(picture), std::nullopt);
+    }
+    picture.attributes["pm:errorScale"] = std::int32_t{-7};
+    EXPECT_EQ(errorScaleOf(picture), -7);
+    EXPECT_EQ(errorScaleText(0), "");
+    EXPECT_EQ(errorScaleText(-7), " at an error scale of -7 stops");
 }
 
 }  // namespace

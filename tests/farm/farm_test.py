@@ -222,6 +222,25 @@ class Farms(unittest.TestCase):
             self.assertEqual(read(f"l.{frame}.exr"), read(f"f.{frame}.exr"))
         self.assertFalse((self.folder / "l.0002.exr").exists())
 
+    # That of its first frame, of which a single task finds the same as a whole render.
+    @needs_parallel
+    def test_a_shot_is_of_one_error_scale(self):
+        materials = (SCENE.parent / "cornell_box.mtl").read_text()
+        for frame, factor in ((1, 1e-3), (2, 1e-1)):
+            light = f"Ke {17 * factor} {12 * factor} {4 * factor}"
+            (self.folder / f"s.{frame}.mtl").write_text(materials.replace("Ke 17 12 4", light))
+            scene = SCENE.read_text().replace("cornell_box.mtl", f"s.{frame}.mtl")
+            (self.folder / f"s.000{frame}.obj").write_text(scene)
+        words = ("s.####.obj", *OPTIONS, "--frames", "1-2", "-q")
+        self.host(*words, "-o", "l.####.exr", "--stats", "l.####.json")
+        scales = [json.loads((self.folder / f"l.000{frame}.json").read_text())["errorScaleStops"] for frame in (1, 2)]
+        self.assertEqual(scales[0], scales[1])
+        self.assertGreater(scales[0], 8)
+        self.host("farm", *words, "-o", "f.%04d.exr", "--engine", "parallel", "--job", "j", "--runs", "2")
+        for frame in ("0001", "0002"):
+            read = lambda name: (self.folder / name).read_bytes()
+            self.assertEqual(read(f"l.{frame}.exr"), read(f"f.{frame}.exr"))
+
     def test_frames_that_fail_do_not_end_the_others(self):
         shutil.copy(SCENE, self.folder / "s.0002.obj")
         shutil.copy(SCENE.parent / "cornell_box.mtl", self.folder)

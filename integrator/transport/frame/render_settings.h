@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "integrator/sampling/pixel_filter.h"
+#include "integrator/values/error_scale.h"
 #include "integrator/values/rect.h"
 
 namespace pm {
@@ -32,6 +34,7 @@ struct RenderSettings {
     std::uint32_t aaLevel = 3;
     std::uint32_t aaLevelMost = 0;  // as well, at most, where they differ; 0 = aaLevel, everywhere
     double aaThreshold = 0.01;      // SampleRule::threshold, > 0
+    std::optional<ErrorScale> errorScale;  // else the plan finds it
     std::uint64_t seed = 1;
     bool wantAlbedo = false;
     bool wantNormal = false;

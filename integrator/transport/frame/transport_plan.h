@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "integrator/transport/frame/render_settings.h"
+#include "integrator/values/error_scale.h"
 #include "integrator/values/notice.h"
 
 namespace pm {
@@ -32,6 +33,7 @@ struct Plan {
     bool gatherRaysByPilot = false;
     // Lamp samples of a camera sample, see PhotonIntegrator; 0: a pilot finds how many pay.
     std::uint32_t lampSamples = 0;
+    ErrorScale errorScale;         // of all that weighs noise against brightness
     std::uint64_t mapBytes = 0;    // estimated peak of the maps of a pass at a time
     std::uint64_t patchBytes = 0;  // of that the patches of surfaces, kept for all passes
     // Landings that are stored, expected of a photon: of a global one; of a caustic one in the

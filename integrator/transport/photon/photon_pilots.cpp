@@ -81,12 +81,13 @@ void PhotonPass::chooseGatherRays(const PhotonMap& pilot, const CancelCheck& che
                       m_settings.seed, check);
     const GatherEnds ends{sites, lamps ? &*lamps : nullptr, m_plan.gatherRays, &m_lights};
     m_raysOfPoint = gatherRaysFor(
-        gatherSpread(m_scene, m_camera, m_lights, ends, m_settings, check), m_plan.gatherRays);
+        gatherSpread(m_scene, m_camera, m_lights, ends, m_settings, m_plan.errorScale, check),
+        m_plan.gatherRays);
     const bool always = m_settings.plan == PlanKind::kEverything;
     if (m_raysOfPoint <= m_plan.gatherRays && !always) return;
     auto guide = std::make_unique<GatherGuide>(pilot, m_globalRadius);
-    const auto [byCosine, byGuide] =
-        gatherRivals(m_scene, m_camera, m_lights, ends, *guide, m_settings, check);
+    const auto [byCosine, byGuide] = gatherRivals(m_scene, m_camera, m_lights, ends, *guide,
+                                                  m_settings, m_plan.errorScale, check);
     if (byGuide < kGuidePays * byCosine || always) m_guide = std::move(guide);
 }
 

@@ -17,6 +17,7 @@
 #include "integrator/transport/plan/plan_memory.h"
 #include "integrator/transport/plan/plan_time.h"
 #include "integrator/transport/survey/caustic_reach.h"
+#include "integrator/transport/survey/error_scale_pilot.h"
 #include "integrator/transport/survey/lamp_samples.h"
 #include "integrator/transport/survey/landing_pilot.h"
 
@@ -291,10 +292,23 @@ void planMaps(const Scene& scene, const RenderSettings& settings, const SceneTra
     if (plan.causticMap) explainReceivedMap(traits, plan);
 }
 
-}  // namespace
+void planErrorScale(const Scene& scene, const RenderSettings& settings,
+                    const std::atomic<bool>& cancelled, Plan& plan) {
+    const bool isTold = settings.errorScale.has_value();
+    if (isTold)
+        plan.errorScale = *settings.errorScale;
+    else if (scene.description().camera)
+        plan.errorScale = findErrorScale(scene, settings, CancelCheck(cancelled));
+    plan.reasons.push_back(fmt::format(
+        "error scale: {} stops, {}; errors are of values times 2^{}", plan.errorScale.stops(),
+        isTold                         ? "as asked for"
+        : plan.errorScale.stops() == 0 ? "as the picture is about as bright as a middle grey"
+                                       : "which make the picture as bright as a middle grey",
+        plan.errorScale.stops()));
+}
 
-Plan makePlan(const Scene& scene, const RenderSettings& settings,
-              const std::atomic<bool>& cancelled) {
+Plan planLight(const Scene& scene, const RenderSettings& settings,
+               const std::atomic<bool>& cancelled) {
     Plan plan;
     const SceneTraits traits = findTraits(scene);
     const bool isPath = settings.integrator != IntegratorKind::kPhoton;
@@ -327,6 +341,15 @@ Plan makePlan(const Scene& scene, const RenderSettings& settings,
     planMaps(scene, settings, traits, everything, cancelled, plan);
     expectLandings(scene, settings, cancelled, plan);
     estimateCosts(scene, settings, plan);
+    return plan;
+}
+
+}  // namespace
+
+Plan makePlan(const Scene& scene, const RenderSettings& settings,
+              const std::atomic<bool>& cancelled) {
+    Plan plan = planLight(scene, settings, cancelled);
+    planErrorScale(scene, settings, cancelled, plan);
     return plan;
 }
 

@@ -23,8 +23,6 @@ namespace {
 constexpr std::size_t kColumns = 24, kRows = 24;
 constexpr std::uint32_t kRays = 16, kRaysOfSet = 32, kLampSamples = 4;
 constexpr std::uint64_t kSeed = 0x6761746865727069ull;
-// As in relMSE.
-constexpr double kOffset = 0.01;
 // A place whose light comes by few bright rays counts as if it had no larger spread than this:
 // those few places gain nothing from what all the others would pay.
 constexpr double kLargestSpread = 100.0;
@@ -95,7 +93,8 @@ class GatherPilot {
     std::optional<GatherGuide::Directions> m_directions;
 };
 
-double spreadAt(const GatherPilot& pilot, const LightSampler& lights, const Sampler& sampler) {
+double spreadAt(const GatherPilot& pilot, const LightSampler& lights, const Sampler& sampler,
+                double offset) {
     const Rgb direct = pilot.direct(lights);
     Moments moments[3];
     for (std::uint32_t i = 0; i < kRays; ++i) {
@@ -105,13 +104,13 @@ double spreadAt(const GatherPilot& pilot, const LightSampler& lights, const Samp
     double spread = 0;
     for (int c = 0; c < 3; ++c) {
         const double r = moments[c].mean() + static_cast<double>(direct[c]);
-        spread += moments[c].variance() / (r * r + kOffset);
+        spread += moments[c].variance() / (r * r + offset);
     }
     return std::min(spread / 3, kLargestSpread);
 }
 
 // By two sets of rays each way: half of the square of what they differ by is the variance of one.
-GatherRivals rivalsAt(const GatherPilot& pilot, const LightSampler& lights) {
+GatherRivals rivalsAt(const GatherPilot& pilot, const LightSampler& lights, double offset) {
     const Rgb direct = pilot.direct(lights);
     const Rgb cosine[2] = {pilot.meanOfSet(0, false), pilot.meanOfSet(1, false)};
     const Rgb guide[2] = {pilot.meanOfSet(2, true), pilot.meanOfSet(3, true)};
@@ -119,7 +118,7 @@ GatherRivals rivalsAt(const GatherPilot& pilot, const LightSampler& lights) {
     for (int c = 0; c < 3; ++c) {
         const auto of = [c](const Rgb& rgb) { return static_cast<double>(rgb[c]); };
         const double r = (of(guide[0]) + of(guide[1])) / 2 + of(direct);
-        const double scale = kRaysOfSet / 2.0 / (r * r + kOffset) / 3;
+        const double scale = kRaysOfSet / 2.0 / (r * r + offset) / 3;
         rivals.byCosine += std::pow(of(cosine[0]) - of(cosine[1]), 2) * scale;
         rivals.byGuide += std::pow(of(guide[0]) - of(guide[1]), 2) * scale;
     }
@@ -141,14 +140,15 @@ void visitPlaces(const Scene& scene, const Camera& camera, const FrameLattice& l
 }  // namespace
 
 double gatherSpread(const Scene& scene, const Camera& camera, const LightSampler& lights,
-                    const GatherEnds& ends, const RenderSettings& settings,
+                    const GatherEnds& ends, const RenderSettings& settings, const ErrorScale& scale,
                     const CancelCheck& cancel) {
     const FrameLattice lattice = FrameLattice::fixed(settings, kColumns, kRows);
     std::vector<double> spreads(lattice.size());
-    visitPlaces(scene, camera, lattice, settings, cancel,
-                [&](std::size_t path, const PathStop& stop) {
-                    spreads[path] = spreadAt({scene, ends, stop, nullptr}, lights, stop.sampler);
-                });
+    visitPlaces(
+        scene, camera, lattice, settings, cancel, [&](std::size_t path, const PathStop& stop) {
+            spreads[path] =
+                spreadAt({scene, ends, stop, nullptr}, lights, stop.sampler, scale.offset());
+        });
     double sum = 0;
     for (const double spread : spreads) sum += spread;
     return sum / static_cast<double>(spreads.size());
@@ -156,12 +156,13 @@ double gatherSpread(const Scene& scene, const Camera& camera, const LightSampler
 
 GatherRivals gatherRivals(const Scene& scene, const Camera& camera, const LightSampler& lights,
                           const GatherEnds& ends, const GatherGuide& guide,
-                          const RenderSettings& settings, const CancelCheck& cancel) {
+                          const RenderSettings& settings, const ErrorScale& scale,
+                          const CancelCheck& cancel) {
     const FrameLattice lattice = FrameLattice::fixed(settings, kColumns, kRows);
     std::vector<GatherRivals> all(lattice.size());
     visitPlaces(scene, camera, lattice, settings, cancel,
                 [&](std::size_t path, const PathStop& stop) {
-                    all[path] = rivalsAt({scene, ends, stop, &guide}, lights);
+                    all[path] = rivalsAt({scene, ends, stop, &guide}, lights, scale.offset());
                 });
     GatherRivals mean;
     for (const GatherRivals& rivals : all) {

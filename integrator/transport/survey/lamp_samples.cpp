@@ -28,7 +28,7 @@ constexpr double kLampSampleSeconds = 0.2e-6;
 constexpr float kBrightHalf = 0.5f;
 // All other variance of a camera sample: of the light that its gather rays bring this share, if
 // what they find differs as the frame's places do, and of edges and photons so much, over
-// (r^2 + 0.01). Measured; docs/decisions.md.
+// (r^2 + offset) of relMSE. Measured; docs/decisions.md.
 constexpr double kGatheredShare = 0.1, kLeastRest = 0.002;
 
 // Where a pilot path ends: direct light by either set, and what it reflects of light all around.
@@ -63,14 +63,14 @@ std::vector<Lit> lookAround(const Scene& scene, const LightSampler& lights, cons
     return found;
 }
 
-// Variances of a camera sample with one lamp sample over (r^2 + 0.01), means over paths and
-// channels.
+// Variances of a camera sample with one lamp sample over (r^2 + offset), as in relMSE; means over
+// paths and channels.
 struct Variances {
     double lamps = 0;  // of a lamp sample, one of kSet
     double rest = 0;
 };
 
-Variances variancesOf(const std::vector<Lit>& places, bool hasIndirect) {
+Variances variancesOf(const std::vector<Lit>& places, bool hasIndirect, double offset) {
     const auto count = static_cast<float>(places.size());
     Rgb mean;
     for (const Lit& place : places) mean += (place.a + place.b) * (0.5f / count);
@@ -82,8 +82,8 @@ Variances variancesOf(const std::vector<Lit>& places, bool hasIndirect) {
             const auto r = static_cast<double>(direct + place.reflected[c] * around[c]);
             const auto noise = static_cast<double>(place.a[c] - place.b[c]);
             const auto unlike = static_cast<double>(place.reflected[c] * (direct - mean[c]));
-            lamps += kSet * noise * noise / 2 / (r * r + 0.01);
-            gathered += unlike * unlike / (r * r + 0.01);
+            lamps += kSet * noise * noise / 2 / (r * r + offset);
+            gathered += unlike * unlike / (r * r + offset);
         }
     const double share = 1.0 / (3.0 * static_cast<double>(count));
     return {lamps * share, kLeastRest + (hasIndirect ? kGatheredShare * gathered * share : 0.0)};
@@ -97,8 +97,8 @@ std::uint32_t findLampSamples(const Scene& scene, const LightSampler& lights, co
                               const RenderSettings& settings, const Plan& plan,
                               const CancelCheck& cancel) {
     if (lights.empty()) return 1;
-    const Variances variances =
-        variancesOf(lookAround(scene, lights, camera, settings, cancel), plan.globalMap);
+    const Variances variances = variancesOf(lookAround(scene, lights, camera, settings, cancel),
+                                            plan.globalMap, plan.errorScale.offset());
     const double squared =
         variances.lamps / variances.rest * plan.processorSecondsPerSample / kLampSampleSeconds;
     std::uint32_t samples = 1;

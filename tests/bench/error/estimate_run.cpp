@@ -61,7 +61,7 @@ void PassSource::forEachPass(const RenderSettings& settings, const UsePass& useP
 }
 
 std::vector<Judged> PassSource::judged(const RenderSettings& settings) const {
-    FrameStore store = plugin::makeFrame(settings, makePlan(*m_scene, settings).tracePhotons);
+    FrameStore store = plugin::makeFrame(settings, makePlan(*m_scene, settings).tracePhotons, {});
     std::vector<Judged> result;
     forEachPass(settings,
                 [&](std::uint32_t pass, const auto& pixels, const auto& weights, double seconds) {
@@ -76,7 +76,8 @@ std::vector<Judged> PassSource::judged(const RenderSettings& settings) const {
 }
 
 Halves PassSource::halves(const RenderSettings& settings) const {
-    FrameStore even = plugin::makeFrame(settings, true), odd = plugin::makeFrame(settings, true);
+    FrameStore even = plugin::makeFrame(settings, true, {});
+    FrameStore odd = plugin::makeFrame(settings, true, {});
     forEachPass(settings, [&](std::uint32_t pass, const auto& pixels, const auto& weights, double) {
         (pass % 2 == 0 ? even : odd).addPass(pass, settings.window, pixels, weights);
     });

@@ -37,7 +37,7 @@ PassRenderer::PassRenderer(std::shared_ptr<const Scene> scene, const RenderSetti
     : m_settings(settings),
       m_choose(std::move(choose)),
       m_arena(threads),
-      m_frame(plugin::makeFrame(settings, plan.tracePhotons)),
+      m_frame(plugin::makeFrame(settings, plan.tracePhotons, plan.errorScale)),
       m_pass(settings) {
     m_renderer = m_arena.execute(
         [&] { return std::make_unique<FrameRenderer>(std::move(scene), m_settings, plan); });

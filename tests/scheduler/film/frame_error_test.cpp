@@ -287,5 +287,34 @@ TEST(FrameError, aFrameOfOnePixelHasOne) {
     EXPECT_DOUBLE_EQ(frame.estimateError()->noise, 1.0 / 4.01);
 }
 
+// The picture in another unit, its probe and its lamps too: with the scale of that unit the same
+// error to the bit, with none another.
+TEST(FrameError, scaleIsOfTheUnit) {
+    const std::vector<float> truth = variedTruth();
+    const auto errorOf = [&](int stops, int scale) {
+        Random random(5);
+        constexpr std::int32_t kAll = 9;  // beauty, probe, lamps
+        FrameStore frame(kFrame, kAll, 0, 3, 6, std::nullopt, ErrorScale(scale));
+        for (std::uint32_t pass = 0; pass < 6; ++pass) {
+            std::vector<float> pixels(kPixels * kAll);
+            for (std::size_t i = 0; i < pixels.size(); ++i) {
+                const float part = i % kAll < 3 ? 1.0f : i / kAll % 7 == 0 ? 0.5f : 0.1f;
+                pixels[i] = std::ldexp(part * gaussian(truth[i / kAll], random), stops);
+            }
+            frame.addPass(pass, kFrame, pixels, std::vector<float>(kPixels, 4.0f));
+        }
+        return frame.estimateError().value();
+    };
+    const FrameError plain = errorOf(0, 0);
+    for (const int stops : {-20, -7, 4, 20}) {
+        const FrameError scaled = errorOf(stops, -stops);
+        EXPECT_EQ(scaled.noise, plain.noise);
+        EXPECT_EQ(scaled.noiseTrimmed, plain.noiseTrimmed);
+        EXPECT_EQ(scaled.bias, plain.bias);
+        EXPECT_EQ(scaled.unresolvedShare, plain.unresolvedShare);
+        EXPECT_GT(std::abs(std::log2(errorOf(stops, 0).noise / plain.noise)), 0.1);
+    }
+}
+
 }  // namespace
 }  // namespace pm::test

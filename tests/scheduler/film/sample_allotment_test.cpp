@@ -32,6 +32,31 @@ std::uint16_t samplesOf(std::uint32_t passes, double mean, double deviation,
     return samples[0];
 }
 
+// Light in another unit gets the same samples by the scale of that unit.
+TEST(SampleAllotment, scaleIsOfTheUnit) {
+    for (SampleRule rule : {kRule, kAlone})
+        for (const double mean : {0.02, 0.3})
+            for (const int stops : {-20, -5, 6, 20}) {
+                rule.errorScale = {};
+                const std::uint16_t plain = samplesOf(4, mean, 0.05, rule);
+                const double inUnit = std::ldexp(1.0, stops);
+                rule.errorScale = ErrorScale(-stops);
+                EXPECT_EQ(samplesOf(4, mean * inUnit, 0.05 * inUnit, rule), plain);
+                rule.errorScale = {};
+                EXPECT_NE(samplesOf(4, 0.02 * inUnit, 0.05 * inUnit, rule),
+                          samplesOf(4, 0.02, 0.05, rule));
+            }
+    SeenSamples seen{8, {0.1, 0.1, 0.1}, 0.01};
+    SampleRule rule{0, 64, 0.005, true};
+    const bool isPlain = isDivided(rule, seen, seen);
+    for (double* const value : {&seen.sums[0], &seen.sums[1], &seen.sums[2]}) *value /= 1024;
+    seen.square /= 1024 * 1024;
+    rule.errorScale = ErrorScale(10);
+    EXPECT_EQ(isDivided(rule, seen, seen), isPlain);
+    rule.errorScale = {};
+    EXPECT_NE(isDivided(rule, seen, seen), isPlain);
+}
+
 TEST(SampleAllotment, samplesGrowWithTheRelativeSpread) {
     // From the fifth pass on, s relative to sqrt(r^2 + 0.01), to the nearest power of two: the root
     // of 6 s / (0.04 / sqrt(8)), but beyond s = 0.7 in proportion to it.
@@ -175,7 +200,7 @@ TEST(AtomNoise, tellsWhatPassesShare) {
     // Less the standard error of a mean of 64 variances of one degree of freedom.
     const double error = std::sqrt(2.0 / 64) * 0.09 / 4;
     for (const double shared : {0.0, 1e-4, 0.01, 0.04})
-        EXPECT_NEAR(AtomNoise(twoPassesOfFour(0.09, shared)).shared(4),
+        EXPECT_NEAR(AtomNoise(twoPassesOfFour(0.09, shared), {}).shared(4),
                     std::max(0.0, shared - error), 1e-12);
     // Pixels with edges don't count: sequences cure what their samples differ by.
     auto atom = twoPassesOfFour(0.09, 0.04);
@@ -183,14 +208,14 @@ TEST(AtomNoise, tellsWhatPassesShare) {
         atom[i].edges = 1;
         atom[i].ofPasses = 8 * 3 * 4.0;
     }
-    EXPECT_NEAR(AtomNoise(atom).shared(4), 0.04 - error * std::sqrt(2.0), 1e-12);
+    EXPECT_NEAR(AtomNoise(atom, {}).shared(4), 0.04 - error * std::sqrt(2.0), 1e-12);
     for (SeenSamples& seen : atom) seen.edges = 1;
-    EXPECT_EQ(AtomNoise(atom).shared(4), 0.0);
+    EXPECT_EQ(AtomNoise(atom, {}).shared(4), 0.0);
     // A single pass, or passes of a single sample, tell nothing; nor passes closer to each other
     // than by chance.
-    EXPECT_EQ(AtomNoise(twoPassesOfFour(0.09, 0.04)).shared(8), 0.0);
-    EXPECT_EQ(AtomNoise(twoPassesOfFour(0.09, 0.04)).shared(1), 0.0);
-    EXPECT_EQ(AtomNoise(twoPassesOfFour(0.09, -0.02)).shared(4), 0.0);
+    EXPECT_EQ(AtomNoise(twoPassesOfFour(0.09, 0.04), {}).shared(8), 0.0);
+    EXPECT_EQ(AtomNoise(twoPassesOfFour(0.09, 0.04), {}).shared(1), 0.0);
+    EXPECT_EQ(AtomNoise(twoPassesOfFour(0.09, -0.02), {}).shared(4), 0.0);
 }
 
 // More samples of a pass don't lower what its photons make: there the threshold is no finer.

@@ -60,8 +60,8 @@ struct WallFoot {
         RenderSettings settings = smallFrame(48, 48, IntegratorKind::kPhoton, 1, 2);
         settings.seed = seed;
         const IrradianceSites sites(*scene, map, 0.1f);
-        return gatherSpread(*scene, Camera(*scene, 48, 48), LightSampler(*scene), {sites},
-                            settings);
+        return gatherSpread(*scene, Camera(*scene, 48, 48), LightSampler(*scene), {sites}, settings,
+                            {});
     }
 };
 
@@ -123,7 +123,7 @@ TEST(GatherPilot, NothingIsGatheredNothingDiffers) {
     const PhotonMap map(WallFoot::photons());
     const IrradianceSites sites(*scene, map, 0.1f);
     EXPECT_EQ(0.0, gatherSpread(*scene, Camera(*scene, 48, 48), LightSampler(*scene), {sites},
-                                smallFrame(48, 48, IntegratorKind::kPhoton, 1, 2)));
+                                smallFrame(48, 48, IntegratorKind::kPhoton, 1, 2), {}));
 }
 
 // The rays go with the root of the spread, to the nearest power of two, within half and four times.
