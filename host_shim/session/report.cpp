@@ -153,9 +153,9 @@ std::string errorHtml(const Json& json) {
         curves[0].points.emplace_back(seconds, number(point, "noise"));
         curves[1].points.emplace_back(seconds, number(point, "estimatedRelMse"));
     }
-    std::optional<double> reference;
-    if (json.contains("relMseReference")) reference = number(json, "relMseReference");
-    const std::string chart = errorChart(curves, reference);
+    const std::string chart =
+        errorChart(curves, {{"target", "#2a7d3c", number(part(json, "settings"), "errorTarget")},
+                            {"against the reference", "#b3261e", number(json, "relMseReference")}});
     if (chart.empty())
         return section("error", "Error over time",
                        paragraph("No two estimates: they begin with the third pass, and parts "
@@ -163,8 +163,10 @@ std::string errorHtml(const Json& json) {
     return section(
         "error", "Error over time",
         chart +
-            paragraph("relMSE, the picture's mean of (x - r)\u00B2 / (r\u00B2 + "
-                      "0.01), as the render estimated it after its passes. The estimate covers: " +
+            paragraph("Lower is better: four times the time halve the noise and leave a quarter "
+                      "of its error. The error is relMSE, the picture's mean of "
+                      "(x - r)\u00B2 / (r\u00B2 + 0.01), as the render estimated it after its "
+                      "passes. The estimate covers: " +
                       text(json, "relMseEstimateCovers")));
 }
 
