@@ -99,6 +99,7 @@ std::string statusHtml(const Json& json) {
             fmt::format("{}{:.3e}",
                         json.value("relMseEstimateIsLowerBound", Json()) == true ? "at least " : "",
                         number(json, "relMseEstimate")));
+    row("what that looks like", text(json, "errorWords"));
     if (json.contains("relMseReference"))
         row("relMSE against the reference", fmt::format("{:.3e}", number(json, "relMseReference")));
     row("machine", text(json, "machine"));

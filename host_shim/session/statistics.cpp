@@ -5,7 +5,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "host_shim/process/plain_text.h"
@@ -60,6 +62,28 @@ std::optional<double> Statistics::estimatedRelMse() const {
     const auto found = json.find("relMseEstimate");
     if (found == json.end() || !found->is_number()) return std::nullopt;
     return found->get<double>();
+}
+
+Statistics::BiasNote Statistics::estimatedBias() const {
+    constexpr double kRelMseOffset = 0.01;
+    const Json json = parsed(library);
+    const auto number = [&](const char* key) {
+        const auto found = json.find(key);
+        return found != json.end() && found->is_number() ? found->get<double>() : 0.0;
+    };
+    BiasNote note;
+    note.most = std::max(0.0, number("relMseEstimateBias") +
+                                  2 * number("relMseEstimateBiasStandardError")) +
+                number("relMseEstimateCut");
+    note.offset = kRelMseOffset * std::exp2(-2 * number("errorScaleStops"));
+    note.isLowerBound = json.value("relMseEstimateIsLowerBound", Json()) == true;
+    return note;
+}
+
+std::string Statistics::errorWords() const {
+    if (seenError) return describe(*seenError);
+    const auto relMse = estimatedRelMse();
+    return relMse ? host::errorWords(*relMse) : "";
 }
 
 std::string Statistics::estimateDoubts() const {
@@ -141,6 +165,11 @@ std::string Statistics::toJson(const Log& log) const {
     mine["phases"]["elapsedSeconds"] = log.elapsedSeconds();
     mine["stopReason"] = stopReason;
     mine["error"] = error;
+    if (const std::string words = errorWords(); !words.empty()) mine["errorWords"] = words;
+    if (seenError)
+        mine["errorCodes"] = {{"all", seenError->codes},
+                              {"darkParts", seenError->darkCodes},
+                              {"brightParts", seenError->brightCodes}};
     if (referenceRelMse) mine["relMseReference"] = *referenceRelMse;
     if (referenceCodes)
         mine["referenceCodes"] = {{"rms", referenceCodes->rms},
