@@ -118,7 +118,7 @@ class SuiteReader {
     }
 
     void readAll(const json& all) {
-        checkKeys(all, "the suite", {"schema", "references", "options", "scenes"});
+        checkKeys(all, "the suite", {"$schema", "schema", "references", "options", "scenes"});
         if (text(all, "schema", "the suite") != "pm-suite/1")
             fail("'schema' must be \"pm-suite/1\"");
         const bool isNamed = all.contains("references");
