@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host_shim/folders/own_folder.h"
+#include "host_shim/pictures/compare.h"
 #include "host_shim/pictures/finished_file.h"
 #include "host_shim/report/report_command.h"
 #include "host_shim/report/report_html.h"
@@ -30,7 +31,8 @@ Plane differenceOf(const Picture& stored, const Picture& picture) {
         return std::array{beauty.values[0].data(), beauty.values[1].data(),
                           beauty.values[2].data()};
     };
-    return relativeDifference(a.window.width(), a.window.height(), planes(a), planes(b));
+    return relativeDifference(a.window.width(), a.window.height(), planes(a), planes(b),
+                              errorOffset(errorScaleOf(stored).value_or(0)));
 }
 
 bool haveOneShape(const SceneOutcome& outcome) {
@@ -79,6 +81,8 @@ std::string statusHtml(const SceneOutcome& outcome) {
     if (outcome.status == SceneOutcome::Status::kWithinNoise)
         words += fmt::format(" The furthest region is at {:.0f} % of its limit.",
                              100 * outcome.shareOfLimit);
+    if (!outcome.errorWords.empty())
+        words += fmt::format(" The picture is {}.", outcome.errorWords);
     if (outcome.seenChange > 0) words += fmt::format(" Found are {}.", seenText(outcome));
     return fmt::format("<p class=\"status{}\">{}</p>\n", outcome.isRight() ? "" : " bad",
                        escaped(words));

@@ -12,6 +12,8 @@
 
 #include "host_shim/check/junit.h"
 #include "host_shim/check/reference_making.h"
+#include "host_shim/pictures/compare.h"
+#include "host_shim/pictures/picture_io.h"
 #include "host_shim/process/interrupt.h"
 #include "host_shim/process/outputs.h"
 #include "host_shim/report/report_command.h"
@@ -55,6 +57,16 @@ std::string lastLine(const fs::path& file) {
         if (line.starts_with(kOurs) && !line.starts_with(kWarning)) error = line;
     }
     return error.empty() ? last : error;
+}
+
+// Errors are told in the unit of the reference. Nothing where that can't be read, which is told
+// when it is wanted.
+std::optional<std::int32_t> errorScaleOfReference(const Suite& suite, const SuiteScene& scene) {
+    try {
+        return errorScaleOf(readExr(referenceFiles(suite, scene).picture));
+    } catch (const HostError&) {
+        return std::nullopt;
+    }
 }
 
 // The scene itself, or tag:NAME of it.
@@ -116,6 +128,9 @@ CheckRun::Render CheckRun::addRender(std::size_t index, std::uint64_t seed, std:
                  {"--aov", "stderr", "-o", render.files.exr.string(), "-q", "--progress", "none",
                   "--stats", render.files.statistics.string(), "--input-hashes"});
     if (scene.hasDisplay) words.insert(words.end(), {"-o", render.files.png.string()});
+    if (!m_options.update && !isNamed(scene.options, "--error-scale"))
+        if (const auto stops = errorScaleOfReference(m_suite, scene))
+            words.insert(words.end(), {"--error-scale", std::to_string(*stops)});
     if (!m_options.html.empty() && !m_options.update && findDisplay(m_suite, scene))
         words.insert(words.end(),
                      {"--report", reportPage(fs::absolute(m_options.html), scene).string()});

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 
+#include "host_shim/pictures/compare.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
@@ -23,14 +24,6 @@ double medianOf(std::vector<double> values) {
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::ranges::nth_element(values, middle);
     return *middle;
-}
-
-// What 1 is in the picture's unit, as its error is told.
-double unitOf(const Picture& picture) {
-    const auto found = picture.attributes.find("pm:errorScale");
-    if (found == picture.attributes.end()) return 1;
-    const auto* stops = std::get_if<std::int32_t>(&found->second);
-    return stops == nullptr ? 1 : std::exp2(-*stops);
 }
 
 // Of one colour, row by row.
@@ -144,7 +137,7 @@ std::optional<double> noiseCorrelation(const Picture& noise, const Picture& a, c
         if (mean == nullptr || deviation == nullptr) return std::nullopt;
         const auto of = [&](const Picture& picture) {
             return noiseIn(*mean, *deviation, beautyOf(picture).values[c], noise.dataWindow,
-                           unitOf(a));
+                           std::exp2(-errorScaleOf(a).value_or(0)));
         };
         const std::vector<double> inA = of(a), inB = of(b);
         for (std::size_t i = 0; i < inA.size(); ++i) {

@@ -90,6 +90,7 @@ RenderFacts readFacts(const fs::path& statistics, const fs::path& log, const Pic
     if (const auto hashes = json.find("hashes"); hashes != json.end() && hashes->is_object())
         for (const auto& [name, hash] : hashes->items())
             if (hash.is_string() && !isOfAll(name)) facts.inputs[named(name, folder)] = hash;
+    facts.errorWords = json.value("errorWords", "");
     if (const auto id = picture.attributes.find("pm:ocioCacheId"); id != picture.attributes.end())
         if (const auto* text = std::get_if<std::string>(&id->second))
             facts.inputs["config"] = *text;

@@ -19,6 +19,7 @@ using SceneInputs = std::map<std::string, std::string>;
 struct RenderFacts {
     SceneInputs inputs;
     std::vector<std::string> warnings;  // as they were shown, each once
+    std::string errorWords;             // what its error looks like; empty where it isn't known
 };
 
 // statistics, log, picture: of a render by this program; folder: the suite's. Errors: kFile,

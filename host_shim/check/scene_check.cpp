@@ -210,6 +210,7 @@ void checkScene(const Suite& suite, const RenderedFiles& render, SceneOutcome& o
     const RenderFacts facts =
         readFacts(render.statistics, render.log, *outcome.picture, suite.folder);
     outcome.warnings = facts.warnings;
+    outcome.errorWords = facts.errorWords;
     if (isMissing(files, outcome)) return;
     const Reference reference = readReference(files.numbers);
     if (!reference.reasons.empty()) outcome.because = reference.reasons.back().because;

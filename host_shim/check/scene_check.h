@@ -24,6 +24,7 @@ struct SceneOutcome {
     std::optional<Picture> stored, picture;
     std::vector<std::string> warnings;  // of the render
     std::vector<std::string> notes;     // what else is to be known of the comparison
+    std::string errorWords;             // of the render's own error; empty where it isn't known
 
     bool isRight() const { return status == Status::kSame || status == Status::kWithinNoise; }
     // Whether only coarse changes of the scene would be found.

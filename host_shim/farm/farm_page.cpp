@@ -141,7 +141,7 @@ std::string farmPage(const FarmPlan& plan, const JobFolder& folder) {
     } else {
         body += paragraph(fmt::format("From the first start to the last end {}.",
                                       clockText(timeline.end - timeline.begin)));
-        body += section("machines", "Machines", chart(plan, timeline));
+        body += section("machines", "Machines", wideBox(chart(plan, timeline)));
         body += section("tasks", "Tasks as they were started", stayTable(plan, timeline));
     }
     return wholePage("pm farm: " + folder.path().filename().string(), body);

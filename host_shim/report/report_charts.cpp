@@ -13,8 +13,9 @@
 namespace pm::host {
 namespace {
 
-constexpr double kWidth = 720, kHeight = 320;  // of a chart, CSS pixels
-constexpr double kLeft = 70, kRight = 170, kTop = 12, kBottom = 40;
+constexpr double kWidth = 600, kHeight = 320;  // of a chart, CSS pixels
+// A phone shows the texts larger, for the chart is smaller there.
+constexpr double kLeft = 94, kRight = 24, kTop = 12, kBottom = 54;
 
 // One axis: from a value to a place, over whole decades.
 struct LogAxis {
@@ -28,6 +29,15 @@ struct LogAxis {
     double place(double value) const {
         const double share = (std::log10(value) - leastDecade) / (mostDecade - leastDecade);
         return from + share * (to - from);
+    }
+    // Where a value stands: each decade, of few decades at 2 and 5 too.
+    std::vector<double> marks() const {
+        std::vector<double> values;
+        for (int decade = leastDecade; decade <= mostDecade; ++decade)
+            for (const double factor : {1.0, 2.0, 5.0})
+                if (factor == 1 || (decade < mostDecade && mostDecade - leastDecade <= 2))
+                    values.push_back(factor * std::pow(10.0, decade));
+        return values;
     }
 };
 
@@ -52,24 +62,30 @@ std::string label(double x, double y, const char* anchor, const std::string& tex
 
 std::string axes(const LogAxis& x, const LogAxis& y) {
     std::string text;
-    for (int decade = x.leastDecade; decade <= x.mostDecade; ++decade) {
-        const double value = std::pow(10.0, decade), at = x.place(value);
+    for (const double value : x.marks()) {
+        const double at = x.place(value);
         text += line(at, y.to, at, y.from, "class=\"grid\"");
-        text += label(at, y.from + 16, "middle", fmt::format("{:g}", value));
+        text += label(at, y.from + 18, "middle", fmt::format("{:g}", value));
     }
-    for (int decade = y.leastDecade; decade <= y.mostDecade; ++decade) {
-        const double value = std::pow(10.0, decade), at = y.place(value);
+    for (const double value : y.marks()) {
+        const double at = y.place(value);
         text += line(x.from, at, x.to, at, "class=\"grid\"");
         text += label(x.from - 6, at + 4, "end", fmt::format("{:g}", value));
     }
     text += line(x.from, y.from, x.to, y.from, "class=\"axis\"");
     text += line(x.from, y.from, x.from, y.to, "class=\"axis\"");
-    return text + label((x.from + x.to) / 2, y.from + 34, "middle", "seconds");
+    text += label((x.from + x.to) / 2, kHeight - 10, "middle", "time, s");
+    const double middle = (y.from + y.to) / 2;
+    return text + fmt::format("<g transform=\"rotate(-90 18 {0:.1f})\">\n{1}</g>\n", middle,
+                              label(18, middle, "middle", "error (relMSE), lower is better"));
+}
+
+bool isOnAxis(double value) {
+    return value > 0 && std::isfinite(value);
 }
 
 bool canBeDrawn(const std::pair<double, double>& point) {
-    return point.first > 0 && point.second > 0 && std::isfinite(point.first) &&
-           std::isfinite(point.second);
+    return isOnAxis(point.first) && isOnAxis(point.second);
 }
 
 std::string polyline(const Curve& curve, const LogAxis& x, const LogAxis& y) {
@@ -85,6 +101,16 @@ std::string polyline(const Curve& curve, const LogAxis& x, const LogAxis& y) {
                "<polyline fill=\"none\" stroke=\"{}\" stroke-width=\"1.5\" points=\"{}\"/>\n",
                curve.colour, points) +
            dots;
+}
+
+// What a line of a chart stands for; under the drawing, where it can wrap.
+std::string key(const std::string& colour, const char* dashes, const std::string& words) {
+    return fmt::format(
+        "<span class=\"key\"><svg width=\"18\" height=\"4\" "
+        "aria-hidden=\"true\">{}</svg>{}</span>\n",
+        line(0, 2, 18, 2,
+             fmt::format("stroke=\"{}\" stroke-width=\"2\"{}", colour, dashes).c_str()),
+        escaped(words));
 }
 
 // Each bucket's quantity, at 1/shrink of the window.
@@ -110,7 +136,8 @@ Plane bucketPlane(const std::vector<BucketTimes::Bucket>& buckets, const BucketQ
 
 }  // namespace
 
-std::string errorChart(const std::vector<Curve>& curves, std::optional<double> limit) {
+std::string errorChart(const std::vector<Curve>& curves, const std::vector<ErrorLevel>& levels) {
+    constexpr const char* kDashes = " stroke-dasharray=\"5 4\"";
     Range seconds, errors;
     std::size_t count = 0;
     for (const Curve& curve : curves) {
@@ -122,32 +149,29 @@ std::string errorChart(const std::vector<Curve>& curves, std::optional<double> l
         }
     }
     if (count < 2) return {};
-    if (limit && !(*limit > 0)) limit.reset();
-    if (limit) errors.add(*limit);
+    for (const ErrorLevel& level : levels)
+        if (isOnAxis(level.value)) errors.add(level.value);
     const LogAxis x(seconds.least, seconds.most, kLeft, kWidth - kRight);
     const LogAxis y(errors.least, errors.most, kHeight - kBottom, kTop);
-    std::string text = fmt::format(
-        "<svg width=\"{0:g}\" height=\"{1:g}\" viewBox=\"0 0 {0:g} {1:g}\" role=\"img\" "
-        "aria-label=\"error over time\">\n",
-        kWidth, kHeight);
+    std::string keys,
+        text = fmt::format(
+            "<svg width=\"{0:g}\" height=\"{1:g}\" viewBox=\"0 0 {0:g} {1:g}\" role=\"img\" "
+            "aria-label=\"error over time; lower is better\">\n",
+            kWidth, kHeight);
     text += axes(x, y);
-    double legend = kTop + 10;
-    const auto name = [&](const std::string& colour, const std::string& words) {
-        text += line(kWidth - kRight + 12, legend - 4, kWidth - kRight + 28, legend - 4,
-                     fmt::format("stroke=\"{}\" stroke-width=\"2\"", colour).c_str());
-        text += label(kWidth - kRight + 33, legend, "start", words);
-        legend += 18;
-    };
     for (const Curve& curve : curves) {
         text += polyline(curve, x, y);
-        name(curve.colour, curve.name);
+        keys += key(curve.colour, "", curve.name);
     }
-    if (limit) {
-        text += line(x.from, y.place(*limit), x.to, y.place(*limit),
-                     "stroke=\"#b3261e\" stroke-dasharray=\"5 4\"");
-        name("#b3261e", "against the reference");
+    for (const ErrorLevel& level : levels) {
+        if (!isOnAxis(level.value)) continue;
+        const double at = y.place(level.value);
+        text += line(
+            x.from, at, x.to, at,
+            fmt::format("stroke=\"{}\" stroke-width=\"1.5\"{}", level.colour, kDashes).c_str());
+        keys += key(level.colour, kDashes, fmt::format("{}: {:.2e}", level.name, level.value));
     }
-    return text + "</svg>\n";
+    return text + "</svg>\n<p>" + keys + "</p>\n";
 }
 
 std::string bucketMap(const std::vector<BucketTimes::Bucket>& buckets,

@@ -2,7 +2,6 @@
 // SPDX-FileCopyrightText: The pm authors
 #pragma once
 
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -15,14 +14,20 @@ namespace pm::host {
 
 // Drawings of a page, as inline SVG.
 
-// Relative error over seconds, both axes logarithmic; points whose coordinates are not above 0 are
-// left out. limit: a level line, the error against a reference. Empty with fewer than two points.
+// Relative error over seconds, both axes logarithmic and labelled; points whose coordinates are not
+// above 0 are left out, and so are levels. Levels are level lines: a target, the error against a
+// reference. Empty with fewer than two points.
 struct Curve {
     std::string name;
     std::string colour;
     std::vector<std::pair<double, double>> points;  // seconds, relMSE
 };
-std::string errorChart(const std::vector<Curve>& curves, std::optional<double> limit);
+struct ErrorLevel {
+    std::string name;
+    std::string colour;
+    double value{};  // relMSE
+};
+std::string errorChart(const std::vector<Curve>& curves, const std::vector<ErrorLevel>& levels);
 
 // What a heat map shows of buckets, a pass.
 struct BucketQuantity {

@@ -20,7 +20,8 @@ std::string section(std::string_view id, std::string_view heading, const std::st
 // A paragraph of plain text.
 std::string paragraph(std::string_view text);
 
-// A table; cells are HTML. head may be empty.
+// A table; cells are HTML. head may be empty. Words that a phone has no room for may break; what is
+// wider than the page all the same scrolls within itself.
 using Row = std::vector<std::string>;
 std::string table(const Row& head, const std::vector<Row>& rows);
 
@@ -29,6 +30,9 @@ std::string codeBlock(std::string_view text);
 
 // What folds away under a line of plain text. content is HTML.
 std::string details(std::string_view summary, const std::string& content);
+
+// A drawing that is not to be made smaller: it scrolls within itself where the page is narrower.
+std::string wideBox(const std::string& content);
 
 // The whole page. title is plain text, body HTML. refreshSeconds: after that a browser reads it
 // again; 0: it does not.

@@ -99,6 +99,7 @@ std::string statusHtml(const Json& json) {
             fmt::format("{}{:.3e}",
                         json.value("relMseEstimateIsLowerBound", Json()) == true ? "at least " : "",
                         number(json, "relMseEstimate")));
+    row("what that looks like", text(json, "errorWords"));
     if (json.contains("relMseReference"))
         row("relMSE against the reference", fmt::format("{:.3e}", number(json, "relMseReference")));
     row("machine", text(json, "machine"));
@@ -161,20 +162,22 @@ std::string errorHtml(const Json& json) {
         curves[0].points.emplace_back(seconds, number(point, "noise"));
         curves[1].points.emplace_back(seconds, number(point, "estimatedRelMse"));
     }
-    std::optional<double> reference;
-    if (json.contains("relMseReference")) reference = number(json, "relMseReference");
-    const std::string chart = errorChart(curves, reference);
+    const std::string chart =
+        errorChart(curves, {{"target", "#2a7d3c", number(part(json, "settings"), "errorTarget")},
+                            {"against the reference", "#b3261e", number(json, "relMseReference")}});
     if (chart.empty())
         return section("error", "Error over time",
                        paragraph("No two estimates: they begin with the third pass, and parts "
                                  "that were merged carry no times."));
     return section(
         "error", "Error over time",
-        chart + paragraph("relMSE, the picture's mean of (x - r)\u00B2 / (r\u00B2 + "
-                          "0.01)" +
-                          scaledValues(json) +
-                          ", as the render estimated it after its passes. The estimate covers: " +
-                          text(json, "relMseEstimateCovers")));
+        chart +
+            paragraph("Lower is better: four times the time halve the noise and leave a quarter "
+                      "of its error. The error is relMSE, the picture's mean of "
+                      "(x - r)\u00B2 / (r\u00B2 + 0.01)" +
+                      scaledValues(json) +
+                      ", as the render estimated it after its passes. The estimate covers: " +
+                      text(json, "relMseEstimateCovers")));
 }
 
 std::string figuresHtml(const Json& json) {

@@ -108,6 +108,8 @@ class Session {
     void warnOfClamped(const std::filesystem::path& file, const ExrReport& report);
     // " estimated relMSE ..." for lines that tell what was written.
     std::string errorText() const;
+    std::optional<SeenError> seenError(const PictureSource& source, const Picture& picture,
+                                       const DisplayTransform& display) const;
     void writeOutputs(const Picture& picture, bool complete,
                       const std::optional<DisplayTransform>& display);
     void writeOutput(const std::filesystem::path& file, const Picture& picture,

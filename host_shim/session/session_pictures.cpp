@@ -3,9 +3,12 @@
 // A Session whose render has ended: its pictures are written and compared.
 #include <fmt/format.h>
 
+#include <array>
 #include <cstdio>
+#include <vector>
 
 #include "host_shim/colour/display_picture.h"
+#include "host_shim/colour/error_codes.h"
 #include "host_shim/folders/own_folder.h"
 #include "host_shim/pictures/compare.h"
 #include "host_shim/pictures/display_compare.h"
@@ -50,6 +53,7 @@ int Session::finish(const PictureSource& source, PmrStatus status, const ColourP
         m_report.takePicture(source, picture, m_reference ? &*m_reference : nullptr,
                              display.value(), colour.luminanceWeights());
     };
+    if (complete && display) m_statistics.seenError = seenError(source, picture, *display);
     try {
         writeOutputs(picture, complete, display);
     } catch (...) {
@@ -92,9 +96,35 @@ void Session::warnOfClamped(const fs::path& file, const ExrReport& report) {
 std::string Session::errorText() const {
     const auto estimate = m_statistics.estimatedRelMse();
     if (!estimate) return "";
-    return fmt::format(", estimated relMSE {:.2e}{} (noise and bias, from what passes differ by{})",
-                       *estimate, errorScaleText(m_statistics.errorScaleStops().value_or(0)),
-                       m_statistics.estimateDoubts());
+    return fmt::format(
+        ", estimated relMSE {:.2e}{} (noise and bias, from what passes differ by{}): {}", *estimate,
+        errorScaleText(m_statistics.errorScaleStops().value_or(0)), m_statistics.estimateDoubts(),
+        m_statistics.errorWords());
+}
+
+// Of rows enough to know shares of the pixels well; nothing where no error is told.
+std::optional<SeenError> Session::seenError(const PictureSource& source, const Picture& picture,
+                                            const DisplayTransform& display) const {
+    constexpr std::int64_t kMostPixels = 500'000;
+    const PixelRect& window = picture.dataWindow;
+    if (!m_statistics.estimatedRelMse() || window.empty()) return std::nullopt;
+    const auto bias = m_statistics.estimatedBias();
+    ErrorCodes codes(display, bias.most, bias.offset);
+    const auto step = static_cast<std::int32_t>(1 + (window.area() - 1) / kMostPixels);
+    const auto width = static_cast<std::size_t>(window.width());
+    std::vector<float> values(3 * width), halfDifferences(values.size());
+    const std::array<const Channel*, 3> beauty{picture.find("R"), picture.find("G"),
+                                               picture.find("B")};
+    for (std::int32_t y = window.y0; y < window.y1; y += step) {
+        const std::size_t first = static_cast<std::size_t>(y - window.y0) * width;
+        for (std::size_t i = 0; i < values.size(); ++i)
+            values[i] = beauty[i % 3]->values[first + i / 3];
+        source.readPixels({window.x0, y, window.x1, y + 1}, "halfdiff", halfDifferences.data());
+        codes.add(values, halfDifferences);
+    }
+    SeenError seen = codes.result();
+    seen.isLowerBound = bias.isLowerBound;
+    return seen;
 }
 
 void Session::writeOutputs(const Picture& picture, bool complete,

@@ -5,9 +5,12 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "host_shim/pictures/compare.h"
 #include "host_shim/process/plain_text.h"
 
 namespace pm::host {
@@ -79,6 +82,27 @@ std::optional<std::int32_t> Statistics::errorScaleStops() const {
     const auto found = json.find("errorScaleStops");
     if (found == json.end() || !found->is_number_integer()) return std::nullopt;
     return found->get<std::int32_t>();
+}
+
+Statistics::BiasNote Statistics::estimatedBias() const {
+    const Json json = parsed(library);
+    const auto number = [&](const char* key) {
+        const auto found = json.find(key);
+        return found != json.end() && found->is_number() ? found->get<double>() : 0.0;
+    };
+    BiasNote note;
+    note.most = std::max(0.0, number("relMseEstimateBias") +
+                                  2 * number("relMseEstimateBiasStandardError")) +
+                number("relMseEstimateCut");
+    note.offset = errorOffset(errorScaleStops().value_or(0));
+    note.isLowerBound = json.value("relMseEstimateIsLowerBound", Json()) == true;
+    return note;
+}
+
+std::string Statistics::errorWords() const {
+    if (seenError) return describe(*seenError);
+    const auto relMse = estimatedRelMse();
+    return relMse ? host::errorWords(*relMse) : "";
 }
 
 std::string Statistics::estimateDoubts() const {
@@ -161,6 +185,11 @@ std::string Statistics::toJson(const Log& log) const {
     mine["phases"]["elapsedSeconds"] = log.elapsedSeconds();
     mine["stopReason"] = stopReason;
     mine["error"] = error;
+    if (const std::string words = errorWords(); !words.empty()) mine["errorWords"] = words;
+    if (seenError)
+        mine["errorCodes"] = {{"all", seenError->codes},
+                              {"darkParts", seenError->darkCodes},
+                              {"brightParts", seenError->brightCodes}};
     if (referenceRelMse) {
         mine["relMseReference"] = *referenceRelMse;
         mine["relMseReferenceErrorScaleStops"] = referenceErrorScale;

@@ -13,6 +13,7 @@
 #include "host_shim/formats/scene_data.h"
 #include "host_shim/log/log.h"
 #include "host_shim/pictures/display_compare.h"
+#include "host_shim/pictures/error_words.h"
 
 namespace pm::host {
 
@@ -43,6 +44,7 @@ struct Statistics {
     std::string error;
     std::optional<double> referenceRelMse;
     std::int32_t referenceErrorScale{};               // stops, of that
+    std::optional<SeenError> seenError;               // of the display picture, where there is one
     std::optional<DisplayDifference> referenceCodes;  // of a display picture
     std::string library;  // the plugin's own statistics, JSON, empty when there was no render
     int exitCode{1};
@@ -51,6 +53,15 @@ struct Statistics {
     std::optional<double> estimatedRelMse() const;
     // That it is of, stops; nothing before the plugin has planned.
     std::optional<std::int32_t> errorScaleStops() const;
+    // Of what the render doesn't see pixel by pixel.
+    struct BiasNote {
+        double most{};        // relMSE of bias, with two standard errors of it, and of what was cut
+        double offset{};      // of relMSE's denominator, in the picture's own unit
+        bool isLowerBound{};  // of the error, for light finer than the estimates' radii
+    };
+    BiasNote estimatedBias() const;
+    // What the error looks like, for people; empty where it isn't known.
+    std::string errorWords() const;
     // How far that is to be trusted, for people; empty where there is nothing to say.
     std::string estimateDoubts() const;
     // Why the library's render ended, in its words; "finished" when it doesn't say.

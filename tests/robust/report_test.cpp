@@ -176,6 +176,34 @@ TEST(ReportHtml, theReasonIsToldOnce) {
         << page;
 }
 
+// Errors of 4e-3 to 1e-3 over 1 to 4 s; a target below and a reference's error above them.
+TEST(ReportHtml, plotsTheErrorOverTimeWithItsTarget) {
+    const std::string curve =
+        R"("errorCurve": [{"seconds": 1, "noise": 3e-3, "estimatedRelMse": 4e-3},
+        {"seconds": 4, "noise": 9e-4, "estimatedRelMse": 1e-3}])";
+    const std::string page = Report().page(
+        "{" + curve + R"(, "settings": {"errorTarget": 2e-4}, "relMseReference": 5e-3})");
+    for (const char* text :
+         {">time, s</text>", ">error (relMSE), lower is better</text>", "target: 2.00e-04",
+          "against the reference: 5.00e-03", "<p>Lower is better: "})
+        EXPECT_NE(page.find(text), std::string::npos) << text;
+    // The level lines stand where their values are on the axis from 1e-4 to 1e-2.
+    const auto height = [&](const std::string& before) {
+        const auto at = page.find(before);
+        if (at == std::string::npos) return std::nan("");
+        const auto line = page.rfind("<line", at);
+        return std::stod(page.substr(page.find("y1=\"", line) + 4));
+    };
+    const double target = height("stroke=\"#2a7d3c\" stroke-width=\"1.5\" stroke-dasharray"),
+                 reference = height("stroke=\"#b3261e\" stroke-width=\"1.5\" stroke-dasharray");
+    const double decade = (320 - 54 - 12) / 2.0;  // of the chart's height
+    EXPECT_NEAR(target - reference, decade * std::log10(5e-3 / 2e-4), 0.2);
+    // Without a target or a reference neither has a line.
+    const std::string bare = Report().page("{" + curve + "}");
+    EXPECT_NE(bare.find("lower is better</text>"), std::string::npos);
+    EXPECT_EQ(bare.find("stroke-dasharray"), std::string::npos);
+}
+
 TEST(ReportCommand, isReadByAShellAsItWasGiven) {
     EXPECT_EQ(shellCommand({"pm_host", "a b.obj", "it's", "", "x=$y", "--size", "8x8"}),
               "pm_host 'a b.obj' 'it'\\''s' '' 'x=$y' --size 8x8");
