@@ -40,8 +40,9 @@ bool haveOneShape(const SceneOutcome& outcome) {
            outcome.stored->dataWindow == outcome.picture->dataWindow;
 }
 
-// Old, new and what they differ by.
-std::string picturesHtml(const SceneOutcome& outcome, const SceneDisplay& display) {
+// Old, new and what they differ by. view: one of the scene's; empty: by its own options.
+std::string picturesHtml(const SceneOutcome& outcome, const SceneDisplay& display,
+                         const std::string& view) {
     const EmbeddedPicture shown = embedded(display.shown(*outcome.picture), kPictureBytes);
     if (!haveOneShape(outcome))
         return section("picture", "Picture", figureHtml(shown, "the new picture", "New."));
@@ -49,7 +50,8 @@ std::string picturesHtml(const SceneOutcome& outcome, const SceneDisplay& displa
     const Plane plane = differenceOf(*outcome.stored, *outcome.picture);
     const float most = quantile(plane, kShareOfScale);
     return section(
-        "picture", "Old, new, difference",
+        "picture" + std::string(view.empty() ? "" : "-" + view),
+        "Old, new, difference" + (view.empty() ? "" : ", view " + view),
         besideHtml({{stored, "the stored picture", "Old: the reference."},
                     {shown, "the new picture", "New."},
                     {embedded(heatMap(plane, 0, most), kPictureBytes),
@@ -82,7 +84,7 @@ std::string statusHtml(const SceneOutcome& outcome) {
         words += fmt::format(" The furthest region is at {:.0f} % of its limit.",
                              100 * outcome.shareOfLimit);
     if (!outcome.errorWords.empty())
-        words += fmt::format(" The picture is {}.", outcome.errorWords);
+        words += fmt::format(" Its own error: {}.", outcome.errorWords);
     if (outcome.seenChange > 0) words += fmt::format(" Found are {}.", seenText(outcome));
     return fmt::format("<p class=\"status{}\">{}</p>\n", outcome.isRight() ? "" : " bad",
                        escaped(words));
@@ -159,8 +161,11 @@ void CheckPages::add(const SceneOutcome& outcome) {
                        remarksHtml(outcome);
     if (const auto display = outcome.picture ? findDisplay(m_suite, scene) : std::nullopt) {
         small = embedded(display->shown(*outcome.picture), kThumbnailBytes);
-        body += picturesHtml(outcome, *display);
+        body += picturesHtml(outcome, *display, "");
     }
+    for (const SuiteView& view : scene.views)
+        if (outcome.picture)
+            body += picturesHtml(outcome, SceneDisplay(m_suite, scene, &view), view.name);
     if (!outcome.isRight() && outcome.picture)
         body += section("accept", "To accept the new picture",
                         codeBlock(acceptCommand(m_suite, scene)));

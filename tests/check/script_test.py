@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: The pm authors
-"""The script of docs/regression.md, word for word but for passes, makes and checks a suite of ten scenes.
+"""The script of docs/regression.md, word for word but for passes and seeds, makes and checks a suite of ten scenes.
 
 usage: script_test.py PM_HOST
 """
@@ -22,6 +22,8 @@ def main():
     script = re.search(r"```sh\n(.*?)```", text, re.DOTALL).group(1)
     assert '"--passes", "8"' in script
     script = script.replace('"--passes", "8"', '"--passes", "2"')
+    assert "--seeds 16" in script
+    script = script.replace("--seeds 16", "--seeds 4")
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         (folder / "scenes").symlink_to(ROOT / "scenes")
@@ -38,6 +40,7 @@ def main():
         assert len(names) == 10, names
         assert f"{len(names)} of {len(names)} scenes stored" in done.stdout
         assert f"{len(names)} of {len(names)} scenes right" in done.stdout
+        assert (folder / "suite" / "references" / "box.dark.png").exists()
         kept = {file.stem for file in (folder / "suite" / "references").glob("*.json")}
         assert kept == names, kept
         pages = folder / "suite" / "pages"

@@ -11,6 +11,7 @@
 #include <numeric>
 #include <utility>
 
+#include "integrator/values/error_scale.h"
 #include "scheduler/buckets/bucket_grid.h"
 #include "scheduler/film/frame_error.h"
 #include "tests/bench/run/picture_error.h"
@@ -63,7 +64,7 @@ Variances variancesOf(const PixelSums& sums, double passes) {
         const double variance =
             std::max(0.0, sums.squares[c] / passes - mean * mean) * passes / (passes - 1);
         absolute += variance;
-        relative += variance / (mean * mean + kRelMseOffset) / 3;
+        relative += variance / (mean * mean + ErrorScale().offset()) / 3;
     }
     if (!(absolute > 0)) return {};
     // As relMSE weighs the channels.
@@ -76,7 +77,8 @@ double Truth::relMse(std::span<const double> picture) const {
     const std::vector<double> r = meanOf(first, second);
     double sum = 0;
     for (std::size_t i = 0; i < r.size(); ++i)
-        sum += (picture[i] - first[i]) * (picture[i] - second[i]) / (r[i] * r[i] + kRelMseOffset);
+        sum += (picture[i] - first[i]) * (picture[i] - second[i]) /
+               (r[i] * r[i] + ErrorScale().offset());
     return sum / static_cast<double>(r.size());
 }
 

@@ -136,6 +136,28 @@ TEST(PolygonClipper, FindsTheEarsThatALookAtAllFinds) {
     }
 }
 
+// Both diagonals of a rectangle are alike: which is taken hangs on no rounding, and a kite is still
+// cut along the shorter.
+TEST(PolygonClipper, RectanglesAreCutAlikeWhateverTheRounding) {
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> off(-1e-7, 1e-7), size(0.1, 10);
+    const auto cut = [](const std::vector<Vec3d>& points) {
+        Triangles triangles;
+        EXPECT_TRUE(PolygonClipper().clip(points, triangles));
+        return triangles;
+    };
+    const Triangles wanted{{0, 1, 2}, {0, 2, 3}};
+    for (int i = 0; i < 1000; ++i) {
+        const double x = size(random), y = size(random);
+        std::vector<Vec3d> points{{0, 0, 1}, {x, 0, 1}, {x, y, 1}, {0, y, 1}};
+        for (Vec3d& p : points)
+            p = {p.x * (1 + off(random)), p.y * (1 + off(random)), p.z * (1 + off(random))};
+        EXPECT_EQ(cut(points), wanted) << i;
+    }
+    EXPECT_EQ(cut({{0, 0, 0}, {1, -0.4, 0}, {2, 0, 0}, {1, 0.4, 0}}),
+              (Triangles{{0, 1, 3}, {1, 2, 3}}));
+}
+
 TEST(RingMarks, FindsTheNextAllRound) {
     std::mt19937 random(3);
     for (const std::uint32_t n : {1u, 63u, 64u, 65u, 4097u, 5000u}) {

@@ -55,7 +55,8 @@ TEST(LampImages, AreFoundWhereTheyAre) {
     const auto scene = lampAndMirror().build();
     const Camera camera(*scene, kSize, kSize);
     const LightSampler lights(*scene);
-    const SeenLamps lamps(*scene, lights, camera, {.width = kSize, .height = kSize});
+    const SeenLamps lamps(*scene, lights, camera,
+                          {.width = kSize, .height = kSize, .errorScale = {}});
     for (const auto& [shown, radiance] :
          {std::pair{kStraight, kShine}, std::pair{kMirrored, kReflected * kShine}}) {
         int found = 0;
@@ -86,7 +87,8 @@ TEST(LampImages, AreFoundInGlass) {
     const auto scene = maker.build();
     const Camera camera(*scene, kSize, kSize);
     const LightSampler lights(*scene);
-    const SeenLamps lamps(*scene, lights, camera, {.width = kSize, .height = kSize});
+    const SeenLamps lamps(*scene, lights, camera,
+                          {.width = kSize, .height = kSize, .errorScale = {}});
     constexpr int kFine = 16;  // places along a pixel
     std::vector<LampRay> rays;
     int shown = 0, found = 0;

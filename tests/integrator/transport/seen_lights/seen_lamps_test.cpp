@@ -30,7 +30,7 @@ struct View {
         : scene(maker.build()),
           camera(*scene, kSize, kSize),
           lights(*scene),
-          lamps(*scene, lights, camera, {.width = kSize, .height = kSize}) {}
+          lamps(*scene, lights, camera, {.width = kSize, .height = kSize, .errorScale = {}}) {}
 
     Ray ray(const Sampler& sampler) const {
         const Vec2f place = sampler.get2D(Purpose::kPlace);
