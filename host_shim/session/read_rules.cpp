@@ -8,7 +8,6 @@
 #include <cstdlib>
 
 #include "host_shim/formats/all/scene_readers.h"
-#include "host_shim/formats/scene_twin.h"
 #include "host_shim/formats/sidecar/sidecar.h"
 #include "host_shim/formats/sidecar/sidecar_parts.h"
 #include "host_shim/formats/source_file.h"
@@ -105,7 +104,6 @@ SceneData readScene(const Options& options, const WarningSink& warn,
     SceneData scene = sceneReaderFor(options.scene).read({options.scene, warn, goOn, place, rules});
     if (sidecar) addSidecar(*sidecar, scene, limits);
     addSky(options.sky, scene);
-    if (options.twin != 0) makeTwin(options.twin, scene);
     if (options.bumpIsNormal) takeBumpAsNormal(scene.materials);
     if (options.alphaOfPictures) takeAlphaOfPictures(scene.materials);
     return scene;

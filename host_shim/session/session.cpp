@@ -12,6 +12,7 @@
 #include "host_shim/colour/display_picture.h"
 #include "host_shim/formats/all/scene_readers.h"
 #include "host_shim/formats/lamps.h"
+#include "host_shim/formats/scene_twin.h"
 #include "host_shim/formats/source_file.h"
 #include "host_shim/log/guarded.h"
 #include "host_shim/pictures/compare.h"
@@ -242,6 +243,8 @@ void Session::buildScene(const ColourPipeline& colour, TemporaryFolder& folder,
                               data.materialFiles.size(), camera.eye[0], camera.eye[1],
                               camera.eye[2], camera.lookAt[0], camera.lookAt[1], camera.lookAt[2]));
     TemporaryFolder ofSky;
+    // Not before the camera is found: of views that are alike it may find another.
+    if (m_options.twin != 0) makeTwin(m_options.twin, data);
     makeSky(camera.up[2] > std::abs(camera.up[1]), ofSky, data);
     handOver(data, camera, colour, folder, scene);
     if (m_options.writeSidecar) writeSidecar(data);

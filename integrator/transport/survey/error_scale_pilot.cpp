@@ -100,7 +100,10 @@ RayFootprint widened(RayFootprint footprint, const FrameLattice& lattice) {
     return footprint;
 }
 
-Cells look(const Scene& scene, const RenderSettings& settings, const CancelCheck& cancel) {
+// isEnough: of the cells so far, after each round.
+template <typename IsEnough>
+Cells look(const Scene& scene, const RenderSettings& settings, const CancelCheck& cancel,
+           IsEnough isEnough) {
     // By power: a choice of many lights takes a tree, and time that a start hasn't got.
     const LightSampler lights = LightSampler::forPhotons(scene);
     const Camera camera(scene, settings.width, settings.height);
@@ -125,6 +128,7 @@ Cells look(const Scene& scene, const RenderSettings& settings, const CancelCheck
             note(seen, luminance, cells[i]);
         });
         for (const std::uint64_t some : rays) traced += some;
+        if (isEnough(cells, round + 1)) break;
     }
     return cells;
 }
@@ -178,11 +182,8 @@ std::vector<Lit> litOf(const std::vector<Metered>& metered) {
     return lit;
 }
 
-}  // namespace
-
-std::int32_t stopsToMiddleGrey(const Scene& scene, const RenderSettings& settings,
-                               const CancelCheck& cancel) {
-    const std::vector<Lit> lit = litOf(meteredOf(look(scene, settings, cancel)));
+double stopsOf(const Cells& cells) {
+    const std::vector<Lit> lit = litOf(meteredOf(cells));
     double all = 0;
     for (const Lit& one : lit) all += one.count;
     double brighter = kHighlightShare * all, highlight = 0;
@@ -198,14 +199,35 @@ std::int32_t stopsToMiddleGrey(const Scene& scene, const RenderSettings& setting
     const double stops = std::min(pinnedLog2(kMiddleGrey) - sum / all,
                                   pinnedLog2(kMostHighlight) - pinnedLog2(highlight));
     constexpr double kMost = ErrorScale::kMostStops;
-    return static_cast<std::int32_t>(std::round(std::clamp(stops, -kMost, kMost)));
+    return std::clamp(stops, -kMost, kMost);
+}
+
+bool isAnyLit(const Cells& cells) {
+    return std::ranges::any_of(
+        cells, [](const Cell& cell) { return cell.surfaces.sum > 0 || cell.dim.sum > 0; });
+}
+
+// So few paths know well enough that a picture is far from where a scale begins.
+bool isClearlyNeutral(const Cells& cells, std::uint32_t rounds) {
+    constexpr std::uint32_t kLeastRounds = 2;
+    return rounds >= kLeastRounds && isAnyLit(cells) &&
+           std::abs(stopsOf(cells)) < 0.5 * kNeutralStops;
+}
+
+}  // namespace
+
+std::int32_t stopsToMiddleGrey(const Scene& scene, const RenderSettings& settings,
+                               const CancelCheck& cancel) {
+    const auto never = [](const Cells&, std::uint32_t) { return false; };
+    return static_cast<std::int32_t>(std::round(stopsOf(look(scene, settings, cancel, never))));
 }
 
 ErrorScale findErrorScale(const Scene& scene, const RenderSettings& settings,
                           const CancelCheck& cancel) {
     if (scene.lights().empty()) return {};
-    const std::int32_t stops = stopsToMiddleGrey(scene, settings, cancel);
-    return std::abs(stops) <= kNeutralStops ? ErrorScale() : ErrorScale(stops);
+    const double stops = stopsOf(look(scene, settings, cancel, isClearlyNeutral));
+    const auto whole = static_cast<std::int32_t>(std::round(stops));
+    return std::abs(whole) <= kNeutralStops ? ErrorScale() : ErrorScale(whole);
 }
 
 }  // namespace pm
