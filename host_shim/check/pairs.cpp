@@ -110,13 +110,17 @@ Picture pixelNoiseOf(const std::vector<const Picture*>& pictures) {
         deviations[c] = {std::string("deviation.") + kColours[c], false, {}};
         const std::size_t size = beautyOf(first).values[c].size();
         std::vector<double> sums(size), squares(size);
-        for (const Picture* picture : pictures)
-            for (std::size_t i = 0; i < size; ++i) sums[i] += beautyOf(*picture).values[c][i];
-        for (const Picture* picture : pictures)
+        for (const Picture* picture : pictures) {
+            const std::span<const float> values = beautyOf(*picture).values[c];
+            for (std::size_t i = 0; i < size; ++i) sums[i] += values[i];
+        }
+        for (const Picture* picture : pictures) {
+            const std::span<const float> values = beautyOf(*picture).values[c];
             for (std::size_t i = 0; i < size; ++i) {
-                const double off = beautyOf(*picture).values[c][i] - sums[i] / count;
+                const double off = values[i] - sums[i] / count;
                 squares[i] += off * off;
             }
+        }
         for (std::size_t i = 0; i < size; ++i) {
             means[c].values.push_back(static_cast<float>(sums[i] / count));
             deviations[c].values.push_back(static_cast<float>(std::sqrt(squares[i] / (count - 1))));
