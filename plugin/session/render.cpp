@@ -105,8 +105,7 @@ void Render::start() {
         throw CallError(CallStatus::kState, "the render was started before");
     m_startTime = std::chrono::steady_clock::now();
     checkDelivery(m_settings);
-    // Before the plan divides memory it traces some photons.
-    m_scene->scene->setGroupBudget(kLeastGroups);
+    RenderCaches::holdLeast(*m_scene, m_settings.number(Setting::kMemoryLimit) > 0);
     auto made = std::make_shared<RenderWork>(*m_scene, m_settings);
     RenderPages* const pages = made->pages();
     made->divideMemory(std::make_unique<RenderCaches>(m_scene, made->memory(),

@@ -51,6 +51,11 @@ RenderCaches::RenderCaches(std::shared_ptr<const RenderScene> scene, const Memor
                            PhotonPaging* photons)
     : m_scene(std::move(scene)), m_ledger(plannedBytes(plan), cachesOf(*m_scene, plan, photons)) {}
 
+void RenderCaches::holdLeast(const RenderScene& scene, bool isLimited) {
+    scene.scene->setGroupBudget(kLeastGroups);
+    if (isLimited) scene.textureSystem->holdAtMost(TextureSystem::kLeastBytes);
+}
+
 void RenderCaches::bucketDone() {
     if (m_buckets.fetch_add(1, std::memory_order_relaxed) % kBucketsBetweenMoves ==
         kBucketsBetweenMoves - 1)

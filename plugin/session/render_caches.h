@@ -23,6 +23,11 @@ class RenderCaches {
     RenderCaches(std::shared_ptr<const RenderScene> scene, const MemoryPlan& plan,
                  PhotonPaging* photons);
 
+    // The least that the scene's work with, for pilots, which come before the plan divides memory:
+    // photons and paths for what the plan and the error's scale are to be. isLimited: memory is, so
+    // that this goes for textures as well, which else stay for the render.
+    static void holdLeast(const RenderScene& scene, bool isLimited);
+
     // A bucket is done; from time to time memory moves.
     void bucketDone();
     // For the statistics: what each has now, and how often memory moved.

@@ -71,9 +71,9 @@ TEST(BruteForceBesideCycles, FourRooms) {
     for (const auto& [name, maker] : rooms) {
         const host::Picture cycles = host::readExr(folder / fmt::format("cycles_{}.exr", name));
         fmt::print("  {}\n", name);
-        // What glass of roughness .5 scatters more than once Cycles 3.4 follows from facet to
-        // facet.
-        const double allowed = std::string_view(name) == "rough" ? 0.03 : 0.016;
+        // Means of a quarter differ by .5 % from seed to seed. What glass of roughness .5 scatters
+        // more than once Cycles 3.4 follows from facet to facet.
+        const double allowed = std::string_view(name) == "rough" ? 0.03 : 0.022;
         EXPECT_LT(largestDifference(maker, cycles), allowed) << name;
     }
     std::filesystem::remove_all(folder);
