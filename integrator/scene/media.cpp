@@ -87,15 +87,21 @@ bool Scene::Media::isBefore(const Body& a, const Body& b) const {
 }
 
 const Scene::Media::Body* Scene::Media::bodyAt(const Vec3f& position) const {
-    Ray ray{position, kOutwards};
+    float end = -1.0f;
+    for (const Body& body : m_bodies)
+        if (body.mayHold(position))
+            end = std::max(end, std::min({(body.hi.x - position.x) / kOutwards.x,
+                                          (body.hi.y - position.y) / kOutwards.y,
+                                          (body.hi.z - position.z) / kOutwards.z}));
+    if (end < 0.0f) return nullptr;
+    // All faces of a body are in its box.
+    Ray ray{position, kOutwards, end};
     ray.viewer = kAllRays;
     Balance balance;
     m_scene.m_tracer.stopped(ray, [&](const RayHit& hit) {
         const Body* const body = bodyOf(hit);
         if (!body) return false;
-        Surface surface;
-        m_scene.surfaceAt(hit, surface, {&ray, nullptr, true});
-        const bool isLeft = dot(surface.geometricNormal, ray.direction) > 0.0f;
+        const bool isLeft = dot(frontAt(hit, ray), ray.direction) > 0.0f;
         balance.add(static_cast<std::uint32_t>(body - m_bodies.data()), isLeft ? 1 : -1);
         return false;
     });
@@ -105,6 +111,20 @@ const Scene::Media::Body* Scene::Media::bodyAt(const Vec3f& position) const {
         if (!best || isBefore(body, *best)) best = &body;
     });
     return best;
+}
+
+Vec3f Scene::Media::frontAt(const RayHit& hit, const Ray& ray) const {
+    const ShapeRecord& record = m_scene.m_shapes[hit.shape];
+    if (!record.curved) return record.facet(hit.primitive, record.corner(hit.primitive)).normal;
+    Surface surface;
+    m_scene.surfaceAt(hit, surface, {&ray, nullptr, true});
+    return surface.geometricNormal;
+}
+
+bool Scene::Media::isAlone(const Body& body, const Vec3f& position) const {
+    return body.isConvex && std::ranges::none_of(m_bodies, [&](const Body& other) {
+               return &other != &body && other.mayHold(position);
+           });
 }
 
 std::int32_t Scene::Media::mediumOf(const Body* body) const {
@@ -122,7 +142,8 @@ const Scene::Media::Body* Scene::Media::beyond(const Body& body, const Vec3f& to
     for (const Body& other : m_bodies) {
         if (&other == &body || !(other.holds(body) || body.holds(other))) continue;
         const float gap = std::min(body.gap(), other.gap());
-        if (!(gap > surface.offset) || bodyAt(surface.position + towards * gap) != &other) continue;
+        const Vec3f place = surface.position + towards * gap;
+        if (!(gap > surface.offset) || !other.mayHold(place) || bodyAt(place) != &other) continue;
         surface.offset = gap;
         return &other;
     }
@@ -136,11 +157,19 @@ float Scene::Media::ior(std::int32_t medium) const {
 bool Scene::Media::resolve(const Vec3f& direction, Surface& surface) const {
     const bool isFront = dot(direction, surface.geometricNormal) < 0.0f;
     const Vec3f off = surface.geometricNormal * (isFront ? surface.offset : -surface.offset);
+    const bool isFace = !surface.isPane && m_scene.traits(surface.material).fillsItsInside;
+    const Body* const body = isFace ? bodyOf({surface.shape, surface.primitive}) : nullptr;
+    if (body && isAlone(*body, surface.position)) {
+        const std::int32_t own = mediumOf(body);
+        surface.medium = isFront ? kNoMedium : own;
+        surface.eta = isFront ? ior(own) : 1.0f / ior(own);
+        return true;
+    }
     surface.medium = at(surface.position + off);
-    if (surface.isPane || !m_scene.traits(surface.material).fillsItsInside) return true;
+    if (!isFace) return true;
     const Vec3f towards = isFront ? -surface.geometricNormal : surface.geometricNormal;
     std::int32_t there;
-    if (const Body* const body = bodyOf({surface.shape, surface.primitive})) {
+    if (body) {
         there = mediumOf(beyond(*body, towards, surface));
         if (surface.medium == there) return false;
     } else {

@@ -15,8 +15,9 @@ namespace pm {
 // other, or absorb with something inside them. A body is a closed shape of one material, or open
 // ones that are closed together, with the walls of cavities in it; where several are, the one of
 // the highest priority is there, of equal ones that with the smaller box, of these the later. What
-// is there is found by a ray from the place, so that it does not matter how a path came: cameras,
-// lights and kept points need know nothing of it. Threads: const functions from any, at once.
+// is there is found by a ray from the place to the end of the boxes that it lies in, so that it
+// does not matter how a path came: cameras, lights and kept points need know nothing of it.
+// Threads: const functions from any, at once.
 //
 // A face of a body with the same medium on both sides is none: rays go on. Between a body and one
 // that stands in it, a gap of vacuum narrower than kGap of the inner one's box is none either. So
@@ -48,7 +49,15 @@ class Scene::Media {
         std::uint32_t material;
         std::int32_t priority;
         Box3d box;
+        // One closed convex shape: all behind a face of it is it.
+        bool isConvex = false;
+        // The box in float, wider by the gap and by what rounds.
+        Vec3f lo{}, hi{};
 
+        bool mayHold(const Vec3f& position) const {
+            return position.x >= lo.x && position.y >= lo.y && position.z >= lo.z &&
+                   position.x <= hi.x && position.y <= hi.y && position.z <= hi.z;
+        }
         double size() const;
         float gap() const;  // scene units
         // Whether the other stands in it, to a gap.
@@ -61,6 +70,10 @@ class Scene::Media {
     // Null of vacuum.
     const Body* bodyAt(const Vec3f& position) const;
     std::int32_t mediumOf(const Body* body) const;
+    // The geometric normal where a ray meets a face.
+    Vec3f frontAt(const RayHit& hit, const Ray& ray) const;
+    // Whether no other body is near a place on a face of one that is convex.
+    bool isAlone(const Body& body, const Vec3f& position) const;
     // What is beyond a face of a body, past a gap too: then the surface's offset is that.
     const Body* beyond(const Body& body, const Vec3f& towards, Surface& surface) const;
     bool isBefore(const Body& a, const Body& b) const;

@@ -153,7 +153,35 @@ class Scene::Media::Search {
                 static_cast<std::uint32_t>(media.m_bodies.size()));
             box.grow(part->box);
         }
-        media.m_bodies.push_back({material, m_scene.material(material).priority, box});
+        Body body{material, m_scene.material(material).priority, box,
+                  parts.size() == 1 && isConvex(*parts[0])};
+        // Places come within roundings of faces, and as far aside as rays start.
+        const double reach = static_cast<double>(body.gap()) + 64 * 0x1p-24 * m_scene.m_radius;
+        body.lo = Vec3f(box.lo - Vec3d(reach));
+        body.hi = Vec3f(box.hi + Vec3d(reach));
+        media.m_bodies.push_back(body);
+    }
+
+    // No corner is before a face. Of many it isn't asked.
+    bool isConvex(const Part& part) const {
+        constexpr std::size_t kMostFaces = 256;
+        constexpr double kFlat = 1e-6;  // of a face's own size
+        const ShapeRecord& record = m_scene.m_shapes[part.shape];
+        if (record.curved) return true;
+        if (record.groups || record.materials.size() > 1 ||
+            record.mesh->triangles.size() > kMostFaces)
+            return false;
+        std::vector<std::array<Vec3d, 3>> faces;
+        visitFaces(part, [&](const std::array<Vec3d, 3>& face) { faces.push_back(face); });
+        return std::ranges::all_of(faces, [&](const std::array<Vec3d, 3>& face) {
+            const Vec3d normal = cross(face[1] - face[0], face[2] - face[0]);
+            const double most = kFlat * length(normal) * length(face[1] - face[0]);
+            return std::ranges::all_of(faces, [&](const std::array<Vec3d, 3>& other) {
+                return std::ranges::all_of(other, [&](const Vec3d& corner) {
+                    return dot(normal, corner - face[0]) <= most;
+                });
+            });
+        });
     }
 
     // To the smallest body of the material that it is in. False: there is none.
