@@ -170,16 +170,6 @@ Rgb Bsdf::reflectedOf(const Rgb& irradiance) const {
     return irradiance * diffuse() * kInvPi;
 }
 
-float Bsdf::etaSquared(Lobe lobe) const {
-    if (lobe == Lobe::kStraight) return m_at.straightEtaSquared;
-    if (lobe != Lobe::kRefraction) return 1.0f;
-    for (const Part& part : m_parts.all())
-        if (part.has(lobe))
-            return std::visit([](const auto& model) { return model.etaSquared(); },
-                              part.lobes.smooth);
-    return visitMostly(m_lobes.smooth, [](const auto& model) { return model.etaSquared(); });
-}
-
 Rgb Bsdf::evaluate(Lobe lobe, const Vec3f& in) const {
     if (m_parts.any()) return evaluateParts(lobe, in);
     const auto by = [&](const auto& model) { return model.evaluate(m_at, reflectance(lobe), in); };
@@ -214,17 +204,20 @@ bool Bsdf::sample(float uLobe, Vec2f u, BsdfSample& sample) const {
         i = static_cast<std::size_t>(std::max_element(m_probability.begin(), m_probability.end()) -
                                      m_probability.begin());
     }
-    return take(static_cast<Lobe>(i), m_probability[i], u, sample);
+    // What is left of the number that chose the lobe is as good as another.
+    const float way = std::clamp(uLobe / m_probability[i], 0.0f, 1.0f - 0x1p-24f);
+    return take(static_cast<Lobe>(i), m_probability[i], {u, way}, sample);
 }
 
-bool Bsdf::follow(Lobe lobe, BsdfSample& sample, Vec2f u) const {
+bool Bsdf::follow(Lobe lobe, BsdfSample& sample, LobeNumbers u) const {
     return has(lobe) && take(lobe, 1.0f, u, sample);
 }
 
-bool Bsdf::take(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const {
+bool Bsdf::take(Lobe lobe, float probability, LobeNumbers u, BsdfSample& sample) const {
     sample.lobe = lobe;
     sample.pdfSolidAngle = probability;
     sample.weight = reflectance(lobe) / probability;
+    sample.etaSquared = 1.0f;
     if (m_parts.any() && lobe != Lobe::kStraight) return takePart(lobe, probability, u, sample);
     switch (lobe) {
         case Lobe::kDiffuse:
@@ -245,7 +238,7 @@ bool Bsdf::take(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const
 
 // By a lobe that is not delta.
 template <typename OneOfModels>
-bool Bsdf::takeBy(const OneOfModels& lobe, Vec2f u, BsdfSample& sample) const {
+bool Bsdf::takeBy(const OneOfModels& lobe, LobeNumbers u, BsdfSample& sample) const {
     const bool hasValue =
         visitMostly(lobe, [&](const auto& model) { return model.sample(m_at, u, sample); });
     if (!hasValue) return false;

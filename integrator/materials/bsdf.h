@@ -42,10 +42,13 @@ class Bsdf {
     bool isShiny() const { return has(Lobe::kGlossy) || has(Lobe::kWide) || has(Lobe::kBroad); }
     // With which sample() chooses the lobe.
     float probability(Lobe lobe) const { return m_probability[index(lobe)]; }
-    // What the lobe reflects or transmits; at a refraction without its factor 1 / etaSquared(lobe).
+    // What the lobe reflects or transmits; at a refraction without its factor
+    // 1 / BsdfSample::etaSquared.
     const Rgb& reflectance(Lobe lobe) const { return m_lobes.of(lobe); }
     // Whether light that comes from behind leaves by a lobe that is not delta.
     bool goesThrough() const;
+    // Rough glass with a wide lobe, and nothing broad beside it.
+    bool isFrosted() const { return has(Lobe::kWide) && !has(Lobe::kBroad) && goesThrough(); }
     // Nothing but a diffuse lobe, or less.
     bool isDiffuseOnly() const { return m_diffuseOnly; }
     // Mean over channels of what could be reflected or transmitted is 0.
@@ -57,7 +60,7 @@ class Bsdf {
     void followAll() { m_followsAll = true; }
     // The same for a lobe that is taken for sure, so that no choice is in the weight. False also
     // where the surface has no such lobe. u: a delta lobe needs none, but of photons.
-    bool follow(Lobe lobe, BsdfSample& sample, Vec2f u = {}) const;
+    bool follow(Lobe lobe, BsdfSample& sample, LobeNumbers u = {}) const;
 
     // f |cos| of a lobe that is not delta, for light from `in` (unit, away from the surface).
     Rgb evaluate(Lobe lobe, const Vec3f& in) const;
@@ -81,10 +84,6 @@ class Bsdf {
     // All that is reflected or transmitted, for the albedo layer.
     Rgb albedo() const;
 
-    // Squared index on the far side over the one on this side, where the lobe leads there from one
-    // medium to another; 1 of others.
-    float etaSquared(Lobe lobe) const;
-
     // The normals turned to the side of `out`.
     const Vec3f& facingGeometricNormal() const { return m_at.ng; }
     const Vec3f& facingShadingNormal() const { return m_at.nd; }
@@ -106,7 +105,7 @@ class Bsdf {
         Rgb evaluate(Lobe lobe, const Vec3f& in) const;
         float pdfSolidAngle(Lobe lobe, const Vec3f& in, float choice) const;
         // As a model does, from a weight that is the reflectance over the choice's probability.
-        bool sample(Lobe lobe, Vec2f u, BsdfSample& sample) const;
+        bool sample(Lobe lobe, LobeNumbers u, BsdfSample& sample) const;
     };
     // The parts of a mixture; most surfaces have none, and nothing of this is touched then.
     class Parts {
@@ -135,12 +134,12 @@ class Bsdf {
     Rgb evaluateParts(Lobe lobe, const Vec3f& in) const;
     Rgb evaluatePartsSmooth(const Vec3f& in) const;
     float pdfOfParts(Lobe lobe, const Vec3f& in, float choice) const;
-    bool takePart(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const;
+    bool takePart(Lobe lobe, float probability, LobeNumbers u, BsdfSample& sample) const;
     void chooseDiffuse(const Rgb& carried);
     void chooseProbabilities(const Rgb& carried);
-    bool take(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const;
+    bool take(Lobe lobe, float probability, LobeNumbers u, BsdfSample& sample) const;
     template <typename OneOfModels>
-    bool takeBy(const OneOfModels& lobe, Vec2f u, BsdfSample& sample) const;
+    bool takeBy(const OneOfModels& lobe, LobeNumbers u, BsdfSample& sample) const;
 
     LobePoint m_at;
     bool m_black = false, m_diffuseOnly = false, m_followsAll = false;

@@ -25,7 +25,7 @@ float Bsdf::Part::pdfSolidAngle(Lobe lobe, const Vec3f& in, float choice) const 
     return visit(lobe, [&](const auto& model) { return model.pdfSolidAngle(at, in, choice); });
 }
 
-bool Bsdf::Part::sample(Lobe lobe, Vec2f u, BsdfSample& sample) const {
+bool Bsdf::Part::sample(Lobe lobe, LobeNumbers u, BsdfSample& sample) const {
     if (isDelta(lobe))
         return std::visit([&](const auto& model) { return model.sample(at, u.x, sample); },
                           lobes.smooth);
@@ -113,7 +113,7 @@ float Bsdf::arrivalAtParts() const {
 }
 
 // One of the parts by its share; what is not delta counts by the densities of all.
-bool Bsdf::takePart(Lobe lobe, float probability, Vec2f u, BsdfSample& sample) const {
+bool Bsdf::takePart(Lobe lobe, float probability, LobeNumbers u, BsdfSample& sample) const {
     const Part* chosen = nullptr;
     float share = 0.0f;
     for (const Part& part : m_parts.all()) {

@@ -14,7 +14,7 @@ void followFootprint(const Vec3f& in, const Surface& surface, const Bsdf& bsdf,
     if (sample.lobe == Lobe::kReflection)
         footprint.reflect(in, normal, turned);
     else if (sample.lobe == Lobe::kRefraction)
-        footprint.refract(in, normal, turned, std::sqrt(bsdf.etaSquared(sample.lobe)));
+        footprint.refract(in, normal, turned, std::sqrt(sample.etaSquared));
     else
         footprint.widen(sample.direction, sample.pdfSolidAngle);
 }

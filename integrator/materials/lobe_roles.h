@@ -13,6 +13,9 @@ struct LobeRoles {
     // Half of a Phong lobe's greatest value lies 10 degrees aside, or farther; facets have half of
     // D's 5 degrees aside. What is so broad casts no caustics.
     float broadRoughness = 0.369f, broadExponent = 45.0f;
+    // Of metal, which sends on all that it gets: a gather ray that meets its highlight brings far
+    // more than others, and photons that it has spread lie evenly.
+    float broadRoughnessOfMetal = 0.65f;
     // From here on a ray along a lobe seldom finds a lamp's image: photons do it better.
     float wideRoughness = 0.25f, wideExponent = 510.0f;
 };
@@ -21,8 +24,10 @@ struct LobeRoles {
 // textures.
 inline Lobe glossyRoleOf(const MaterialDescription& material, const LobeRoles& roles) {
     // Glass is never broad: what goes through it is none of the surface's.
+    const float broad =
+        material.kind == MaterialKind::kMirror ? roles.broadRoughnessOfMetal : roles.broadRoughness;
     if (material.kind != MaterialKind::kDielectric &&
-        isAtLeastAsRough(material, roles.broadRoughness, roles.broadExponent))
+        isAtLeastAsRough(material, broad, roles.broadExponent))
         return Lobe::kBroad;
     return isAtLeastAsRough(material, roles.wideRoughness, roles.wideExponent) ? Lobe::kWide
                                                                                : Lobe::kGlossy;

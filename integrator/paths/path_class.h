@@ -11,12 +11,14 @@ namespace pm {
 
 // What paths have been through, in the letters of light path expressions: L a lamp, E the eye, D
 // the diffuse lobe, B a broad one, S any other but going straight on, which is none; W is a lobe
-// that is broad, or glossy and wide.
+// that is broad, or glossy and wide, G the wide one of frosted glass.
 //
 //   class      read from the eye                                a photon of it is, where it lands
 //   emission   E S* L, every S delta                            -
-//   direct     E S* (D|B) L; E S+ L where one is glossy         kStraight
-//   caustic    E S* D (B|S)* S L; E S* W (B|S)* S L             kSpecular
+//   direct     E S* (D|B) L; E S+ L where one is glossy, but    kStraight
+//              for caustics
+//   caustic    E S* D (B|S)* S L; E S* W (B|S)* S L, but not    kSpecular
+//              E S* G (B|S)* G L
 //   indirect   all others, with two D or B or more              kDiffuse to kLater
 
 // Which part of the picture a light path belongs to. Each path is in exactly one.
@@ -31,14 +33,19 @@ struct PathState {
     bool lastIsSpecular = false;
     bool anyGlossy = false, anyDiffuse = false;
     bool isPastWide = false;       // it has met a W, and no D
+    bool isPastFrosted = false;    // and the first W was a G
     bool isCausticOnWide = false;  // what light is found next the first W receives as a caustic
 
-    void scatter(Lobe lobe) {
+    // isFrosted: see Bsdf.
+    void scatter(Lobe lobe, bool isFrosted) {
         if (lobe == Lobe::kStraight) return;
         const bool diffuse = lobe == Lobe::kDiffuse;
         lastIsSpecular = !diffuse && lobe != Lobe::kBroad;
         anyDiffuse = anyDiffuse || diffuse;
-        isCausticOnWide = isPastWide && lastIsSpecular;
+        // What shines through frosted glass next-event estimation finds well, where it goes in.
+        isCausticOnWide =
+            isPastWide && lastIsSpecular && !(isPastFrosted && isFrosted && lobe == Lobe::kWide);
+        if (!isPastWide) isPastFrosted = isFrosted && lobe == Lobe::kWide;
         isPastWide = !anyDiffuse && (isPastWide || isWide(lobe));
         anyGlossy = anyGlossy || lobe == Lobe::kGlossy || lobe == Lobe::kWide;
         if (since != Since::kNone)
@@ -48,9 +55,9 @@ struct PathState {
             firstIsDiffuse = diffuse;
         }
     }
-    PathState after(Lobe lobe) const {
+    PathState after(Lobe lobe, bool isFrosted) const {
         PathState state = *this;
-        state.scatter(lobe);
+        state.scatter(lobe, isFrosted);
         return state;
     }
     bool hasMetNoDiffuse() const { return since == Since::kNone; }

@@ -96,6 +96,7 @@ enum class Purpose : std::uint8_t {
     kDescent,  // whether what descends from a caustic is followed
     kStore,    // whether a photon is kept where it lands
     kPilot,    // a pilot's own choice, where its path has stopped
+    kWay,      // reflected, or let through, where a lobe does both
 };
 
 // The random numbers of one path, or of one of its branches: a function of (seed, stream, sequence,

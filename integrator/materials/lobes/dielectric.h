@@ -24,9 +24,9 @@ struct Dielectric {
         return {Rgb(share * at.opacity), tint * ((1.0f - share) * at.opacity)};
     }
     static bool sendsByWays(const LobePoint& at) { return at.bendsPhotons(); }
-    float etaSquared() const { return eta * eta; }
 
     bool sample(const LobePoint& at, float u, BsdfSample& sample) const {
+        if (sample.lobe == Lobe::kRefraction) sample.etaSquared = eta * eta;
         if (sendsByWays(at))
             return takeWay(sample.lobe == Lobe::kReflection ? reflected : refracted, u, sample);
         return sample.lobe == Lobe::kReflection ? reflectOn(at, sample)

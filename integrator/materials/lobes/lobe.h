@@ -41,11 +41,21 @@ constexpr bool isDelta(Lobe lobe) {
 // Source: Veach 1997, sections 5.2 and 5.3.
 enum class Transport : std::uint8_t { kRadiance, kPhotons };
 
+// In [0, 1)^3: what a lobe takes its direction by, and, where it has two ways to send light, which.
+struct LobeNumbers : Vec2f {
+    float way = 0.0f;
+
+    constexpr LobeNumbers() = default;
+    constexpr LobeNumbers(Vec2f direction, float way_) : Vec2f(direction), way(way_) {}
+};
+
 struct BsdfSample {
     Vec3f direction;             // unit, away from the surface
     Rgb weight;                  // f |cos| / pdf, the lobe's choice included
     float pdfSolidAngle = 0.0f;  // sr^-1, the lobe's choice included; of a delta lobe its
                                  // choice's probability
+    float etaSquared = 1.0f;     // of the medium that it leads into over the one it came from, by
+                                 // their indices; 1 where it stays in one
     Lobe lobe = Lobe::kDiffuse;
 };
 

@@ -18,7 +18,8 @@ namespace pm {
 // radiance: tests/integrator/bsdf_test.cpp and warps_test.cpp hold both.
 template <typename T>
 concept ScatteringModel = requires(const T& lobe, const LobePoint& at, const Rgb& reflectance,
-                                   const Vec3f& in, float choice, Vec2f u, BsdfSample& sample) {
+                                   const Vec3f& in, float choice, LobeNumbers u,
+                                   BsdfSample& sample) {
     { lobe.evaluate(at, reflectance, in) } -> std::same_as<Rgb>;
     { lobe.pdfSolidAngle(at, in, choice) } -> std::same_as<float>;
     { lobe.sample(at, u, sample) } -> std::same_as<bool>;
@@ -36,15 +37,14 @@ concept DiffuseModel = ScatteringModel<T> &&
 
 // A delta, in the roles kReflection and kRefraction. shares: what it sends on by each; asked once,
 // before all else, so that it may keep what it finds. sendsByWays:
-// photons leave by the ways of smooth_boundary.h, whose shares may add to more than 1. etaSquared:
-// the index on the far side over this side's, squared. sample: finds the direction for the role
-// that the sample says, and finishes the weight; pdfSolidAngle is the probability of the choice.
+// photons leave by the ways of smooth_boundary.h, whose shares may add to more than 1. sample:
+// finds the direction for the role that the sample says, and finishes the weight; pdfSolidAngle is
+// the probability of the choice.
 template <typename T>
 concept SmoothModel = requires(T& made, const T& lobe, const LobePoint& at, float u,
                                BsdfSample& sample) {
     { made.shares(at) } -> std::same_as<SmoothShares>;
     { lobe.sendsByWays(at) } -> std::same_as<bool>;
-    { lobe.etaSquared() } -> std::same_as<float>;
     { lobe.sample(at, u, sample) } -> std::same_as<bool>;
 };
 
@@ -52,7 +52,6 @@ concept SmoothModel = requires(T& made, const T& lobe, const LobePoint& at, floa
 struct NotSmooth {
     static SmoothShares shares(const LobePoint&) { return {}; }
     static bool sendsByWays(const LobePoint&) { return false; }
-    static float etaSquared() { return 1.0f; }
     static bool sample(const LobePoint&, float, BsdfSample&) { return false; }
 };
 

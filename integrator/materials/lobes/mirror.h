@@ -15,7 +15,6 @@ struct Mirror {
         return {sendsByWays(at) ? shareOf(ways(at)) : shareSeenFrom(at, at.out), Rgb()};
     }
     static bool sendsByWays(const LobePoint& at) { return at.bendsPhotons(); }
-    static float etaSquared() { return 1.0f; }
 
     bool sample(const LobePoint& at, float u, BsdfSample& sample) const {
         if (sendsByWays(at)) return takeWay(ways(at), u, sample);

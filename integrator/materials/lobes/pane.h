@@ -19,7 +19,6 @@ struct Pane {
         return {Rgb(reflected) + tint * tint * (reflected * through), tint * tint * through};
     }
     static bool sendsByWays(const LobePoint&) { return false; }
-    static float etaSquared() { return 1.0f; }
 
     static bool sample(const LobePoint& at, float, BsdfSample& sample) {
         return sample.lobe == Lobe::kReflection ? reflectOn(at, sample)

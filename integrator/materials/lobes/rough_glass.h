@@ -50,24 +50,26 @@ struct RoughGlass {
                (local.z > 0.0f ? reflectedDensity(out, local) : throughDensity(out, local));
     }
 
-    bool sample(const LobePoint& at, Vec2f u, BsdfSample& sample) const {
+    bool sample(const LobePoint& at, LobeNumbers u, BsdfSample& sample) const {
         const Frame frame(at.ns);
         const Vec3f out = frame.toLocal(at.out);
         if (!(out.z > 0.0f)) return false;
-        const bool goesThrough = !take(u.x, reflects(out));
-        const bool byMore = take(u.x, missing(out));
+        bool goesThrough;
         Vec3f in;
-        if (byMore) {
+        if (take(u.way, missing(out))) {
+            goesThrough = !take(u.way, reflectsMore());
             in = sampleCosineHemisphere(u);
             if (goesThrough) in.z = -in.z;
         } else {
             const Vec3f h = ggx.sampleVisible(out, u);
             const float seen = dot(out, h);
+            goesThrough = !take(u.way, reflects(seen));
             in = h * (2.0f * seen) - out;
             if (goesThrough && !refract(out, h, in)) return false;
             in = normalize(in);
         }
         if (goesThrough ? !(in.z < 0.0f) : !(in.z > 0.0f)) return false;
+        if (goesThrough) sample.etaSquared = eta() * eta();
         sample.direction = normalize(frame.toWorld(in));
         const Rgb value =
             goesThrough ? tint * throughValue(at, out, in) : Rgb(reflectedValue(out, in));
@@ -91,9 +93,16 @@ struct RoughGlass {
         u = std::min(u, 1.0f - 0x1p-24f);
         return isTaken;
     }
-    // With which probability what is sampled is reflected.
-    float reflects(const Vec3f& out) const {
-        return std::clamp(fresnelDielectric(out.z, eta()), 0.1f, 0.9f);
+    // With which probability a facet that is seen under a cosine reflects what is sampled: in
+    // proportion to what it sends either way, so that no weight has the choice in it.
+    float reflects(float seen) const { return ofBoth(fresnelDielectric(clamp01(seen), eta())); }
+    // The same of what is scattered by more than one facet.
+    float reflectsMore() const {
+        return ofBoth(1.0f - table->crossing(isInside ? 1 : 0, ggx.alpha));
+    }
+    float ofBoth(float reflected) const {
+        const float both = reflected + meanChannel(tint) * (1.0f - reflected);
+        return both > 0.0f ? reflected / both : 1.0f;
     }
     float missing(const Vec3f& out) const {
         return table->missing(isInside ? 1 : 0, out.z, ggx.alpha);
@@ -118,9 +127,10 @@ struct RoughGlass {
     }
     float reflectedDensity(const Vec3f& out, const Vec3f& in) const {
         const Vec3f h = normalize(out + in);
-        const float more = missing(out);
-        return reflects(out) * (more * in.z * kInvPi + (1.0f - more) * ggx.visibleDensity(out, h) /
-                                                           (4.0f * std::max(1e-12f, dot(out, h))));
+        const float more = missing(out), seen = dot(out, h);
+        return more * reflectsMore() * in.z * kInvPi + (1.0f - more) * reflects(seen) *
+                                                           ggx.visibleDensity(out, h) /
+                                                           (4.0f * std::max(1e-12f, seen));
     }
     // The facet by which light goes from one to the other; false: by none.
     bool facetOf(const Vec3f& out, const Vec3f& in, Vec3f& h) const {
@@ -152,8 +162,10 @@ struct RoughGlass {
         const float more = missing(out);
         Vec3f h;
         const float facets =
-            facetOf(out, in, h) ? ggx.visibleDensity(out, h) * stretch(out, in, h) : 0.0f;
-        return (1.0f - reflects(out)) * (more * -in.z * kInvPi + (1.0f - more) * facets);
+            facetOf(out, in, h)
+                ? (1.0f - reflects(dot(out, h))) * ggx.visibleDensity(out, h) * stretch(out, in, h)
+                : 0.0f;
+        return more * (1.0f - reflectsMore()) * -in.z * kInvPi + (1.0f - more) * facets;
     }
     Rgb scaled(const LobePoint& at, const Rgb& reflectance, const Rgb& value) const {
         return inProportion(reflectance, albedo(cosine(at)), value);

@@ -16,6 +16,7 @@ struct Straight {
 
     static bool sample(const LobePoint& at, BsdfSample& sample) {
         sample.direction = -at.out;
+        sample.etaSquared = at.straightEtaSquared;
         return true;
     }
 };

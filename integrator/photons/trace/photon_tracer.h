@@ -69,8 +69,9 @@ struct PhotonTraceResult {
     // comes by way of other lobes before it meets another diffuse surface: refocused.
     BigVector<Photon> descended;
     // Of caustic photons the arrivals at broad lobes and wide glossy ones before a diffuse one has
-    // scattered them. Marked, and at narrow glossy lobes, too: of lights that no ray meets, by way
-    // of delta lobes alone, which no path from the camera finds.
+    // scattered them, but for those in frosted glass that came in through such: paths find those.
+    // Marked, and at narrow glossy lobes, too: of lights that no ray meets, by way of delta lobes
+    // alone, which no path from the camera finds.
     BigVector<ReceivedPhoton> received;
     BigVector<EmissionRecord> records;  // of each photon that carried something, if asked for
     Focus focus;                        // that global photons were aimed at

@@ -68,6 +68,8 @@ bool TracedPhoton::goOn(PhotonStep& photon, const Surface& surface, const Bsdf& 
         return absorb(photon);
     Rgb scattered = flux * sample.weight * (keeps ? survival : 1.0f);
     photon.isUnmet = photon.isUnmet && isDelta(sample.lobe);
+    if (photon.stage == PhotonStage::kStraight && sample.lobe == Lobe::kWide)
+        photon.beganFrosted = bsdf.isFrosted();
     if (!advance(photon, sample.lobe, scattered)) return absorb(photon);
     if (!isFinite(scattered)) return lose(photon);
     balance.fluxAbsorbed += channelSum(flux) - channelSum(scattered);
@@ -162,7 +164,8 @@ bool TracedPhoton::divide(PhotonStep& photon, const Surface& surface, const Bsdf
         const float survival = all * (share < 0.5f ? std::max(share, kLeastShare) : 1.0f);
         const float u = next.random.get1D(Purpose::kLobe);
         BsdfSample sample;
-        if (!(u < survival) || !bsdf.follow(lobe, sample, {u / survival, 0})) return false;
+        if (!(u < survival) || !bsdf.follow(lobe, sample, {{u / survival, 0.0f}, 0.0f}))
+            return false;
         next.carried *= sample.weight * (1.0f / survival);
         next.stage = PhotonStage::kSpecular;
         next.events.add(survival);
@@ -225,6 +228,7 @@ double TracedPhoton::land(PhotonStep& photon, const Surface& surface, const Bsdf
 double TracedPhoton::receive(const PhotonStep& photon, const Surface& surface, const Bsdf& bsdf) {
     if (photon.stage != PhotonStage::kSpecular || !bsdf.isShiny()) return 0;
     if (!bsdf.has(Lobe::kWide) && !bsdf.has(Lobe::kBroad) && !photon.isUnmet) return 0;
+    if (photon.beganFrosted && bsdf.isFrosted()) return 0;
     m_batch.received.push_back(
         {{surface.position, photon.carried, PackedNormal(bsdf.facingGeometricNormal())},
          PackedDirection(-photon.ray.direction)});

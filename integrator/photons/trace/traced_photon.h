@@ -29,10 +29,11 @@ struct PhotonStep : PathStep {
     // It has passed, on its way from the light, what shadow rays pass and others do not, or the
     // other way round; see TracedPhoton::passesHidden().
     bool pastShadowless = false, pastMirrorless = false;
-    bool isUnmet = false;     // by delta lobes alone, from a light that no ray meets
-    float width = 0.0f;       // of the footprint that the ray starts from, scene units
-    std::uint32_t light = 0;  // where it comes from
-    PhotonClass of{};         // of its light and time
+    bool isUnmet = false;       // by delta lobes alone, from a light that no ray meets
+    bool beganFrosted = false;  // by frosted glass, where it came straight from its light
+    float width = 0.0f;         // of the footprint that the ray starts from, scene units
+    std::uint32_t light = 0;    // where it comes from
+    PhotonClass of{};           // of its light and time
 
     bool isVoid() const { return pastShadowless && pastMirrorless; }
     bool mayGoOnBy(Lobe lobe) const {

@@ -103,7 +103,9 @@ class GatherPath {
         end.position = m_scene.pointUnderRay(surface.position, step.ray, end.normal);
         end.reflected = bsdf.reflectedOf(step.carried);
         end.density = 0.0f;
-        end.readsCaustics = caustics && (m_ends.findsAll || (!step.atOnce && step.byBroadOnly));
+        end.readsCaustics =
+            caustics &&
+            (m_ends.findsAll || (!step.atOnce && (step.byBroadOnly || m_ends.findsRefocused)));
         if (caustics && step.atOnce && !m_ends.findsAll) {
             const float facing = -dot(step.ray.direction, end.normal);
             end.density =

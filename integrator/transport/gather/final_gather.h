@@ -28,6 +28,9 @@ struct GatherEnds {
     // What sent the ray out, where light of lamps that it meets at once is asked for as well.
     const LastScatter* from = nullptr;
     float width = 0.0f;  // of the footprint that the ray starts from, scene units
+    // By way of all lobes light of caustics is asked for; else by way of broad ones alone, and
+    // SurfaceEstimates have the rest.
+    bool findsRefocused = false;
     // But for light of lamps by way of other lobes than broad ones: a ReceivedMap has it.
     bool withoutCaustics = false;
 };
@@ -60,8 +63,8 @@ struct Gathered {
 // Follows a gather ray to the diffuse surfaces where the irradiance sites end it. Light that it
 // finds at a lamp is in `radiance` where the lobe before is a broad one, there also sampled. Met at
 // once, itself or straight on through what lets it pass, it is direct light; by way of a mirror,
-// glass or a narrow lobe a caustic. Nor is that of caustics met by way of such lobes: it is
-// refocused, with an estimate of its own. Source: Jensen 2001, section 9.2.
+// glass or a narrow lobe a caustic. That of caustics met by way of such lobes is refocused, and may
+// have an estimate of its own. Source: Jensen 2001, section 9.2.
 //
 // In two steps: the first asks for the site at the end to be at hand soon, the second reads it.
 // With another ray's first step between them memory has the time that it takes.

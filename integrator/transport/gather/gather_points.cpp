@@ -160,6 +160,7 @@ GatherPoints::Value GatherPoints::gather(const Point& point, const Origin& origi
     Gathered last;
     GatherEnds ends{m_sites, m_request.caustics, m_request.rays, m_request.lights};
     ends.width = origin.width;
+    ends.findsRefocused = !m_request.refocused;
     const auto addLast = [&] {
         endGather(ends, last);
         addTo(sum, last.radiance);

@@ -21,7 +21,7 @@ void CameraStep::leave(const Surface& surface, const Bsdf& bsdf, const BsdfSampl
 
 bool CameraStep::scatter(const Surface& surface, const Bsdf& bsdf, const BsdfSample& sample,
                          bool isPart) {
-    takeLobe(bsdf, sample);
+    takeLobe(sample);
     if (isPart) m_whole = std::min(m_whole, amount());
     if (amount() == 0.0f) return false;
     const float survival = events.add(std::min(1.0f, amount() / m_whole));

@@ -16,9 +16,9 @@ struct CameraStep : PathStep {
 
     // Of light found from here on, the share that reaches the camera; 1 where the path begins.
     float amount() const { return maxChannel(carried) * etaScale; }
-    void takeLobe(const Bsdf& bsdf, const BsdfSample& sample) {
+    void takeLobe(const BsdfSample& sample) {
         carried *= sample.weight;
-        if (isDelta(sample.lobe)) etaScale *= bsdf.etaSquared(sample.lobe);
+        etaScale *= sample.etaSquared;
     }
     // Along a sample whose lobe was taken.
     void leave(const Surface& surface, const Bsdf& bsdf, const BsdfSample& sample);
@@ -36,6 +36,10 @@ struct CameraStep : PathStep {
     bool m_isCut = false;
     float m_whole = 1.0f;
 };
+
+inline LobeNumbers lobeNumbers(const Sampler& random) {
+    return {random.get2D(Purpose::kDirection), random.get1D(Purpose::kWay)};
+}
 
 // By one lobe, chosen in proportion to what it would carry.
 inline bool sampleLobe(const Bsdf& bsdf, const Sampler& random, BsdfSample& sample) {

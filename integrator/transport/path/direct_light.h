@@ -67,9 +67,10 @@ struct DirectRadiance {
 template <typename Add>
 void addByLobes(const DirectRadiance& direct, const Bsdf& bsdf, const PathState& state,
                 const Add& add) {
-    if (bsdf.has(Lobe::kDiffuse)) add(state.after(Lobe::kDiffuse), direct.of(Lobe::kDiffuse));
+    if (bsdf.has(Lobe::kDiffuse))
+        add(state.after(Lobe::kDiffuse, false), direct.of(Lobe::kDiffuse));
     for (const Lobe lobe : kShinyLobes)
-        if (bsdf.has(lobe)) add(state.after(lobe), direct.of(lobe));
+        if (bsdf.has(lobe)) add(state.after(lobe, bsdf.isFrosted()), direct.of(lobe));
 }
 
 // How light that a diffuse lobe receives straight from a lamp is found.

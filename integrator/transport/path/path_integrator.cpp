@@ -42,7 +42,7 @@ class ReferencePath {
             if (step.isCut()) m_result.addCut(step.amount());
             return false;
         }
-        step.state.scatter(sample.lobe);
+        step.state.scatter(sample.lobe, bsdf.isFrosted());
         if (sample.lobe == Lobe::kStraight) return true;
         step.last = lastScatter(surface, sample);
         if (m_scene.viewersDiffer() && !isDelta(sample.lobe)) {

@@ -182,11 +182,13 @@ TracedPhotons PhotonPass::buildCaustics(PassMaps& maps, Control& control) {
             m_scene, maps.caustic->photons(), radius * factor, patchesOfSites(radius), factor,
             combineBits(m_settings.seed, maps.pass), check, m_paging.roomForSites);
         if (fillsSites(maps.caustic->photons())) maps.lamps->fill(check);
-        maps.refocusedPhotons = std::make_unique<PhotonMap>(
-            traced.descended.refocused().intoMap(check, m_scene.coreRadiusIfAny()));
-        maps.refocused = std::make_unique<SurfaceEstimate>(m_scene, *maps.refocusedPhotons,
-                                                           m_refocusedRadius->typical() * factor);
-        noteBuilding(maps, maps.refocusedPhotons->size());
+        if (m_refocusedRadius) {
+            maps.refocusedPhotons = std::make_unique<PhotonMap>(
+                traced.descended.refocused().intoMap(check, m_scene.coreRadiusIfAny()));
+            maps.refocused = std::make_unique<SurfaceEstimate>(
+                m_scene, *maps.refocusedPhotons, m_refocusedRadius->typical() * factor);
+            noteBuilding(maps, maps.refocusedPhotons->size());
+        }
     }
     const std::lock_guard lock(m_mutex);
     m_mapSeconds += watch.seconds();

@@ -91,6 +91,12 @@ bool PhotonPath::followLobes(const Surface& surface, const Bsdf& bsdf, StillToFi
         waysOn += survival[i] > 0.0f && goesOn(static_cast<Lobe>(i));
     const PhotonBranch arrived = branch;
     bool isFollowed = false;
+    const auto follow = [&](PhotonBranch part, Lobe lobe, float probability, bool isPart) {
+        if (!goOn(part, surface, bsdf, lobe, probability, isPart)) return;
+        if (isFollowed) waiting.add(branch);
+        branch = part;
+        isFollowed = true;
+    };
     for (std::size_t i = 0; i < kLobeCount; ++i) {
         if (survival[i] == 0.0f) continue;
         const auto lobe = static_cast<Lobe>(i);
@@ -99,24 +105,40 @@ bool PhotonPath::followLobes(const Surface& surface, const Bsdf& bsdf, StillToFi
             continue;
         }
         if (!goesOn(lobe)) {
-            followBroad(surface, bsdf, arrived, survival[i]);
+            const Sampler all = arrived.random.branch(static_cast<std::uint32_t>(lobe));
+            const std::uint32_t parts = partsAlong(bsdf, lobe, arrived.share);
+            for (std::uint32_t k = 0; k < parts; ++k)
+                followBroad(surface, bsdf, arrived, survival[i] * static_cast<float>(parts),
+                            all.part(parts, k));
             continue;
         }
+        const std::uint32_t parts = partsAlong(bsdf, lobe, arrived.share);
+        const bool isPart = waysOn > 1 || parts > 1;
         PhotonBranch part = arrived;
-        if (waysOn > 1) part.random = arrived.random.branch(static_cast<std::uint32_t>(lobe));
-        if (!goOn(part, surface, bsdf, lobe, survival[i], waysOn > 1)) continue;
-        if (isFollowed) waiting.add(branch);
-        branch = part;
-        isFollowed = true;
+        if (isPart) part.random = arrived.random.branch(static_cast<std::uint32_t>(lobe));
+        const Sampler all = part.random;
+        for (std::uint32_t k = 0; k < parts; ++k) {
+            if (parts > 1) part.random = all.part(parts, k);
+            follow(part, lobe, survival[i] * static_cast<float>(parts), isPart);
+        }
     }
     return isFollowed;
+}
+
+// Through rough glass and in rough metal a lamp, or what it lights most, is a glint that few paths
+// find: of all that the camera sample brings several are worth their time, as they share what led
+// there.
+std::uint32_t PhotonPath::partsAlong(const Bsdf& bsdf, Lobe lobe, float share) {
+    constexpr float kMost = 0.5f;
+    constexpr std::uint32_t kReflected = 4, kThrough = 16;
+    if (isDelta(lobe)) return 1;
+    return share * partOf(bsdf, lobe) > kMost ? (bsdf.goesThrough() ? kThrough : kReflected) : 1;
 }
 
 bool PhotonPath::goOn(PhotonBranch& branch, const Surface& surface, const Bsdf& bsdf, Lobe lobe,
                       float survival, bool isPart) {
     BsdfSample sample;
-    if (!bsdf.follow(lobe, sample,
-                     isDelta(lobe) ? Vec2f{} : branch.random.get2D(Purpose::kDirection)))
+    if (!bsdf.follow(lobe, sample, isDelta(lobe) ? LobeNumbers{} : lobeNumbers(branch.random)))
         return false;
     sample.weight *= 1.0f / survival;
     branch.share *= partOf(bsdf, lobe) / survival;
@@ -125,7 +147,7 @@ bool PhotonPath::goOn(PhotonBranch& branch, const Surface& surface, const Bsdf& 
         return false;
     }
     if (sample.lobe != Lobe::kStraight) {
-        branch.state.scatter(sample.lobe);
+        branch.state.scatter(sample.lobe, bsdf.isFrosted());
         branch.last = lastScatter(surface, sample, branch.lampSamples);
     }
     addLampsAlong(branch);
@@ -151,7 +173,7 @@ void PhotonPath::followDiffuse(const Surface& surface, const Bsdf& bsdf, const P
         BsdfSample sample;
         const auto [u, density] = GatherGuide::warp(guide, part.get2D(Purpose::kDirection));
         part.nextEvent();
-        if (!bsdf.follow(Lobe::kDiffuse, sample, u)) continue;
+        if (!bsdf.follow(Lobe::kDiffuse, sample, {u, 0.0f})) continue;
         const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle,
                                branch.lampSamples};
         const Ray ray = m_scene.rayOnwards(surface.position, bsdf.facingGeometricNormal(),
@@ -163,10 +185,9 @@ void PhotonPath::followDiffuse(const Surface& surface, const Bsdf& bsdf, const P
 
 // What is so blurred needs no look at what is met but the irradiance kept there.
 void PhotonPath::followBroad(const Surface& surface, const Bsdf& bsdf, const PhotonBranch& branch,
-                             float survival) {
-    Sampler random = branch.random.branch(static_cast<std::uint32_t>(Lobe::kBroad));
+                             float survival, Sampler random) {
     BsdfSample sample;
-    if (!bsdf.follow(Lobe::kBroad, sample, random.get2D(Purpose::kDirection))) return;
+    if (!bsdf.follow(Lobe::kBroad, sample, lobeNumbers(random))) return;
     random.nextEvent();
     SampleRadiance& result = m_result;
     const LastScatter last{surface, sample.direction, sample.lobe, sample.pdfSolidAngle,
@@ -180,6 +201,7 @@ void PhotonPath::followBroad(const Surface& surface, const Bsdf& bsdf, const Pho
                           true,
                           findsLamps ? &last : nullptr,
                           branch.footprint.width(),
+                          true,
                           m_maps.received != nullptr};
     Gathered found = finalGather(m_scene, ends, ray, 1.0f, random);
     if (!findsLamps) found.lampsStraight = lightAlong(m_scene, m_lights, ray, last, found.rays);
@@ -187,7 +209,7 @@ void PhotonPath::followBroad(const Surface& surface, const Bsdf& bsdf, const Pho
     const Rgb weight = branch.carried * sample.weight / survival;
     result.indirect += weight * found.radiance.wide;
     result.biasProbe += weight * (found.radiance.narrow - found.radiance.wide);
-    result.of(branch.state.after(sample.lobe).classify()) += weight * found.lampsStraight;
+    result.of(branch.state.after(sample.lobe, false).classify()) += weight * found.lampsStraight;
 }
 
 // Light that the ray finds at a lamp is direct, the other strategy of its next-event estimation;
@@ -201,9 +223,10 @@ void PhotonPath::gatherAlong(const Ray& ray, const LastScatter& last, StillToFin
     if (findsLamps && aside)
         result.direct += weight * lightAlong(m_scene, m_lights, ray, last, result.rays);
     if (!still.indirect) return;
-    const GatherEnds ends{*m_maps.global, m_maps.lamps, rays,
-                          &m_lights,      false,        findsLamps && !aside ? &last : nullptr,
-                          still.width};
+    const GatherEnds ends{*m_maps.global, m_maps.lamps,
+                          rays,           &m_lights,
+                          false,          findsLamps && !aside ? &last : nullptr,
+                          still.width,    !m_maps.refocused};
     const Gathered found = finalGather(m_scene, ends, ray, cosine, sampler);
     result.rays += found.rays;
     result.indirect += weight * found.radiance.wide;

@@ -96,8 +96,9 @@ class PhotonPath {
                       const Rgb& reflected, const PhotonBranch& branch);
     void followDiffuse(const Surface& surface, const Bsdf& bsdf, const PhotonBranch& branch,
                        StillToFind still, float survival);
+    // random: of the ray.
     void followBroad(const Surface& surface, const Bsdf& bsdf, const PhotonBranch& branch,
-                     float survival);
+                     float survival, Sampler random);
     void gatherAlong(const Ray& ray, const LastScatter& last, StillToFind still, const Rgb& weight,
                      std::uint32_t rays, float cosine, const Sampler& sampler);
     void sampleCaustics(const Surface& surface, const Bsdf& bsdf, const PhotonBranch& branch,
@@ -106,6 +107,8 @@ class PhotonPath {
     std::uint32_t ownGatherRays(float share) const;
     // Of all that a surface reflects, a lobe's part.
     static float partOf(const Bsdf& bsdf, Lobe lobe);
+    // Into how many paths one divides along a lobe. share: see PhotonBranch.
+    static std::uint32_t partsAlong(const Bsdf& bsdf, Lobe lobe, float share);
     // Of so many rays, a power of two, those that a part of a camera sample is worth; see
     // PhotonBranch::share.
     static std::uint32_t raysOfShare(std::uint32_t rays, float share);

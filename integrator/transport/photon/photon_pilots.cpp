@@ -24,6 +24,9 @@ constexpr double kGuidePays = 0.5;
 // Radius at which gather rays read caustics, over the typical one of those that are seen: rays blur
 // them anyway.
 constexpr float kRadiusOfGathered = 2.0f;
+// Refocused photons so thin that their estimates would be wider than this, over the typical radius
+// of caustics, blur more than gather rays do, which read caustics by way of all lobes then.
+constexpr float kSparseRefocused = 3.5f;
 // Caustics' radii, which rise slowly beside bright light, are to hold so many times K photons.
 constexpr double kSoughtInCaustics = 1.6;
 
@@ -79,7 +82,8 @@ void PhotonPass::chooseGatherRays(const PhotonMap& pilot, const CancelCheck& che
     if (m_plan.descent > 0.0f)
         lamps.emplace(m_scene, m_causticRadius->photons(), radiusOfGathered(), nullptr, 1.0f,
                       m_settings.seed, check);
-    const GatherEnds ends{sites, lamps ? &*lamps : nullptr, m_plan.gatherRays, &m_lights};
+    GatherEnds ends{sites, lamps ? &*lamps : nullptr, m_plan.gatherRays, &m_lights};
+    ends.findsRefocused = !m_refocusedRadius;
     m_raysOfPoint = gatherRaysFor(
         gatherSpread(m_scene, m_camera, m_lights, ends, m_settings, m_plan.errorScale, check),
         m_plan.gatherRays);
@@ -112,7 +116,8 @@ PhotonTraceResult PhotonPass::tracePilotOfCaustics(PhotonTraceRequest request,
     return both;
 }
 
-// Of caustics and of refocused light. Returns the pilot's descended photons.
+// Of caustics and, where there is enough of it, of refocused light. Returns the pilot's descended
+// photons.
 TracedPhotons PhotonPass::findCausticRadii(float fallback, Control& control) {
     if (!m_source) aim(control);
     const CancelCheck check(control.cancelled);
@@ -124,9 +129,12 @@ TracedPhotons PhotonPass::findCausticRadii(float fallback, Control& control) {
     if (m_plan.receivedMap)
         m_receivedRadius =
             std::make_unique<PilotRadius>(photonsOf(pilot.received), sought, fallback, check);
-    if (m_plan.descent > 0.0f)
+    if (m_plan.descent > 0.0f) {
         m_refocusedRadius = std::make_unique<PilotRadius>(
             pilot.descended.refocused().intoMap(check), sought, fallback, check);
+        if (m_refocusedRadius->typical() > kSparseRefocused * m_causticRadius->typical())
+            m_refocusedRadius.reset();
+    }
     return std::move(pilot.descended);
 }
 

@@ -210,8 +210,8 @@ void planCausticMap(const SceneTraits& traits, Plan& plan) {
     plan.reasons.push_back(fmt::format(
         "light descended from caustics: they are lamps to the gather points, which find them by "
         "rays to some of their photons, weighted against gather rays; what they send by way of "
-        "other lobes has a density estimate; {:.0f} % of their photons are followed on for the "
-        "rest",
+        "other lobes has a density estimate, or is found by gather rays where a pilot finds little "
+        "of it; {:.0f} % of their photons are followed on for the rest",
         plan.descent * 100.0f));
 }
 

@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include "integrator/transport/path/camera_step.h"
 
@@ -15,7 +16,10 @@ namespace pm {
 
 namespace {
 
-constexpr std::size_t kMostLamps = 32;
+constexpr std::size_t kMostLamps = 2048;
+// So few are all looked for in each area of the frame. Of more those that lie where rays by way of
+// the same lobes lead, at most so many that seem the largest.
+constexpr std::size_t kFewLamps = 32, kMostAhead = 128;
 // A path ends after so many lobes, or where it carries less.
 constexpr int kMostLobes = 10;
 constexpr float kLeastThroughput = 1e-4f;
@@ -118,7 +122,7 @@ std::optional<Ray> rayBy(const Scene& scene, const Camera& camera, std::uint64_t
                         step.carried);
         BsdfSample sample;
         if (!bsdf.follow(kDeltaLobes[(lobes >> shift) & 3], sample)) return std::nullopt;
-        step.takeLobe(bsdf, sample);
+        step.takeLobe(sample);
         step.leave(surface, bsdf, sample);
     }
     return step.ray;
@@ -156,7 +160,7 @@ struct EveryLobe {
             Step next = step;
             next.lobes = step.lobes << 2 | i;
             next.events.add(0.0f);
-            next.takeLobe(bsdf, sample);
+            next.takeLobe(sample);
             if (next.amount() < kLeastThroughput) continue;
             next.leave(surface, bsdf, sample);
             waiting.add(next);
@@ -245,6 +249,58 @@ class Starts {
     std::vector<double> m_distances;  // of a line to the lamp's centre; largest: left out
 };
 
+// What holds rays: a cone that begins at a ball.
+class RayCone {
+  public:
+    explicit RayCone(std::span<const LampRay> rays) {
+        Vec3d along(0);
+        for (const LampRay& r : rays) {
+            m_from += Vec3d(r.ray.origin) * (1.0 / static_cast<double>(rays.size()));
+            along += Vec3d(r.ray.direction);
+        }
+        m_axis = length(along) > 0 ? normalize(along) : Vec3d(rays[0].ray.direction);
+        for (const LampRay& r : rays) {
+            m_radius = std::max(m_radius, length(Vec3d(r.ray.origin) - m_from));
+            m_cosine = std::min(m_cosine, dot(m_axis, Vec3d(r.ray.direction)));
+        }
+        // Images may lie beyond the outermost of a few dozen rays.
+        m_cosine = 1 - kWider * (1 - m_cosine);
+    }
+    // How large a ball seems from there, its radius over its distance; 0 outside of the cone.
+    double seen(const LightBall& ball) const {
+        const Vec3d to = Vec3d(ball.centre) - m_from;
+        const auto radius = static_cast<double>(ball.radius);
+        const double distance = length(to), sine = (radius + m_radius) / distance;
+        if (!(sine < 1) || m_cosine < kAllAround) return radius / std::max(radius, distance);
+        // Of the cone's angle and the ball's together.
+        const double sineOfCone = std::sqrt(std::max(0.0, 1 - m_cosine * m_cosine));
+        const double cosine = m_cosine * std::sqrt(1 - sine * sine) - sineOfCone * sine;
+        return dot(m_axis, to) >= cosine * distance ? radius / distance : 0.0;
+    }
+
+  private:
+    static constexpr double kWider = 2.25;  // of the squared angle
+    static constexpr double kAllAround = -0.5;
+
+    Vec3d m_from{0}, m_axis;
+    double m_radius = 0, m_cosine = 1;
+};
+
+// Those of the lamps that rays by way of the same lobes may lead to.
+std::vector<LightBall> lampsAhead(const std::vector<LightBall>& lamps,
+                                  std::span<const LampRay> same) {
+    if (lamps.size() <= kFewLamps) return lamps;
+    const RayCone cone(same);
+    std::vector<std::pair<double, std::size_t>> ahead;
+    for (std::size_t i = 0; i < lamps.size(); ++i)
+        if (const double seen = cone.seen(lamps[i]); seen > 0) ahead.emplace_back(-seen, i);
+    std::ranges::sort(ahead);
+    ahead.resize(std::min(ahead.size(), kMostAhead));
+    std::vector<LightBall> chosen;
+    for (const auto& [seen, i] : ahead) chosen.push_back(lamps[i]);
+    return chosen;
+}
+
 // The smallest ball around both.
 LightBall joined(const LightBall& a, const LightBall& b) {
     const Vec3f apart = b.centre - a.centre;
@@ -322,7 +378,7 @@ std::vector<LampImage> findLampImages(const Scene& scene, const Camera& camera,
     for (std::size_t first = 0, last = 0; first < rays.size(); first = last) {
         while (last < rays.size() && rays[last].lobes == rays[first].lobes) ++last;
         const auto same = std::span(rays).subspan(first, last - first);
-        for (const LightBall& lamp : lamps) {
+        for (const LightBall& lamp : lampsAhead(lamps, same)) {
             const auto before = images.size();
             Starts starts(lamp, same);
             for (int i = 0; i < kStarts; ++i) {

@@ -44,8 +44,8 @@ struct LampImage {
     bool isAround(const FrameArea& frame) const;
 };
 
-// Of the area lights of a scene; none where there are more than 32, as looking for the images
-// takes time with each.
+// Of the area lights of a scene, those that touch as one; none where there are more than 2048, as
+// looking for the images takes time with each.
 std::vector<LightBall> lampBalls(const Scene& scene);
 
 // One of the rays of a camera path that follows every delta lobe.
@@ -62,7 +62,8 @@ Rgb followLobes(const Scene& scene, const LightSampler& lights, const Camera& ca
 // Images that reach into an area of the frame, among paths of that area. How far a lamp's ball is
 // from the line of a ray is nearly linear in the ray's place, for rays by way of the same lobes: a
 // fit of it tells where it would be 0, and Newton's method goes there; so it does from the ray that
-// passes the ball most closely. It may miss images.
+// passes the ball most closely. Of many lamps only those are tried that lie where the rays lead. It
+// may miss images.
 // Threads: from any.
 std::vector<LampImage> findLampImages(const Scene& scene, const Camera& camera,
                                       const std::vector<LightBall>& lamps, const FrameArea& area,

@@ -19,6 +19,8 @@ namespace {
 // this even the camera sample's own path finds. See docs/decisions.md.
 constexpr float kEven = 0.5f;
 constexpr std::uint32_t kPathsAtLamps = 8;
+// Where paths divide often, as many as have so many rays together, but two.
+constexpr std::size_t kRaysAtLamps = 16;
 // Pilot paths along each side of a square, which reach so many pixels beyond it.
 constexpr std::int32_t kPilots = 8;
 constexpr float kBeyond = 1.0f;
@@ -83,7 +85,7 @@ class LampPath {
     bool goOn(Step& step, const Surface& surface, const Bsdf& bsdf,
               const BsdfSample& sample) const {
         const float before = step.amount();
-        step.takeLobe(bsdf, sample);
+        step.takeLobe(sample);
         const float amount = step.amount();
         const float kept = amount / before;
         const bool halves = step.events.add(kept) < kept;
@@ -170,10 +172,13 @@ SeenLamps::Square SeenLamps::look(std::int32_t column, std::int32_t row) const {
         least = std::min(least, maxChannel(seen));
         most = std::max(most, maxChannel(seen));
     }
+    const std::size_t raysOfPath = std::max<std::size_t>(1, rays.size() / (kPilots * kPilots));
     const FrameArea area{x0 - kFilterReach, y0 - kFilterReach, x0 + kSquare + kFilterReach,
                          y0 + kSquare + kFilterReach};
     square.images = findLampImages(m_scene, m_camera, m_balls, area, std::move(rays));
-    if (least < kEven * most || !square.images.empty()) square.paths = kPathsAtLamps;
+    if (least < kEven * most || !square.images.empty())
+        square.paths =
+            std::clamp(static_cast<std::uint32_t>(kRaysAtLamps / raysOfPath), 2u, kPathsAtLamps);
     return square;
 }
 

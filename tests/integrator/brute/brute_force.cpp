@@ -121,7 +121,7 @@ class BruteForce::Path {
             const float uLobe = next();
             if (bsdf.isBlackBody() || !bsdf.sample(uLobe, {next(), next()}, sample)) return m_found;
             m_left = times(m_left, sample.weight);
-            m_scale *= static_cast<double>(bsdf.etaSquared(sample.lobe));
+            m_scale *= static_cast<double>(sample.etaSquared);
             const double amount = std::max({m_left[0], m_left[1], m_left[2]}) * m_scale;
             if (!(amount > 0)) return m_found;
             if (i >= kBeforeRoulette && amount < 1) {

@@ -189,7 +189,7 @@ Brought broughtBy(const Bench& bench, Lobe lobe, bool eyesAbove, Transport trans
         if (!startsAbove) from.z = -from.z;
         const Bsdf bsdf = bench.bsdf(from, transport);
         BsdfSample s;
-        if (!bsdf.follow(lobe, s, random.next2D())) continue;
+        if (!bsdf.follow(lobe, s, {random.next2D(), random.next()})) continue;
         if (!isLit(isPhoton ? from : s.direction)) continue;
         const auto part = partOf(isPhoton ? s.direction : from);
         const double flux = static_cast<double>(s.weight.r * std::abs(from.z));

@@ -191,7 +191,7 @@ TEST(Layers, AllLobesAreReciprocalAndSampleTheirDensity) {
                 light += f;
                 lightSquares += f * f;
                 BsdfSample s;
-                if (bsdf.follow(lobe, s, random.next2D())) found += 1;
+                if (bsdf.follow(lobe, s, {random.next2D(), random.next()})) found += 1;
             }
             const auto error = [&](double sum, double of) {
                 return std::sqrt(std::max(0.0, of / kCount - sum * sum / kCount / kCount) / kCount);
@@ -202,7 +202,7 @@ TEST(Layers, AllLobesAreReciprocalAndSampleTheirDensity) {
                 Random again(13);
                 for (int k = 0; k < 20'000; ++k) {
                     BsdfSample s;
-                    if (!bsdf.follow(lobe, s, again.next2D())) continue;
+                    if (!bsdf.follow(lobe, s, {again.next2D(), again.next()})) continue;
                     sum += static_cast<double>(s.weight.g);
                     two += static_cast<double>(s.weight.g * s.weight.g);
                 }

@@ -46,7 +46,7 @@ double reflectedBy(const Model& model, const LobePoint& at) {
     for (int i = 0; i < kCount; ++i) {
         BsdfSample s;
         s.weight = kReflectance / kChoice;
-        if (!model.sample(at, random.next2D(), s)) continue;
+        if (!model.sample(at, LobeNumbers{random.next2D(), random.next()}, s)) continue;
         const float density = model.pdfSolidAngle(at, s.direction, kChoice);
         const Rgb value = model.evaluate(at, kReflectance, s.direction);
         for (int c = 0; c < 3; ++c)
@@ -88,7 +88,7 @@ TEST(Lobes, DensitiesAddToTheChoice) {
             sum += static_cast<double>(model.pdfSolidAngle(at, in, kChoice));
             BsdfSample s;
             s.weight = kReflectance / kChoice;
-            found += model.sample(at, random.next2D(), s);
+            found += model.sample(at, LobeNumbers{random.next2D(), random.next()}, s);
         }
         const double density = sum * 4 * std::numbers::pi / kCount;
         EXPECT_LT(density, static_cast<double>(kChoice) + 0.01);

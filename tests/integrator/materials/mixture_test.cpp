@@ -111,7 +111,10 @@ TEST(Mixture, SamplesWhatItEvaluates) {
                 density += static_cast<double>(bsdf.pdfSolidAngle(lobe, in));
                 reflected += static_cast<double>(bsdf.evaluate(lobe, in).g);
                 BsdfSample sample;
-                if (!bsdf.follow(lobe, sample, u)) continue;
+                if (!bsdf.follow(
+                        lobe, sample,
+                        {u, (static_cast<float>((i * 31 + j * 17) % kSteps) + 0.5f) / kSteps}))
+                    continue;
                 sampled += static_cast<double>(sample.weight.g);
             }
         const double cell = 4 * 3.14159265358979 / (kSteps * kSteps);

@@ -33,7 +33,7 @@ Kept keptBy(const Model& model, const LobePoint& at, int count = 30'000) {
         BsdfSample s;
         s.pdfSolidAngle = 1.0f;
         s.weight = model.albedo(model.cosine(at));
-        if (!model.sample(at, random.next2D(), s)) continue;
+        if (!model.sample(at, LobeNumbers{random.next2D(), random.next()}, s)) continue;
         EXPECT_NEAR(length(s.direction), 1.0f, 1e-5f);
         const double w = static_cast<double>(s.weight.g);
         sum += w;
@@ -141,7 +141,9 @@ TEST(RoughLobes, WhiteUnderACoatReflectsAll) {
                 for (int i = 0; i < kCount; ++i) {
                     BsdfSample s;
                     s.weight = Rgb(Undercoat(under).passesOut(at));
-                    if (!Undercoat(under).sample(at, random.next2D(), s)) continue;
+                    if (!Undercoat(under).sample(at, LobeNumbers{random.next2D(), random.next()},
+                                                 s))
+                        continue;
                     below += static_cast<double>(s.weight.g) / kCount;
                     squares += static_cast<double>(s.weight.g * s.weight.g) / kCount;
                 }
@@ -164,7 +166,7 @@ TEST(RoughLobes, WhitePlasterReflectsAll) {
             for (int i = 0; i < kCount; ++i) {
                 BsdfSample s;
                 s.weight = Rgb(1.0f);
-                if (!plaster.sample(at, random.next2D(), s)) continue;
+                if (!plaster.sample(at, LobeNumbers{random.next2D(), random.next()}, s)) continue;
                 const double w = static_cast<double>(s.weight.g);
                 sum += w / kCount;
                 squares += w * w / kCount;
@@ -236,7 +238,7 @@ TEST(RoughLobes, PhotonsGoThroughGlassAsRadianceDoes) {
             Random random(5);
             for (int i = 0; i < 2000; ++i) {
                 BsdfSample radiance, photon;
-                const Vec2f u = random.next2D();
+                const LobeNumbers u{random.next2D(), random.next()};
                 radiance.weight = photon.weight = glass.albedo(cosine);
                 radiance.pdfSolidAngle = photon.pdfSolidAngle = 1.0f;
                 if (!glass.sample(seenAt(cosine, Transport::kRadiance), u, radiance)) continue;

@@ -167,13 +167,13 @@ TEST(Transmittance, CutOutsCastNoCaustics) {
 
 TEST(Transmittance, GoingStraightIsNoEventOfAPath) {
     PathState state;
-    state.scatter(Lobe::kStraight);
+    state.scatter(Lobe::kStraight, false);
     EXPECT_EQ(state.classify(), PathClass::kEmission);
-    state.scatter(Lobe::kDiffuse);
-    state.scatter(Lobe::kStraight);
+    state.scatter(Lobe::kDiffuse, false);
+    state.scatter(Lobe::kStraight, false);
     EXPECT_EQ(state.classify(), PathClass::kDirect);
-    state.scatter(Lobe::kReflection);
-    state.scatter(Lobe::kStraight);
+    state.scatter(Lobe::kReflection, false);
+    state.scatter(Lobe::kStraight, false);
     EXPECT_EQ(state.classify(), PathClass::kCaustic);
 }
 

@@ -4,11 +4,17 @@
 // nothing, and the same by photons as by paths in a room.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "integrator/light_sampling/light_sampler.h"
+#include "integrator/transport/path/path_integrator.h"
+#include "integrator/transport/photon/photon_integrator.h"
 #include "tests/support/scene_maker.h"
+#include "tests/support/statistics.h"
 
 namespace pm::test {
 namespace {
@@ -74,6 +80,83 @@ TEST(RoughSurfaces, AreInvisibleInAnEvenSky) {
             expectInvisible(coated(roughness), integrator, 0.005);
             expectInvisible(plaster(roughness), integrator, 0.005);
         }
+}
+
+struct Spread {
+    double mean = 0, variance = 0;  // of a sample
+    std::uint64_t samples = 0;
+
+    double standardError() const { return std::sqrt(variance / static_cast<double>(samples)); }
+};
+
+Rgb found(const SampleRadiance& sample) {
+    return sample.emission + sample.direct + sample.caustic + sample.indirect;
+}
+
+// Of what a path from the eye finds in an even sky of radiance 1 where it meets a ball of glass,
+// of roughness 1 and without absorption. sampleOf(scene, lights, ray, random): a path's beauty.
+template <typename SampleOf>
+Spread throughRoughBall(float ior, const SampleOf& sampleOf) {
+    SceneMaker maker;
+    MaterialDescription ball = glass(1.0f);
+    ball.ior = ior;
+    maker.sphere({0, 0, 0}, 1, maker.material(ball));
+    maker.sky(Rgb(1.0f));
+    const auto scene = maker.build();
+    const LightSampler lights(*scene);
+    constexpr std::size_t kParts = 64;
+    constexpr std::uint32_t kOfPart = 12'000;
+    std::array<std::array<double, 2>, kParts> sums{};
+    tbb::parallel_for(std::size_t{0}, kParts, [&](std::size_t part) {
+        Random places(part + 1);
+        for (std::uint32_t i = 0; i < kOfPart; ++i) {
+            const Vec2f at = places.next2D();
+            const Vec3f target{1.2f * at.x - 0.6f, 1.2f * at.y - 0.6f, 0.0f};
+            const Ray ray{.origin = {0, 0, 4}, .direction = normalize(target - Vec3f{0, 0, 4})};
+            const Sampler random(1, 2, part, i);
+            const double value = static_cast<double>(sampleOf(*scene, lights, ray, random).g);
+            sums[part][0] += value;
+            sums[part][1] += value * value;
+        }
+    });
+    Spread spread{.samples = kParts * kOfPart};
+    double squares = 0;
+    for (const auto& [sum, ofSquares] : sums) {
+        spread.mean += sum / static_cast<double>(spread.samples);
+        squares += ofSquares / static_cast<double>(spread.samples);
+    }
+    spread.variance = squares - spread.mean * spread.mean;
+    return spread;
+}
+
+// No facet's choice between its two ways is in a weight, and roulette doesn't take what is bent
+// into a narrower cone for less.
+TEST(RoughSurfaces, AClosedBallOfRoughGlassVariesLittle) {
+    const auto byPath = [](const Scene& scene, const LightSampler& lights, const Ray& ray,
+                           const Sampler& random) {
+        return found(PathIntegrator(scene, lights).sample(ray, random));
+    };
+    const auto byPhoton = [](const Scene& scene, const LightSampler& lights, const Ray& ray,
+                             const Sampler& random) {
+        NearestPhotons scratch;
+        const PhotonIntegrator integrator(scene, lights, PhotonMaps{});
+        return found(integrator.sample({.screen = {}, .ray = ray}, random, scratch));
+    };
+    struct Ball {
+        float ior;
+        double mostVariance;
+    };
+    for (const Ball& ball : {Ball{1.5f, 2.0}, Ball{2.4f, 20.0}, Ball{0.5f, 0.6}}) {
+        const auto check = [&](const char* name, const Spread& spread) {
+            fmt::print("    index {}, {}: mean {:.5f} +- {:.5f}, variance {:.3f}\n", ball.ior, name,
+                       spread.mean, spread.standardError(), spread.variance);
+            EXPECT_LT(spread.variance, ball.mostVariance) << name << ", index " << ball.ior;
+            EXPECT_NEAR(spread.mean, 1.0, 0.003 + 2 * spread.standardError())
+                << name << ", index " << ball.ior;
+        };
+        check("path", throughRoughBall(ball.ior, byPath));
+        check("photon", throughRoughBall(ball.ior, byPhoton));
+    }
 }
 
 // A sheet under a parallel light from behind shows what it lets through; with light from all around

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -74,6 +75,32 @@ TEST(LampImages, AreFoundWhereTheyAre) {
         }
         EXPECT_EQ(found, 1);
     }
+}
+
+// Of more lamps than are tried everywhere, those of a square.
+TEST(LampImages, OfHundredsOfLampsAreFound) {
+    SceneMaker maker;
+    const std::uint32_t shine = maker.diffuse({}, Rgb(kShine));
+    std::vector<std::array<double, 2>> places;
+    const double pixel = 2 * std::tan(kFov / 2 * std::numbers::pi / 180) / kSize;
+    for (int i = 0; i < 200; ++i) {
+        const double x = (i % 20 - 9.5) * 0.068 + 0.01 * (i % 3), y = (i / 20 - 4.5) * 0.13;
+        maker.sphere({x, y, kLampZ}, kRadius, shine);
+        places.push_back({kSize / 2.0 - x / kLampZ / pixel, kSize / 2.0 + y / kLampZ / pixel});
+    }
+    maker.camera({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, kFov);
+    const auto scene = maker.build();
+    const Camera camera(*scene, kSize, kSize);
+    const LightSampler lights(*scene);
+    const SeenLamps lamps(*scene, lights, camera,
+                          {.width = kSize, .height = kSize, .errorScale = {}});
+    std::size_t found = 0;
+    for (const auto& [x, y] : places)
+        found += std::ranges::any_of(
+            lamps.shown(static_cast<int>(x), static_cast<int>(y)).images, [&](const auto& image) {
+                return std::hypot(image.centre[0] - x, image.centre[1] - y) < 0.02;
+            });
+    EXPECT_EQ(found, places.size());
 }
 
 // A glass ball shows a small lamp many times, some by way of the same lobes: nearly all places of a
