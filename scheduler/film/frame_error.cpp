@@ -2,10 +2,7 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "scheduler/film/frame_error.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstddef>
 #include <limits>
 
 namespace pm {
@@ -148,23 +145,28 @@ std::vector<NeighbourRows::Pixel>& NeighbourRows::nextRow() {
 }
 
 Neighbours NeighbourRows::around(std::size_t x, std::size_t channel) const {
-    constexpr std::size_t kFew = 4, kMost = 8;
-    std::array<double, kMost> values;
-    std::size_t count = 0;
+    constexpr std::int32_t kFew = 4;
+    constexpr double kInfinity = std::numeric_limits<double>::infinity();
+    double lowest = kInfinity, second = kInfinity, highest = -kInfinity, secondHighest = -kInfinity;
+    Neighbours found;
     for (std::size_t row = 0; row < 3; ++row) {
         const std::vector<Pixel>& pixels = m_rows[(m_next + row) % 3];  // from the oldest on
-        for (std::size_t i = x - std::min<std::size_t>(x, 1); i <= x + 1 && i < pixels.size(); ++i)
-            if (!(row == 1 && i == x) && pixels[i].sampled)
-                values[count++] = pixels[i].values[channel];
+        for (std::size_t i = x - std::min<std::size_t>(x, 1); i <= x + 1 && i < pixels.size();
+             ++i) {
+            if ((row == 1 && i == x) || !pixels[i].sampled) continue;
+            const double value = pixels[i].values[channel];
+            found.mean += value;
+            ++found.count;
+            second = std::min(second, std::max(lowest, value));
+            lowest = std::min(lowest, value);
+            secondHighest = std::max(secondHighest, std::min(highest, value));
+            highest = std::max(highest, value);
+        }
     }
-    if (count == 0) return {};
-    std::sort(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(count));
-    // Of eight the three brightest are left out: as many as are in one speck of 2 x 2 pixels.
-    const std::size_t most = count > kFew ? count - 1 - 3 * count / kMost : count - 1;
-    Neighbours found{values[count > kFew ? 1 : 0], values[most], 0,
-                     static_cast<std::int32_t>(count)};
-    for (std::size_t i = 0; i < count; ++i) found.mean += std::min(values[i], found.high);
-    found.mean /= static_cast<double>(count);
+    if (found.count == 0) return found;
+    found.mean /= found.count;
+    found.low = found.count > kFew ? second : lowest;
+    found.high = found.count > kFew ? secondHighest : highest;
     return found;
 }
 

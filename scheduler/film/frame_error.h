@@ -100,10 +100,8 @@ class FrameErrorSum {
 // What is like a pixel, by its up to 8 neighbours: an outlier is neither their mean nor within what
 // they span, even when one neighbour is an outlier too.
 struct Neighbours {
-    // The second lowest, and the highest but for those that one speck may hold; of few the
-    // outermost.
-    double low = 0, high = 0;
-    double mean = 0;  // of none more than `high`
+    double low = 0, high = 0;  // the second lowest and the second highest; of few the outermost
+    double mean = 0;
     std::int32_t count = 0;
 };
 
