@@ -95,11 +95,12 @@ TEST(LampImages, OfHundredsOfLampsAreFound) {
     const SeenLamps lamps(*scene, lights, camera,
                           {.width = kSize, .height = kSize, .errorScale = {}});
     std::size_t found = 0;
-    for (const auto& [x, y] : places)
-        found += std::ranges::any_of(
-            lamps.shown(static_cast<int>(x), static_cast<int>(y)).images, [&](const auto& image) {
-                return std::hypot(image.centre[0] - x, image.centre[1] - y) < 0.02;
-            });
+    for (const std::array<double, 2>& at : places) {
+        const auto square = lamps.shown(static_cast<int>(at[0]), static_cast<int>(at[1]));
+        found += std::ranges::any_of(square.images, [&](const LampImage& image) {
+            return std::hypot(image.centre[0] - at[0], image.centre[1] - at[1]) < 0.02;
+        });
+    }
     EXPECT_EQ(found, places.size());
 }
 
