@@ -105,7 +105,7 @@ Spread throughRoughBall(float ior, const SampleOf& sampleOf) {
     const auto scene = maker.build();
     const LightSampler lights(*scene);
     constexpr std::size_t kParts = 64;
-    constexpr std::uint32_t kOfPart = 12'000;
+    constexpr std::uint32_t kOfPart = 3'000;
     std::array<std::array<double, 2>, kParts> sums{};
     tbb::parallel_for(std::size_t{0}, kParts, [&](std::size_t part) {
         Random places(part + 1);
