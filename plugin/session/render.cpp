@@ -68,9 +68,7 @@ void Render::checkDelivery(const SettingValues& values) const {
 Plan Render::makePlan() const {
     const SettingValues values = settings();
     WorkerArena arena(static_cast<int>(values.integer(Setting::kThreads)));
-    return arena.execute([&] {
-        return pm::makePlan(*m_scene->scene, values.toRenderSettings(), *m_scene->cancelPlans);
-    });
+    return planOf(*m_scene, values, arena);
 }
 
 MemoryPlan Render::memoryPlan(const Plan& plan) const {
@@ -105,7 +103,6 @@ void Render::start() {
         throw CallError(CallStatus::kState, "the render was started before");
     m_startTime = std::chrono::steady_clock::now();
     checkDelivery(m_settings);
-    RenderCaches::holdLeast(*m_scene, m_settings.number(Setting::kMemoryLimit) > 0);
     auto made = std::make_shared<RenderWork>(*m_scene, m_settings);
     RenderPages* const pages = made->pages();
     made->divideMemory(std::make_unique<RenderCaches>(m_scene, made->memory(),

@@ -47,14 +47,17 @@ std::vector<LedgerCache> cachesOf(const RenderScene& scene, const MemoryPlan& pl
 
 }  // namespace
 
+Plan planOf(const RenderScene& scene, const SettingValues& values, WorkerArena& arena) {
+    scene.scene->setGroupBudget(kLeastGroups);
+    if (values.number(Setting::kMemoryLimit) > 0)
+        scene.textureSystem->holdAtMost(TextureSystem::kLeastBytes);
+    return arena.execute(
+        [&] { return makePlan(*scene.scene, values.toRenderSettings(), *scene.cancelPlans); });
+}
+
 RenderCaches::RenderCaches(std::shared_ptr<const RenderScene> scene, const MemoryPlan& plan,
                            PhotonPaging* photons)
     : m_scene(std::move(scene)), m_ledger(plannedBytes(plan), cachesOf(*m_scene, plan, photons)) {}
-
-void RenderCaches::holdLeast(const RenderScene& scene, bool isLimited) {
-    scene.scene->setGroupBudget(kLeastGroups);
-    if (isLimited) scene.textureSystem->holdAtMost(TextureSystem::kLeastBytes);
-}
 
 void RenderCaches::bucketDone() {
     if (m_buckets.fetch_add(1, std::memory_order_relaxed) % kBucketsBetweenMoves ==

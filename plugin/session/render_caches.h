@@ -7,12 +7,20 @@
 #include <memory>
 
 #include "integrator/photons/map/photon_pages.h"
+#include "integrator/transport/plan/plan.h"
 #include "plugin/session/memory_ledger.h"
 #include "plugin/session/memory_plan.h"
 #include "plugin/session/render_scene.h"
+#include "plugin/session/setting_values.h"
 #include "plugin/values/json.h"
+#include "scheduler/buckets/worker_arena.h"
 
 namespace pm::plugin {
+
+// The plan of a render. Its pilots come before memory is divided: while they trace photons and
+// paths the scene's caches hold the least that they work with; those of textures, which else stay
+// for the render, where memory is limited. Works in parallel in the arena.
+Plan planOf(const RenderScene& scene, const SettingValues& values, WorkerArena& arena);
 
 // The bounded caches of a render, and the ledger that divides among them what the plan holds for
 // them together. Threads: all functions from any, at once.
@@ -22,11 +30,6 @@ class RenderCaches {
     // this but for its end.
     RenderCaches(std::shared_ptr<const RenderScene> scene, const MemoryPlan& plan,
                  PhotonPaging* photons);
-
-    // The least that the scene's work with, for pilots, which come before the plan divides memory:
-    // photons and paths for what the plan and the error's scale are to be. isLimited: memory is, so
-    // that this goes for textures as well, which else stay for the render.
-    static void holdLeast(const RenderScene& scene, bool isLimited);
 
     // A bucket is done; from time to time memory moves.
     void bucketDone();

@@ -53,7 +53,7 @@ RenderWork::RenderWork(const RenderScene& scene, const SettingValues& values)
       m_settings(values.toRenderSettings()),
       m_stopRule(values),
       m_arena(static_cast<int>(values.integer(Setting::kThreads))),
-      m_plan(m_arena.execute([&] { return makePlan(*m_scene, m_settings, *scene.cancelPlans); })),
+      m_plan(planOf(scene, values, m_arena)),
       m_grid(bucketsOf(values)),
       m_memory(planMemory(*m_scene, m_plan, values, m_grid, scene.textures->texelBytes())),
       m_layout(channelLayout(m_settings)),

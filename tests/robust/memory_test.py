@@ -102,7 +102,7 @@ def main():
         # Photons read pages below; here gather rays would cut the same triangles again and again.
         by = ("--photons", "2000") if os.environ.get("PM_MEMORY") == "all" else ("--integrator", "path")
         runs.within("ground.obj", ground_caches, "--eye", "0,30,50", "--look-at", "0,0,0", "--fov", "45",
-                    "--size", "48x32", "--aa", "1", "--passes", "1", "--error-scale", "0", *by)  # fmt: skip
+                    "--size", "48x32", "--aa", "1", "--passes", "1", *by)  # fmt: skip
         source = pathlib.Path(__file__).resolve().parents[2]
         runs.within(str(source / "scenes/cornell_box/cornell_box.obj"), box_caches, "--size", "64x48",
                     "--aa", "1", "--passes", "1", "--photons", "2000000")  # fmt: skip
