@@ -29,6 +29,19 @@ void writePass(const Pass& pass, std::ofstream& keep) {
 
 }  // namespace
 
+RenderSettings judgedSettings(std::int32_t width, std::int32_t height, std::uint32_t passes,
+                              std::uint64_t seed) {
+    RenderSettings settings;
+    settings.width = width;
+    settings.height = height;
+    settings.window = {0, 0, width, height};
+    settings.passes = passes;
+    settings.aaLevel = 3;
+    settings.aaLevelMost = 5;
+    settings.seed = seed;
+    return settings;
+}
+
 template <typename UsePass>
 void PassSource::forEachPass(const RenderSettings& settings, const UsePass& usePass) const {
     const std::string name = fmt::format("{}_{}_{}_aa{}-{}_x{}_k{}_n{}_seed{}.passes", m_key,

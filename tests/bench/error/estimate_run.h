@@ -23,6 +23,10 @@ struct Judged {
     double processorSeconds = 0;  // to there, all threads; 0 where the passes were kept
 };
 
+// Of such a render: adaptive, as renders are by default.
+RenderSettings judgedSettings(std::int32_t width, std::int32_t height, std::uint32_t passes,
+                              std::uint64_t seed);
+
 // What a long render comes to: its even and its odd passes share no noise.
 struct Halves {
     std::vector<double> even, odd;  // RGB, row by row

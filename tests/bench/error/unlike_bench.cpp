@@ -8,12 +8,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <sstream>
 
 #include "integrator/values/error.h"
 #include "tests/bench/error/estimate_run.h"
 #include "tests/bench/error/unlike_scenes.h"
 #include "tests/bench/plot/report.h"
+#include "tests/bench/run/bench_lists.h"
 #include "tests/bench/run/picture_error.h"
 #include "tests/bench/run/pictures.h"
 
@@ -44,12 +44,6 @@ double commonError(std::span<const double> a, std::span<const double> b, const H
     std::vector<double> moved(b.begin(), b.end());
     for (std::size_t i = 0; i < moved.size(); ++i) moved[i] += r.even[i] - r.odd[i];
     return relativeError(a, moved, r.even, 0);
-}
-
-double meanOf(const std::vector<double>& values) {
-    double sum = 0;
-    for (const double value : values) sum += value;
-    return sum / static_cast<double>(values.size());
 }
 
 // The mean picture of every second render.
@@ -89,7 +83,6 @@ class UnlikeBench {
     void run();
 
   private:
-    bool isWanted(const std::string& key) const;
     RenderSettings settingsFor(std::uint32_t passes, std::uint64_t seed) const;
     Halves reference(const UnlikeScene& scene, const std::shared_ptr<const Scene>& built) const;
     void judge(const UnlikeScene& scene);
@@ -99,23 +92,8 @@ class UnlikeBench {
     Report m_report{"pm_bench_unlike"};
 };
 
-bool UnlikeBench::isWanted(const std::string& key) const {
-    if (m_options.scenes.empty()) return true;
-    std::istringstream keys(m_options.scenes);
-    for (std::string wanted; std::getline(keys, wanted, ',');)
-        if (wanted == key) return true;
-    return false;
-}
-
 RenderSettings UnlikeBench::settingsFor(std::uint32_t passes, std::uint64_t seed) const {
-    RenderSettings settings;
-    settings.width = settings.height = m_options.size;
-    settings.window = {0, 0, m_options.size, m_options.size};
-    settings.passes = passes;
-    settings.aaLevel = 3;
-    settings.aaLevelMost = 5;
-    settings.seed = seed;
-    return settings;
+    return judgedSettings(m_options.size, m_options.size, passes, seed);
 }
 
 Halves UnlikeBench::reference(const UnlikeScene& scene,
@@ -193,7 +171,7 @@ void UnlikeBench::run() {
         {"scene", "passes", "true", "told", "told / true", "seeds within 2", "told noise",
          "true bias", "told bias", "pixels unresolved", "seconds", "true x seconds"});
     for (const UnlikeScene& scene : scenes)
-        if (isWanted(scene.key)) judge(scene);
+        if (isAskedFor(m_options.scenes, scene.key)) judge(scene);
     m_report.publish(m_options.csvFile, m_options.docsFile);
 }
 

@@ -6,12 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
-#include <numeric>
 
 #include "integrator/values/error.h"
 #include "tests/bench/paper/paper_levels.h"
 #include "tests/bench/plot/bar_plot.h"
 #include "tests/bench/plot/log_plot.h"
+#include "tests/bench/run/bench_lists.h"
 #include "tests/bench/run/timing.h"
 
 namespace pm::bench {
@@ -22,10 +22,6 @@ constexpr int kTile = 192, kCrop = 64, kGap = 4;  // pixels of the sheet
 
 double medianOf(const std::vector<double>& values) {
     return spreadOf(values).median;
-}
-
-double meanOf(const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
 // The square of side `side` at (x0, y0), resampled by area to kTile x kTile: pixels as squares when

@@ -7,6 +7,8 @@
 #include <functional>
 #include <numeric>
 
+#include "tests/bench/run/timing.h"
+
 namespace pm::bench {
 
 namespace {
@@ -37,12 +39,6 @@ Moments momentsOf(std::span<const Values> pictures) {
     return moments;
 }
 
-double medianOf(std::vector<double>& values) {
-    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 }  // namespace
 
 Specks findSpecks(std::span<const Values> pictures, int width, int height) {
@@ -62,7 +58,7 @@ Specks findSpecks(std::span<const Values> pictures, int width, int height) {
                 }
             if (beside.size() < kFewestNeighbours) continue;
             specks.judged += 1.0 / (static_cast<double>(width) * height);
-            const double own = moments.deviation[at(x, y)], usual = medianOf(beside);
+            const double own = moments.deviation[at(x, y)], usual = spreadOf(beside).median;
             if (own == 0) continue;
             // What doesn't vary but for rounding is as good as even.
             const double ratio = own / std::max(usual, 1e-6 * mean);

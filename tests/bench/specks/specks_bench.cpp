@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <cstdio>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -15,8 +14,10 @@
 #include "tests/bench/error/estimate_run.h"
 #include "tests/bench/error/unlike_scenes.h"
 #include "tests/bench/plot/report.h"
+#include "tests/bench/run/bench_lists.h"
 #include "tests/bench/run/child_process.h"
 #include "tests/bench/run/pictures.h"
+#include "tests/bench/run/timing.h"
 #include "tests/bench/specks/specks.h"
 
 namespace pm::bench {
@@ -58,24 +59,12 @@ struct Renders {
     std::vector<double> told, seconds;
 };
 
-double medianOf(std::vector<double> values) {
-    std::sort(values.begin(), values.end());
-    const std::size_t n = values.size();
-    return n == 0 ? 0.0 : (values[(n - 1) / 2] + values[n / 2]) / 2;
-}
-double meanOf(const std::vector<double>& values) {
-    double sum = 0;
-    for (const double value : values) sum += value;
-    return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
-}
-
 class SpecksBench {
   public:
     explicit SpecksBench(const Options& options) : m_options(options) {}
     void run();
 
   private:
-    bool isWanted(const std::string& key) const;
     void writeScenes() const;
     Renders render(const SpeckScene& scene) const;
     Renders renderFurnished() const;
@@ -86,14 +75,6 @@ class SpecksBench {
     TemporaryFolder m_folder;
     Report m_report{"pm_bench_specks"};
 };
-
-bool SpecksBench::isWanted(const std::string& key) const {
-    if (m_options.scenes.empty()) return true;
-    std::istringstream keys(m_options.scenes);
-    for (std::string wanted; std::getline(keys, wanted, ',');)
-        if (wanted == key) return true;
-    return false;
-}
 
 void SpecksBench::writeScenes() const {
     std::vector<std::string> command{"python3", PM_SPECK_SCENES, m_folder.path().string()};
@@ -134,15 +115,11 @@ Renders SpecksBench::renderFurnished() const {
         if (scene.key != "furnished") continue;
         const PassSource source(scene.maker.build(), scene.key, {}, m_options.threads);
         for (int i = 0; i < m_options.seeds; ++i) {
-            RenderSettings settings;
-            settings.width = m_options.width;
-            settings.height = m_options.height;
-            settings.window = {0, 0, m_options.width, m_options.height};
-            settings.passes = m_options.passes;
-            settings.aaLevel = 3;
-            settings.aaLevelMost = 5;
-            settings.seed = static_cast<std::uint64_t>(m_options.firstSeed + i);
-            const Judged last = source.judged(settings).back();
+            const auto seed = static_cast<std::uint64_t>(m_options.firstSeed + i);
+            const Judged last = source
+                                    .judged(judgedSettings(m_options.width, m_options.height,
+                                                           m_options.passes, seed))
+                                    .back();
             renders.pictures.push_back(last.rgb);
             renders.told.push_back(last.estimate.total());
             renders.seconds.push_back(last.processorSeconds);
@@ -169,12 +146,12 @@ void SpecksBench::tell(const std::string& key, const Renders& renders) {
         ofWorst.push_back(pair.ofWorst);
     }
     const Specks specks = findSpecks(renders.pictures, m_options.width, m_options.height);
-    m_report.row({key, show(meanOf(errors)), fmt::format("{:.1f} %", 100 * medianOf(ofWorst)),
-                  fmt::format("{:.1f} at {},{}", specks.worstRatio, specks.x, specks.y),
-                  std::to_string(specks.count), fmt::format("{:.1f} %", 100 - 100 * specks.judged),
-                  show(meanOf(renders.told)),
-                  fmt::format("{:.2f}", meanOf(renders.told) / meanOf(errors)),
-                  show(meanOf(renders.seconds)), show(meanOf(renders.seconds) * meanOf(errors))});
+    m_report.row(
+        {key, show(meanOf(errors)), fmt::format("{:.1f} %", 100 * spreadOf(ofWorst).median),
+         fmt::format("{:.1f} at {},{}", specks.worstRatio, specks.x, specks.y),
+         std::to_string(specks.count), fmt::format("{:.1f} %", 100 - 100 * specks.judged),
+         show(meanOf(renders.told)), fmt::format("{:.2f}", meanOf(renders.told) / meanOf(errors)),
+         show(meanOf(renders.seconds)), show(meanOf(renders.seconds) * meanOf(errors))});
 }
 
 void SpecksBench::run() {
@@ -187,7 +164,7 @@ void SpecksBench::run() {
         {"scene", "noise", "worst .1 %", "worst pixel", "specks", "not judged", "told",
          "told / noise", "processor s", "noise x s"});
     for (const SpeckScene& scene : speckScenes()) {
-        if (!isWanted(scene.key)) continue;
+        if (!isAskedFor(m_options.scenes, scene.key)) continue;
         if (scene.isMadeOfData && !fs::exists(m_options.data)) {
             fmt::print(stderr, "pm_bench_specks: {} skipped, its script is not there\n", scene.key);
             continue;

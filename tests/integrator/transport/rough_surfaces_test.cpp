@@ -7,8 +7,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <vector>
 
 #include "integrator/light_sampling/light_sampler.h"
 #include "integrator/transport/path/path_integrator.h"
@@ -82,21 +82,14 @@ TEST(RoughSurfaces, AreInvisibleInAnEvenSky) {
         }
 }
 
-struct Spread {
-    double mean = 0, variance = 0;  // of a sample
-    std::uint64_t samples = 0;
-
-    double standardError() const { return std::sqrt(variance / static_cast<double>(samples)); }
-};
-
-Rgb found(const SampleRadiance& sample) {
+Rgb allOf(const SampleRadiance& sample) {
     return sample.emission + sample.direct + sample.caustic + sample.indirect;
 }
 
 // Of what a path from the eye finds in an even sky of radiance 1 where it meets a ball of glass,
 // of roughness 1 and without absorption. sampleOf(scene, lights, ray, random): a path's beauty.
 template <typename SampleOf>
-Spread throughRoughBall(float ior, const SampleOf& sampleOf) {
+Moments throughRoughBall(float ior, const SampleOf& sampleOf) {
     SceneMaker maker;
     MaterialDescription ball = glass(1.0f);
     ball.ior = ior;
@@ -104,29 +97,21 @@ Spread throughRoughBall(float ior, const SampleOf& sampleOf) {
     maker.sky(Rgb(1.0f));
     const auto scene = maker.build();
     const LightSampler lights(*scene);
-    constexpr std::size_t kParts = 64;
+    constexpr std::uint32_t kParts = 64;
     constexpr std::uint32_t kOfPart = 3'000;
-    std::array<std::array<double, 2>, kParts> sums{};
-    tbb::parallel_for(std::size_t{0}, kParts, [&](std::size_t part) {
+    std::vector<double> values(kParts * kOfPart);
+    tbb::parallel_for(0u, kParts, [&](std::uint32_t part) {
         Random places(part + 1);
         for (std::uint32_t i = 0; i < kOfPart; ++i) {
             const Vec2f at = places.next2D();
             const Vec3f target{1.2f * at.x - 0.6f, 1.2f * at.y - 0.6f, 0.0f};
             const Ray ray{.origin = {0, 0, 4}, .direction = normalize(target - Vec3f{0, 0, 4})};
             const Sampler random(1, 2, part, i);
-            const double value = static_cast<double>(sampleOf(*scene, lights, ray, random).g);
-            sums[part][0] += value;
-            sums[part][1] += value * value;
+            values[part * kOfPart + i] =
+                static_cast<double>(sampleOf(*scene, lights, ray, random).g);
         }
     });
-    Spread spread{.samples = kParts * kOfPart};
-    double squares = 0;
-    for (const auto& [sum, ofSquares] : sums) {
-        spread.mean += sum / static_cast<double>(spread.samples);
-        squares += ofSquares / static_cast<double>(spread.samples);
-    }
-    spread.variance = squares - spread.mean * spread.mean;
-    return spread;
+    return momentsOf(kParts * kOfPart, [&](std::uint32_t i) { return values[i]; });
 }
 
 // No facet's choice between its two ways is in a weight, and roulette doesn't take what is bent
@@ -134,24 +119,24 @@ Spread throughRoughBall(float ior, const SampleOf& sampleOf) {
 TEST(RoughSurfaces, AClosedBallOfRoughGlassVariesLittle) {
     const auto byPath = [](const Scene& scene, const LightSampler& lights, const Ray& ray,
                            const Sampler& random) {
-        return found(PathIntegrator(scene, lights).sample(ray, random));
+        return allOf(PathIntegrator(scene, lights).sample(ray, random));
     };
     const auto byPhoton = [](const Scene& scene, const LightSampler& lights, const Ray& ray,
                              const Sampler& random) {
         NearestPhotons scratch;
         const PhotonIntegrator integrator(scene, lights, PhotonMaps{});
-        return found(integrator.sample({.screen = {}, .ray = ray}, random, scratch));
+        return allOf(integrator.sample({.screen = {}, .ray = ray}, random, scratch));
     };
     struct Ball {
         float ior;
         double mostVariance;
     };
     for (const Ball& ball : {Ball{1.5f, 2.0}, Ball{2.4f, 20.0}, Ball{0.5f, 0.6}}) {
-        const auto check = [&](const char* name, const Spread& spread) {
+        const auto check = [&](const char* name, const Moments& found) {
             fmt::print("    index {}, {}: mean {:.5f} +- {:.5f}, variance {:.3f}\n", ball.ior, name,
-                       spread.mean, spread.standardError(), spread.variance);
-            EXPECT_LT(spread.variance, ball.mostVariance) << name << ", index " << ball.ior;
-            EXPECT_NEAR(spread.mean, 1.0, 0.003 + 2 * spread.standardError())
+                       found.mean, found.standardError, found.variance);
+            EXPECT_LT(found.variance, ball.mostVariance) << name << ", index " << ball.ior;
+            EXPECT_NEAR(found.mean, 1.0, 0.003 + 2 * found.standardError)
                 << name << ", index " << ball.ior;
         };
         check("path", throughRoughBall(ball.ior, byPath));
