@@ -254,7 +254,9 @@ class Starts {
 std::vector<LightBall> lampsAhead(const std::vector<LightBall>& lamps,
                                   std::span<const LampRay> same) {
     if (lamps.size() <= kFewLamps) return lamps;
-    const RayCone cone(same);
+    std::vector<Ray> rays;
+    for (const LampRay& ray : same) rays.push_back(ray.ray);
+    const RayCone cone(rays);
     std::vector<std::pair<double, std::size_t>> ahead;
     for (std::size_t i = 0; i < lamps.size(); ++i)
         if (const double seen = cone.seen(lamps[i]); seen > 0) ahead.emplace_back(-seen, i);

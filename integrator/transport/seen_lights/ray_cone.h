@@ -6,23 +6,26 @@
 #include <cmath>
 #include <span>
 
-#include "integrator/transport/seen_lights/lamp_images.h"
+#include "integrator/lights/light_place.h"
+#include "integrator/values/ray.h"
+#include "integrator/values/vec.h"
 
 namespace pm {
 
 // What holds rays: a cone that begins at a ball.
 class RayCone {
   public:
-    explicit RayCone(std::span<const LampRay> rays) {
+    // rays: one or more.
+    explicit RayCone(std::span<const Ray> rays) {
         Vec3d along(0);
-        for (const LampRay& r : rays) {
-            m_from += Vec3d(r.ray.origin) * (1.0 / static_cast<double>(rays.size()));
-            along += Vec3d(r.ray.direction);
+        for (const Ray& r : rays) {
+            m_from += Vec3d(r.origin) * (1.0 / static_cast<double>(rays.size()));
+            along += Vec3d(r.direction);
         }
-        m_axis = length(along) > 0 ? normalize(along) : Vec3d(rays[0].ray.direction);
-        for (const LampRay& r : rays) {
-            m_radius = std::max(m_radius, length(Vec3d(r.ray.origin) - m_from));
-            m_cosine = std::min(m_cosine, dot(m_axis, Vec3d(r.ray.direction)));
+        m_axis = length(along) > 0 ? normalize(along) : Vec3d(rays[0].direction);
+        for (const Ray& r : rays) {
+            m_radius = std::max(m_radius, length(Vec3d(r.origin) - m_from));
+            m_cosine = std::min(m_cosine, dot(m_axis, Vec3d(r.direction)));
         }
         // Images may lie beyond the outermost of a few dozen rays.
         m_cosine = 1 - kWider * (1 - m_cosine);
