@@ -6,7 +6,7 @@
 #include <cmath>
 #include <span>
 
-#include "integrator/lights/light_place.h"
+#include "integrator/light_sampling/light_sampler.h"
 #include "integrator/values/ray.h"
 #include "integrator/values/vec.h"
 
