@@ -97,6 +97,7 @@ enum class Purpose : std::uint8_t {
     kStore,    // whether a photon is kept where it lands
     kPilot,    // a pilot's own choice, where its path has stopped
     kWay,      // reflected, or let through, where a lobe does both
+    kCopies,   // how many photons of the mean flux go on in place of one
 };
 
 // The random numbers of one path, or of one of its branches: a function of (seed, stream, sequence,

@@ -11,8 +11,9 @@
 namespace pm {
 
 // The correction for shading normals grows without bound at grazing angles; beyond this it is cut.
-// Only photons that arrive within about 1/20 of the horizon can lose something by it.
-inline constexpr float kLargestCorrection = 20.0f;
+// Only photons that arrive within about so little of the horizon can lose something by it. What
+// goes on is divided into photons of the mean flux (TracedPhoton), what lands is not.
+inline constexpr float kLargestCorrection = 1000.0f, kLargestLanded = 20.0f;
 
 inline float clamp01(float v) {
     return v > 0.0f ? std::min(v, 1.0f) : 0.0f;
@@ -74,8 +75,8 @@ struct LobePoint {
     // photon that arrived from there counts for in irradiance.
     float normalRatio() const {
         const float shading = dot(out, nd), geometric = dot(out, ng);
-        return shading >= kLargestCorrection * geometric ? kLargestCorrection
-                                                         : std::max(0.0f, shading / geometric);
+        return shading >= kLargestLanded * geometric ? kLargestLanded
+                                                     : std::max(0.0f, shading / geometric);
     }
 
     // To whose cosine the directions of diffuse lobes are drawn.

@@ -3,6 +3,7 @@
 #include "integrator/photons/trace/traced_photon.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace pm {
 
@@ -12,6 +13,10 @@ namespace {
 // lie in a few bright photons. So the smaller part of a photon that divides goes on at least so
 // often. See docs/decisions.md.
 constexpr float kLeastShare = 0.2f;
+// Branches of a photon's numbers: what comes before is for the lobes that it divides by.
+constexpr std::uint32_t kFirstCopy = 16;
+// What corrections for shading normals may come to before a photon is evened out.
+constexpr float kLeastExcess = 0.5f, kMostExcess = 2.0f;
 
 }  // namespace
 
@@ -51,10 +56,20 @@ bool TracedPhoton::scatter(PhotonStep& photon, Surface& surface, const Bsdf& bsd
         return divide(photon, surface, bsdf, waiting);
     }
     m_batch.metCaster += fromLight && !isDiffuseOrStraight(bsdf);
-    return goOn(photon, surface, bsdf);
+    return goOn(photon, surface, bsdf, waiting);
 }
 
-bool TracedPhoton::goOn(PhotonStep& photon, const Surface& surface, const Bsdf& bsdf) {
+int TracedPhoton::evenOut(PhotonStep& photon, float factor, Rgb& flux) {
+    photon.excess *= factor;
+    if (photon.excess > kLeastExcess && photon.excess < kMostExcess) return 1;
+    const float copies = std::floor(photon.excess + photon.random.get1D(Purpose::kCopies));
+    flux *= 1.0f / photon.excess;
+    photon.excess = 1.0f;
+    return static_cast<int>(copies);
+}
+
+bool TracedPhoton::goOn(PhotonStep& photon, const Surface& surface, const Bsdf& bsdf,
+                        Waiting<PhotonStep>& waiting) {
     PhotonBalance& balance = m_batch.balance;
     Rgb& flux = photon.carried;
     const float survival = probabilityOfAll(bsdf);
@@ -66,21 +81,21 @@ bool TracedPhoton::goOn(PhotonStep& photon, const Surface& surface, const Bsdf& 
     if (!bsdf.sample(uLobe, photon.random.get2D(Purpose::kDirection), sample) ||
         !mayLeave(photon, surface, bsdf, sample))
         return absorb(photon);
-    Rgb scattered = flux * sample.weight * (keeps ? survival : 1.0f);
+    Rgb scattered = flux * sample.weight;
+    const float factor = sample.lobe == Lobe::kDiffuse
+                             ? 1.0f
+                             : static_cast<float>(channelSum(scattered) / channelSum(flux));
+    if (keeps) scattered *= survival;
     photon.isUnmet = photon.isUnmet && isDelta(sample.lobe);
     if (photon.stage == PhotonStage::kStraight && sample.lobe == Lobe::kWide)
         photon.beganFrosted = bsdf.isFrosted();
     if (!advance(photon, sample.lobe, scattered)) return absorb(photon);
     if (!isFinite(scattered)) return lose(photon);
-    balance.fluxAbsorbed += channelSum(flux) - channelSum(scattered);
+    const int copies = evenOut(photon, factor, scattered);
+    if (copies == 0) return absorb(photon);
+    balance.fluxAbsorbed += channelSum(flux) - copies * channelSum(scattered);
     flux = scattered;
-    const float goesOn = photon.events.add(survival);
-    if (goesOn < survival) {
-        balance.fluxAbsorbed += channelSum(flux);
-        if (!(photon.random.get1D(Purpose::kRoulette) * survival < goesOn)) return false;
-        flux *= survival / goesOn;
-        balance.fluxAbsorbed -= channelSum(flux);
-    }
+    if (!outlives(photon, survival, copies)) return false;
     if (photon.events.isOver()) return lose(photon);
     if (sample.lobe != Lobe::kStraight) photon.pastShadowless = photon.pastMirrorless = false;
     photon.goOn(sample.lobe == Lobe::kDiffuse
@@ -88,6 +103,21 @@ bool TracedPhoton::goOn(PhotonStep& photon, const Surface& surface, const Bsdf& 
                                          sample.direction, surface.time)
                     : rayFrom(surface, sample.direction),
                 sample.lobe);
+    for (int i = 1; i < copies; ++i) {
+        PhotonStep& copy = waiting.add(photon);
+        copy.random = photon.random.branch(kFirstCopy + static_cast<std::uint32_t>(i));
+    }
+    return true;
+}
+
+bool TracedPhoton::outlives(PhotonStep& photon, float survival, int copies) {
+    const float goesOn = photon.events.add(survival);
+    if (!(goesOn < survival)) return true;
+    double& absorbed = m_batch.balance.fluxAbsorbed;
+    absorbed += copies * channelSum(photon.carried);
+    if (!(photon.random.get1D(Purpose::kRoulette) * survival < goesOn)) return false;
+    photon.carried *= survival / goesOn;
+    absorbed -= copies * channelSum(photon.carried);
     return true;
 }
 

@@ -32,8 +32,10 @@ struct PhotonStep : PathStep {
     bool isUnmet = false;       // by delta lobes alone, from a light that no ray meets
     bool beganFrosted = false;  // by frosted glass, where it came straight from its light
     float width = 0.0f;         // of the footprint that the ray starts from, scene units
-    std::uint32_t light = 0;    // where it comes from
-    PhotonClass of{};           // of its light and time
+    // What corrections for shading normals have multiplied its flux by; see evenOut().
+    float excess = 1.0f;
+    std::uint32_t light = 0;  // where it comes from
+    PhotonClass of{};         // of its light and time
 
     bool isVoid() const { return pastShadowless && pastMirrorless; }
     bool mayGoOnBy(Lobe lobe) const {
@@ -77,7 +79,15 @@ class TracedPhoton {
     static bool isDiffuseOrStraight(const Bsdf& bsdf);
 
     // By one lobe, or by none. False: it ends here.
-    bool goOn(PhotonStep& photon, const Surface& surface, const Bsdf& bsdf);
+    bool goOn(PhotonStep& photon, const Surface& surface, const Bsdf& bsdf,
+              Waiting<PhotonStep>& waiting);
+    // Corrections for shading normals multiply a photon's flux at every event, and after a hundred
+    // of them all the flux is in a few photons that most renders don't have. So where they come to
+    // less than half or more than twice, none, one or more photons of the mean flux go on (a weight
+    // window). How many: of a photon whose flux has become that many times what it was.
+    static int evenOut(PhotonStep& photon, float factor, Rgb& flux);
+    // Russian roulette of what loses nothing on its way, for all copies. False: none goes on.
+    bool outlives(PhotonStep& photon, float survival, int copies);
     bool mayLeave(const PhotonStep& photon, const Surface& surface, const Bsdf& bsdf,
                   BsdfSample& sample) const;
     bool absorb(const PhotonStep& photon);

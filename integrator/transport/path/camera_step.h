@@ -27,6 +27,8 @@ struct CameraStep : PathStep {
     // divides here, and roulette takes what this part carries for all there is.
     bool scatter(const Surface& surface, const Bsdf& bsdf, const BsdfSample& sample,
                  bool isPart = false);
+    // What it carries over what roulette takes for all there is: weights of samples have raised it.
+    float excess() const { return amount() / m_whole; }
     // It ended for the number of its events: what it would have found is missing.
     bool isCut() const { return m_isCut; }
     // For caches that it asks.

@@ -106,15 +106,16 @@ bool PhotonPath::followLobes(const Surface& surface, const Bsdf& bsdf, StillToFi
         }
         if (!goesOn(lobe)) {
             const Sampler all = arrived.random.branch(static_cast<std::uint32_t>(lobe));
-            const std::uint32_t parts = partsAlong(bsdf, lobe, arrived.share);
+            const std::uint32_t parts = partsAlong(arrived, bsdf, lobe);
             for (std::uint32_t k = 0; k < parts; ++k)
                 followBroad(surface, bsdf, arrived, survival[i] * static_cast<float>(parts),
                             all.part(parts, k));
             continue;
         }
-        const std::uint32_t parts = partsAlong(bsdf, lobe, arrived.share);
+        const std::uint32_t parts = partsAlong(arrived, bsdf, lobe);
         const bool isPart = waysOn > 1 || parts > 1;
         PhotonBranch part = arrived;
+        part.parts *= parts;
         if (isPart) part.random = arrived.random.branch(static_cast<std::uint32_t>(lobe));
         const Sampler all = part.random;
         for (std::uint32_t k = 0; k < parts; ++k) {
@@ -127,12 +128,18 @@ bool PhotonPath::followLobes(const Surface& surface, const Bsdf& bsdf, StillToFi
 
 // Through rough glass and in rough metal a lamp, or what it lights most, is a glint that few paths
 // find: of all that the camera sample brings several are worth their time, as they share what led
-// there.
-std::uint32_t PhotonPath::partsAlong(const Bsdf& bsdf, Lobe lobe, float share) {
-    constexpr float kMost = 0.5f;
-    constexpr std::uint32_t kReflected = 4, kThrough = 16;
+// there. And weights of samples, one after the other within rough glass, would leave in one path
+// what is the light of many: it divides into those.
+std::uint32_t PhotonPath::partsAlong(const PhotonBranch& branch, const Bsdf& bsdf, Lobe lobe) {
+    constexpr float kMost = 0.5f, kMostExcess = 2.0f;
+    constexpr std::uint32_t kReflected = 4, kThrough = 16, kMostParts = 256;
     if (isDelta(lobe)) return 1;
-    return share * partOf(bsdf, lobe) > kMost ? (bsdf.goesThrough() ? kThrough : kReflected) : 1;
+    if (branch.share * partOf(bsdf, lobe) > kMost)
+        return bsdf.goesThrough() ? kThrough : kReflected;
+    // What is caught in glass for long would divide without end.
+    if (branch.excess() < kMostExcess || branch.parts >= kMostParts) return 1;
+    const float excess = std::min(branch.excess(), static_cast<float>(kMostParts / branch.parts));
+    return std::bit_floor(static_cast<std::uint32_t>(excess));
 }
 
 bool PhotonPath::goOn(PhotonBranch& branch, const Surface& surface, const Bsdf& bsdf, Lobe lobe,

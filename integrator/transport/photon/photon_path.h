@@ -20,6 +20,7 @@ struct PhotonBranch : CameraStep {
     // Of what the camera sample brings, this branch's part, were all that it meets as bright: what
     // is worth how much work.
     float share = 1.0f;
+    std::uint32_t parts = 1;  // into how many paths the sample's has divided on the way here
 };
 
 // The camera paths of one sample.
@@ -107,8 +108,8 @@ class PhotonPath {
     std::uint32_t ownGatherRays(float share) const;
     // Of all that a surface reflects, a lobe's part.
     static float partOf(const Bsdf& bsdf, Lobe lobe);
-    // Into how many paths one divides along a lobe. share: see PhotonBranch.
-    static std::uint32_t partsAlong(const Bsdf& bsdf, Lobe lobe, float share);
+    // Into how many paths one divides along a lobe, a power of two.
+    static std::uint32_t partsAlong(const PhotonBranch& branch, const Bsdf& bsdf, Lobe lobe);
     // Of so many rays, a power of two, those that a part of a camera sample is worth; see
     // PhotonBranch::share.
     static std::uint32_t raysOfShare(std::uint32_t rays, float share);

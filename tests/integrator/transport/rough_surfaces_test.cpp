@@ -98,7 +98,7 @@ Moments throughRoughBall(float ior, const SampleOf& sampleOf) {
     const auto scene = maker.build();
     const LightSampler lights(*scene);
     constexpr std::uint32_t kParts = 64;
-    constexpr std::uint32_t kOfPart = 3'000;
+    constexpr std::uint32_t kOfPart = 800;
     std::vector<double> values(kParts * kOfPart);
     tbb::parallel_for(0u, kParts, [&](std::uint32_t part) {
         Random places(part + 1);

@@ -123,6 +123,51 @@ TEST(Leaks, ASheetDividesARoom) {
     for (const double channel : layers.beauty.mean) EXPECT_EQ(channel, 0.0);
 }
 
+// A closed room of six walls, lit from above alone, in a ring of glass balls whose caustics lie at
+// its feet.
+SceneMaker roomInARing(int balls) {
+    constexpr double kTurn = 2 * std::numbers::pi, kRoom = 0.5;
+    SceneMaker maker;
+    const auto white = maker.diffuse(Rgb(0.7f));
+    maker.quad({-3, 0, 3}, {6, 0, 0}, {0, 0, -6}, white);
+    maker.quad({-0.4, 3, -0.4}, {0.8, 0, 0}, {0, 0, 0.8}, maker.diffuse({}, Rgb(30.0f)));
+    std::vector<Vec3d> roof;
+    for (int i = 0; i < 6; ++i) {
+        const auto at = [&](int k, double y) {
+            return Vec3d{kRoom * std::cos(kTurn * k / 6), y, kRoom * std::sin(kTurn * k / 6)};
+        };
+        maker.polygon({at(i, 0), at(i + 1, 0), at(i + 1, 0.8), at(i, 0.8)}, white);
+        roof.push_back(at(i, 0.8));
+    }
+    maker.polygon(roof, white);
+    const auto clear = maker.material(glass());
+    const double radius = std::min(0.15, 2.0 / balls);
+    for (int i = 0; i < balls; ++i) {
+        const double angle = kTurn * (i + 0.5) / balls, away = kRoom + 1.15 * radius;
+        maker.meshSphere({away * std::cos(angle), 1.3 * radius, away * std::sin(angle)}, radius,
+                         clear, false, 8);
+    }
+    maker.camera({0, 0.5, 0.35}, {0, 0.1, -0.2}, {0, 1, 0}, 80);
+    return maker;
+}
+
+TEST(Leaks, ARingOfGlassBallsShinesIntoNoRoom) {
+    const auto expectDark = [](const SceneMaker& maker, IntegratorKind integrator, double most) {
+        const MeasuredLayers layers =
+            measure(maker.build(), smallFrame(kWidth, kHeight, integrator, 4, 3));
+        for (const double channel : layers.beauty.mean) EXPECT_LE(channel, most);
+    };
+    for (const int balls : {6, 12, 24}) {
+        SCOPED_TRACE(balls);
+        expectDark(roomInARing(balls), IntegratorKind::kPhoton, 2e-5);
+    }
+    // Where coordinates are coarse, too.
+    SceneMaker far = roomInARing(6);
+    far.polygon({{3e4, 0, 0}, {3e4, 0, 1}, {3e4, 1, 0}}, far.diffuse(Rgb(0.7f)));
+    expectDark(far, IntegratorKind::kPhoton, 2e-5);
+    expectDark(far, IntegratorKind::kPath, 0.0);
+}
+
 SceneMaker litRoom() {
     SceneMaker maker;
     maker.box({-2, 0, -2}, {2, 2, 2}, maker.diffuse(Rgb(0.8f)), true);

@@ -15,6 +15,7 @@
 #include "integrator/photons/trace/photon_tracer.h"
 #include "tests/support/rooms.h"
 #include "tests/support/scene_maker.h"
+#include "tests/support/statistics.h"
 
 namespace pm::test {
 namespace {
@@ -215,6 +216,42 @@ TEST(LongChains, AreSharedOutEvenly) {
     EXPECT_FALSE(chosen[0] == chosen[1] && chosen[1] == chosen[2]);
     EXPECT_EQ(LongChains::wholeNumber(2000), 2048u);
     EXPECT_EQ(LongChains::wholeNumber(5), 5u);
+}
+
+// ---- Shading normals ----------------------------------------------------------------------
+
+SceneMaker roomOfSmoothBalls(float reflectance) {
+    SceneMaker maker = furnace(reflectance);
+    maker.meshSphere({0.3, 0, -0.3}, 0.3, maker.material(mirror(1.0f)), false, 16);
+    maker.meshSphere({-0.4, -0.3, -0.2}, 0.25, maker.material(glass()), false, 16);
+    return maker;
+}
+
+// Corrections for shading normals, one after the other, leave no photon with the flux of many.
+TEST(SmoothNormals, KeepTheFluxOfPhotonsEven) {
+    const auto scene = roomOfSmoothBalls(0.99f).build();
+    const PhotonTraceResult traced = trace(*scene, 4096, 0, 0);
+    double largest = 0;
+    for (const Photon& photon : traced.photons)
+        largest = std::max(largest, channelSum(photon.flux));
+    const double emitted = traced.balance.fluxEmitted / 4096;
+    EXPECT_GT(largest / emitted, 1.5);
+    EXPECT_LT(largest / emitted, 2.5);
+    const PhotonBalance& b = traced.balance;
+    EXPECT_NEAR((b.fluxAbsorbed + b.fluxEscaped) / b.fluxEmitted, 1, 1e-6);
+}
+
+// Radiance is 1 in such a room: no render lacks what a few photons have.
+TEST(SmoothNormals, LoseNothingInBrightRooms) {
+    const auto scene = roomOfSmoothBalls(0.99f).build();
+    const Moments found = momentsOf(16, [&](std::uint32_t seed) {
+        RenderSettings settings = frame(IntegratorKind::kPhoton, 2);
+        settings.seed = seed + 1;
+        return measure(scene, settings).beauty.mean[0];
+    });
+    std::printf("    mean %.4f +- %.4f\n", found.mean, found.standardError);
+    EXPECT_LT(found.standardError, 0.04);
+    EXPECT_NEAR(found.mean, 1.0, 0.005 + 2.5 * found.standardError);
 }
 
 // ---- Mirrors ------------------------------------------------------------------------------
