@@ -46,12 +46,12 @@ class Waiting {
     static_assert(std::is_trivially_copyable_v<Step>);
 
     Waiting() {}  // leaves the places as they are: most paths need none
-    // The step as it waits; valid until another is added.
-    Step& add(const Step& step) {
+    void add(const Step& step) {
+        if (m_count < kInPlace)
+            new (place(m_count)) Step(step);
+        else
+            m_more.push_back(step);
         ++m_count;
-        if (m_count <= kInPlace) return *new (place(m_count - 1)) Step(step);
-        m_more.push_back(step);
-        return m_more.back();
     }
     bool take(Step& step) {
         if (m_count == 0) return false;

@@ -62,7 +62,7 @@ struct LobePoint {
     bool isReflection(const Vec3f& in) const { return dot(in, ng) > 0.0f && dot(in, ns) > 0.0f; }
 
     // [Veach 1997, eq. 5.19]: what turns the radiance's BSDF into the photons' where the shading
-    // normal is not the geometric one. In [0, 20].
+    // normal is not the geometric one. In [0, 1000].
     float adjointCorrection(const Vec3f& in) const {
         if (transport == Transport::kRadiance) return 1.0f;
         const float numerator = std::abs(dot(out, ns) * dot(in, ng));

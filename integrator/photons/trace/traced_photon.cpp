@@ -104,8 +104,9 @@ bool TracedPhoton::goOn(PhotonStep& photon, const Surface& surface, const Bsdf& 
                     : rayFrom(surface, sample.direction),
                 sample.lobe);
     for (int i = 1; i < copies; ++i) {
-        PhotonStep& copy = waiting.add(photon);
+        PhotonStep copy = photon;
         copy.random = photon.random.branch(kFirstCopy + static_cast<std::uint32_t>(i));
+        waiting.add(copy);
     }
     return true;
 }

@@ -104,15 +104,14 @@ bool PhotonPath::followLobes(const Surface& surface, const Bsdf& bsdf, StillToFi
             followDiffuse(surface, bsdf, arrived, still, survival[i]);
             continue;
         }
+        const std::uint32_t parts = partsAlong(arrived, bsdf, lobe);
         if (!goesOn(lobe)) {
             const Sampler all = arrived.random.branch(static_cast<std::uint32_t>(lobe));
-            const std::uint32_t parts = partsAlong(arrived, bsdf, lobe);
             for (std::uint32_t k = 0; k < parts; ++k)
                 followBroad(surface, bsdf, arrived, survival[i] * static_cast<float>(parts),
                             all.part(parts, k));
             continue;
         }
-        const std::uint32_t parts = partsAlong(arrived, bsdf, lobe);
         const bool isPart = waysOn > 1 || parts > 1;
         PhotonBranch part = arrived;
         part.parts *= parts;
