@@ -40,9 +40,26 @@ float shareOf(std::span<const float> cumulative, std::size_t i) {
     return cumulative[i] - (i > 0 ? cumulative[i - 1] : 0.0f);
 }
 
-// u becomes where in the share it lay, in [0, 1).
-std::size_t choose(std::span<const float> cumulative, float& u) {
-    const auto it = std::upper_bound(cumulative.begin(), cumulative.end(), u);
+// Parts of [0, 1] in the tables that say where to begin a search; a power of two, so that a number
+// times it is exact.
+constexpr std::size_t kParts = 256;
+
+void fillStarts(std::span<const float> cumulative, std::uint16_t* starts) {
+    std::size_t i = 0;
+    for (std::size_t part = 0; part <= kParts; ++part) {
+        while (i + 1 < cumulative.size() &&
+               cumulative[i] * static_cast<float>(kParts) <= static_cast<float>(part))
+            ++i;
+        starts[part] = static_cast<std::uint16_t>(i);
+    }
+}
+
+// The first entry that is more than u, in [0, 1), by the table of starts. u becomes where in the
+// share it lay, in [0, 1).
+std::size_t choose(std::span<const float> cumulative, const std::uint16_t* starts, float& u) {
+    const auto part = static_cast<std::size_t>(u * static_cast<float>(kParts));
+    const auto it = std::upper_bound(cumulative.begin() + starts[part],
+                                     cumulative.begin() + starts[part + 1], u);
     const auto i = static_cast<std::size_t>(it - cumulative.begin());
     const float begin = i > 0 ? cumulative[i - 1] : 0.0f;
     u = std::min((u - begin + 0x1p-25f) / shareOf(cumulative, i), 1.0f - 0x1p-24f);
@@ -60,6 +77,11 @@ Environment::Environment(const EnvironmentDescription& description, const Textur
     for (std::size_t axis = 0; axis < 3; ++axis)
         m_axes[axis] = Vec3f(Vec3d{description.toWorld[axis], description.toWorld[4 + axis],
                                    description.toWorld[8 + axis]});
+    // What rounding moves a place by, in a look-up, at most.
+    constexpr float kRounding = 0x1p-21f;
+    if (m_texture != kNoTexture)
+        m_halfTexel =
+            std::min(0.5f, 0.5f / static_cast<float>(m_textures->texels(m_texture)[1]) + kRounding);
     if (m_texture == kNoTexture || isBlack(m_scale))
         m_integral = 4 * std::numbers::pi * channelMean(m_scale);
     else
@@ -83,10 +105,7 @@ Vec2f Environment::toPicture(const Vec3f& local) const {
 
 // Beyond the middles of the first and the last row lie the poles, not the other one of them.
 float Environment::keptFromPoles(float up) const {
-    // What rounding moves a place by, in a look-up, at most.
-    constexpr float kRounding = 0x1p-21f;
-    const float half = 0.5f / static_cast<float>(m_textures->texels(m_texture)[1]) + kRounding;
-    return half < 0.5f ? std::clamp(up, half, 1.0f - half) : 0.5f;
+    return std::clamp(up, m_halfTexel, 1.0f - m_halfTexel);
 }
 
 Rgb Environment::texel(Vec2f uv) const {
@@ -141,6 +160,7 @@ void Environment::fillTable(const CancelCheck& cancel) {
         m_integral += sum / static_cast<double>(columns) * solidAngleOfRow(row);
     }
     m_cumulative.resize(columns * rows);
+    m_columnStarts.resize((kParts + 1) * rows);
     tbb::parallel_for(std::size_t{0}, rows,
                       [&](std::size_t row) { rowSums[row] = fillRow(means, row); });
     fillRows(rowSums);
@@ -168,6 +188,7 @@ double Environment::fillRow(std::span<const double> means, std::size_t row) {
     for (double& weight : weights)
         weight = (1 - kEvenShare) * (sum > 0 ? weight / sum : even) + kEvenShare * even;
     accumulate(weights, m_cumulative.data() + row * columns);
+    fillStarts(columnsOf(row), m_columnStarts.data() + row * (kParts + 1));
     return sum;
 }
 
@@ -179,19 +200,19 @@ void Environment::fillRows(std::span<const double> rowSums) {
         total += weights.back();
     }
     m_rows.resize(rowSums.size());
+    m_rowStarts.resize(kParts + 1);
     if (!(total > 0)) return;
     for (std::size_t row = 0; row < rowSums.size(); ++row)
         weights[row] = (1 - kEvenShare) * weights[row] / total +
                        kEvenShare * solidAngleOfRow(row) / (4 * std::numbers::pi);
     accumulate(weights, m_rows.data());
+    fillStarts(m_rows, m_rowStarts.data());
 }
 
 float Environment::pdfOfCell(std::uint32_t column, std::uint32_t row) const {
-    const std::span<const float> cells(m_cumulative.data() + std::size_t{row} * m_columns,
-                                       m_columns);
     const float solidAngle =
         2.0f * kPi / static_cast<float>(m_columns) * (m_heights[row + 1] - m_heights[row]);
-    return shareOf(m_rows, row) * shareOf(cells, column) / solidAngle;
+    return shareOf(m_rows, row) * shareOf(columnsOf(row), column) / solidAngle;
 }
 
 Vec3f Environment::sample(Vec2f u, float& pdf) const {
@@ -199,9 +220,9 @@ Vec3f Environment::sample(Vec2f u, float& pdf) const {
         pdf = 0.25f * kInvPi;
         return sampleUniformSphere(u);
     }
-    const std::size_t row = choose(m_rows, u.x);
+    const std::size_t row = choose(m_rows, m_rowStarts.data(), u.x);
     const std::size_t column =
-        choose(std::span(m_cumulative).subspan(row * m_columns, m_columns), u.y);
+        choose(columnsOf(row), m_columnStarts.data() + row * (kParts + 1), u.y);
     pdf = pdfOfCell(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row));
     const float y = m_heights[row] + (m_heights[row + 1] - m_heights[row]) * u.x;
     const float r = std::sqrt(std::max(0.0f, 1.0f - y * y));

@@ -61,7 +61,8 @@ class Environment {
 
     std::uint64_t memoryBytes() const {
         return (m_cumulative.size() + m_rows.size()) * sizeof(float) +
-               m_heights.size() * sizeof(float);
+               m_heights.size() * sizeof(float) +
+               (m_columnStarts.size() + m_rowStarts.size()) * sizeof(std::uint16_t);
     }
 
     // The table has no more cells than this across, half as many down.
@@ -79,16 +80,24 @@ class Environment {
     double fillRow(std::span<const double> means, std::size_t row);
     void fillRows(std::span<const double> rowSums);
     float pdfOfCell(std::uint32_t column, std::uint32_t row) const;
+    std::span<const float> columnsOf(std::size_t row) const {
+        return std::span(m_cumulative).subspan(row * m_columns, m_columns);
+    }
 
     Rgb m_scale;
     std::int32_t m_texture = kNoTexture;
     const TextureSource* m_textures = nullptr;
     bool m_hasBadTexels = false;
-    Vec3f m_axes[3];  // of the environment's space, in the world's
+    float m_halfTexel = 0.5f;  // of the picture's height, and what rounding moves a place by
+    Vec3f m_axes[3];           // of the environment's space, in the world's
     double m_integral = 0;
     std::uint32_t m_columns = 0, m_rowCount = 0;  // of the table; 0: all directions alike
     std::vector<float> m_cumulative;              // of the cells of each row, its last is 1
     std::vector<float> m_rows;                    // of the rows
+    // Where to look for a number in these: of each of as many parts of [0, 1], the first entry that
+    // is beyond its beginning. A search through all of a row would wait for memory at each step.
+    std::vector<std::uint16_t> m_columnStarts;  // of each row, kParts + 1
+    std::vector<std::uint16_t> m_rowStarts;
     std::vector<float> m_heights;  // of the rows' lower edges, the cosines to -y: -1 ... 1
 };
 

@@ -97,10 +97,11 @@ class LampTexture::Builder {
           m_weights(m_light) {
         const std::uint32_t side = m_light.side();
         const bool isCoarse = lamp.texels > side;
+        const float step = isCoarse ? 1.0f / static_cast<float>(side) : 0.0f;
         if (isCoarse) m_leaf = static_cast<std::int32_t>(std::min(kPlacesOfTexels, side));
         forEachRow([&](std::uint32_t j) {
             for (std::uint32_t i = 0; i < m_light.rowSize(j); ++i) {
-                const Look look = lamp.look(place(i, j, isCoarse));
+                const Look look = lamp.look(place(i, j, isCoarse), step);
                 m_light.at(i, j) = static_cast<float>(look.radiance);
                 m_weights.at(i, j) = static_cast<float>(look.area);
             }

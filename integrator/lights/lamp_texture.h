@@ -30,8 +30,13 @@ class LampTexture {
         Domain domain = Domain::kTriangle;
         double texels = 1;  // along the domain's longest side
         std::size_t mostLooks = 1 << 24;
-        std::function<Look(Vec2f)> look;  // called from many threads at once
+        // Called from many threads at once. step: between places where texels are finer than places
+        // are dense, so that each stands for what is around it; else 0.
+        std::function<Look(Vec2f, float step)> look;
     };
+
+    // One that shows nothing.
+    LampTexture() = default;
 
     // Looks in parallel in the calling TBB arena. Throws Error(kCancelled) soon after cancel is
     // set.
@@ -64,7 +69,7 @@ class LampTexture {
     };
     class Builder;
 
-    Domain m_domain;
+    Domain m_domain = Domain::kTriangle;
     std::vector<Node> m_nodes;  // the root comes last
     double m_mean = 0;
 };

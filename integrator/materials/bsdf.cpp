@@ -147,8 +147,8 @@ namespace {
 std::optional<Admission> admissionOf(const DiffuseLobe& lobe) {
     if (std::holds_alternative<Lambertian>(lobe)) return Admission{};
     const auto* const below = std::get_if<Undercoat>(&lobe);
-    if (!below || !below->cover.isBoundaryAlone()) return std::nullopt;
-    return Admission{below->cover.boundary, below->mean};
+    if (!below) return std::nullopt;
+    return Admission{below->cover, below->mean};
 }
 
 }  // namespace

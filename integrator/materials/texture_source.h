@@ -84,6 +84,10 @@ class TextureSource {
         return asLight(lookUp(index, {uv}));
     }
 
+    // Whether texture `index` is known to be black all over a box of uv: by levels that were made
+    // beforehand, so that many texels take one look. A source that has none says no.
+    virtual bool isBlackWithin(std::int32_t, Vec2f /*lo*/, Vec2f /*hi*/) const { return false; }
+
     // How many texels of the finest level such a light has. Throws Error(kCancelled) soon after
     // cancel is set.
     virtual BadTexels badTexels(std::int32_t, const CancelCheck&) const { return {}; }

@@ -183,7 +183,8 @@ class Scene {
                                     : &m_lampTextures[static_cast<std::size_t>(light.texture)];
     }
     // Radiance of a material's front, W m^-2 sr^-1, >= 0.
-    Rgb emission(std::uint32_t material, Vec2f uv) const;
+    // footprint: over which it is the mean; without sides, at the finest level.
+    Rgb emission(std::uint32_t material, Vec2f uv, const UvFootprint& footprint = {}) const;
     // That is not exceeded anywhere.
     Rgb mostEmission(std::uint32_t material) const;
     // The point of a sphere shape that lies in a direction (of any length) from its centre.
@@ -258,6 +259,8 @@ class Scene {
     // Of that, shape and all else but isPane.
     void surfaceAt(const RayHit& hit, Surface& surface, const Arrival& arrival) const;
     float openShare(const Ray& ray, const RayHit& hit) const;
+    // Where textures are looked up at a hit, without the rest of the surface.
+    TextureContext contextAt(const Ray& ray, const RayHit& hit) const;
     // Whether a straight way may go on through glass.
     bool mayEnter(const RayHit& hit) const;
     class StraightWay;
@@ -289,6 +292,8 @@ class Scene {
     bool isOfEmission(std::int32_t texture) const;
     // Of a texture of lights; gives notice the first time.
     bool findBadTexels(std::int32_t texture, const CancelCheck& cancel);
+    // Whether the texture alone says that it is black between uv.
+    bool isKnownBlack(std::uint32_t material, std::span<const Vec2f> uv) const;
     LampTexture lookAtLamp(const SurfaceLight& light, std::size_t mostLooks,
                            const CancelCheck& cancel) const;
     // For the powers of textured lamps, and where on them light is.

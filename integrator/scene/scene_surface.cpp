@@ -88,6 +88,12 @@ double rootOf(const CurvedShape& shape, const Vec3d& origin, const Vec3d& direct
     return best;
 }
 
+Vec2f interpolateTexcoords(const std::array<Vec2f, 3>& corners, float b1, float b2) {
+    const float b0 = 1.0f - b1 - b2;
+    return {corners[0].x * b0 + corners[1].x * b1 + corners[2].x * b2,
+            corners[0].y * b0 + corners[1].y * b1 + corners[2].y * b2};
+}
+
 }  // namespace
 
 Scene::Facet::Facet(const Corner& corner, bool mirrored, bool exact) {
@@ -193,8 +199,7 @@ void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive
                             arrival, surface);
     if (attributes.hasTexcoords) {
         const auto& [t0, t1, t2] = attributes.texcoords;
-        const float f0 = 1.0f - f1 - f2;
-        surface.uv = {t0.x * f0 + t1.x * f1 + t2.x * f2, t0.y * f0 + t1.y * f1 + t2.y * f2};
+        surface.uv = interpolateTexcoords(attributes.texcoords, f1, f2);
         if (record.hasMaps && !arrival.ofShapeOnly) {
             // Of caustics every facet counts.
             const bool isFinest = arrival.footprint && arrival.footprint->isWide &&
@@ -205,6 +210,24 @@ void Scene::surfaceOnTriangle(const ShapeRecord& record, std::uint32_t primitive
         }
     }
     nameSurface(record, primitive, surface);
+}
+
+TextureContext Scene::contextAt(const Ray& ray, const RayHit& hit) const {
+    const ShapeRecord& record = m_shapes[hit.shape];
+    if (record.curved) {
+        Surface surface;
+        surfaceAt(hit, surface, {&ray, nullptr, true});
+        return {surface.uv, surface.position, {}};
+    }
+    const Corner corner = record.corner(hit.primitive);
+    double b1, b2;
+    barycentrics(ray, corner.vertex, corner.e1, corner.e2, b1, b2);
+    TextureContext at;
+    at.place = Vec3f(corner.vertex + (corner.e1 * b1 + corner.e2 * b2));
+    std::array<Vec2f, 3> texcoords;
+    if (record.texcoords(hit.primitive, texcoords))
+        at.uv = interpolateTexcoords(texcoords, static_cast<float>(b1), static_cast<float>(b2));
+    return at;
 }
 
 void Scene::nameSurface(const ShapeRecord& record, std::uint32_t primitive, Surface& surface) {

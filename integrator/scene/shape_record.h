@@ -126,6 +126,17 @@ struct Scene::ShapeRecord {
         }
         return found;
     }
+    // The corners' texture coordinates alone; false where there are none.
+    bool texcoords(std::uint32_t primitive, std::array<Vec2f, 3>& found) const {
+        if (groups) {
+            found = attributes(primitive).texcoords;
+            return groups->hasTexcoords();
+        }
+        if (mesh->texcoords.empty()) return false;
+        for (std::size_t i = 0; i < 3; ++i)
+            found[i] = mesh->texcoords[mesh->texcoordIndices[primitive][i]];
+        return true;
+    }
     Facet facet(std::uint32_t primitive) const { return facet(primitive, corner(primitive)); }
     // of: its corner.
     Facet facet(std::uint32_t primitive, const Corner& of) const {

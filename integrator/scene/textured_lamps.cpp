@@ -2,13 +2,17 @@
 // SPDX-FileCopyrightText: The pm authors
 // Scene: lamps whose radiance comes from a texture, and points on them.
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "integrator/materials/opacity.h"
 #include "integrator/sampling/pinned_math.h"
@@ -40,23 +44,24 @@ float sineOfRow(float v) {
 
 }  // namespace
 
-Rgb Scene::emission(std::uint32_t index, Vec2f uv) const {
+Rgb Scene::emission(std::uint32_t index, Vec2f uv, const UvFootprint& footprint) const {
     const MaterialDescription& material = this->material(index);
     // What is cut away doesn't shine.
     const float share = ownOpacityAt(materials(), material, {uv});
     Rgb ofParts;
     if (material.kind == MaterialKind::kMixture && m_traits[index].emits) {
         const float second = weightAt(materials(), material, {uv});
-        ofParts = (emission(material.first, uv) * (1.0f - second) +
-                   emission(material.second, uv) * second) *
+        ofParts = (emission(material.first, uv, footprint) * (1.0f - second) +
+                   emission(material.second, uv, footprint) * second) *
                   share;
         if (isBlack(material.emission)) return ofParts;
     }
     if (material.emissionTexture == kNoTexture) return ofParts + material.emission * share;
     const auto texture = static_cast<std::size_t>(material.emissionTexture);
     const bool isBad = texture < m_hasBadTexels.size() && m_hasBadTexels[texture];
-    const Texel t = asLight(isBad ? textures()->lookUpOfLight(material.emissionTexture, uv)
-                                  : textures()->lookUp(material.emissionTexture, {uv}));
+    const Texel t =
+        asLight(isBad ? textures()->lookUpOfLight(material.emissionTexture, uv)
+                      : textures()->lookUp(material.emissionTexture, {uv, {}, footprint}));
     return ofParts + material.emission * Rgb(t.r, t.g, t.b) * share;
 }
 
@@ -102,6 +107,20 @@ Rgb Scene::mostEmission(std::uint32_t index) const {
     return m.emission + mostEmission(m.first) + mostEmission(m.second);
 }
 
+bool Scene::isKnownBlack(std::uint32_t index, std::span<const Vec2f> uv) const {
+    const MaterialDescription& shining = material(index);
+    if (shining.kind == MaterialKind::kMixture || shining.emissionTexture == kNoTexture)
+        return false;
+    const auto texture = static_cast<std::size_t>(shining.emissionTexture);
+    if (texture < m_hasBadTexels.size() && m_hasBadTexels[texture]) return false;
+    Vec2f lo = uv[0], hi = uv[0];
+    for (const Vec2f& at : uv) {
+        lo = {std::min(lo.x, at.x), std::min(lo.y, at.y)};
+        hi = {std::max(hi.x, at.x), std::max(hi.y, at.y)};
+    }
+    return textures()->isBlackWithin(shining.emissionTexture, lo, hi);
+}
+
 LampTexture Scene::lookAtLamp(const SurfaceLight& light, std::size_t mostLooks,
                               const CancelCheck& cancel) const {
     const ShapeRecord& record = m_shapes[light.shape];
@@ -116,53 +135,51 @@ LampTexture Scene::lookAtLamp(const SurfaceLight& light, std::size_t mostLooks,
     if (!record.mesh) {
         lamp.domain = LampTexture::Domain::kSquare;
         lamp.texels = std::max(across, down);
-        lamp.look = [&, this](Vec2f uv) {
+        lamp.look = [&, this](Vec2f uv, float) {
             return LampTexture::Look{
                 channelMean(emission(light.material, uv)),
                 0.5 * std::numbers::pi * static_cast<double>(sinCosTurns(0.5f * uv.y).sin)};
         };
         return LampTexture(lamp, cancel);
     }
-    const Corner corner = record.corner(light.primitive);
-    const auto uvAt = [&](Vec2f b) {
-        Surface surface;
-        surfaceOnTriangle(record, light.primitive, corner, static_cast<double>(b.x),
-                          static_cast<double>(b.y), surface);
-        return surface.uv;
-    };
-    const Vec2f uv[] = {uvAt({0, 0}), uvAt({1, 0}), uvAt({0, 1})};
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Vec2f a = uv[i], b = uv[(i + 1) % 3];
-        lamp.texels = std::max({lamp.texels, std::abs(static_cast<double>(b.x - a.x)) * across,
-                                std::abs(static_cast<double>(b.y - a.y)) * down});
-    }
-    lamp.look = [&, this](Vec2f b) {
-        return LampTexture::Look{channelMean(emission(light.material, uvAt(b)))};
+    std::array<Vec2f, 3> uv{};
+    record.texcoords(light.primitive, uv);
+    if (isKnownBlack(light.material, uv)) return LampTexture();
+    const Vec2f e1 = uv[1] - uv[0], e2 = uv[2] - uv[0];
+    for (const Vec2f& edge : {e1, e2, e2 - e1})
+        lamp.texels = std::max({lamp.texels, std::abs(static_cast<double>(edge.x)) * across,
+                                std::abs(static_cast<double>(edge.y)) * down});
+    lamp.look = [&, this](Vec2f b, float step) {
+        return LampTexture::Look{channelMean(
+            emission(light.material, uv[0] + e1 * b.x + e2 * b.y, {e1 * step, e2 * step}))};
     };
     return LampTexture(lamp, cancel);
 }
 
 void Scene::lookAtTextures(const CancelCheck& cancel) {
-    const auto count = static_cast<std::size_t>(std::ranges::count_if(
-        m_lights, [&](const Light& light) { return shinesByTexture(*this, light); }));
-    if (count == 0) return;
+    std::vector<Light*> lights;
+    for (Light& light : m_lights)
+        if (shinesByTexture(*this, light)) lights.push_back(&light);
+    if (lights.empty()) return;
     std::set<std::int32_t> textures;
     for (const Light& light : m_lights)
         if (light.surface())
             for (const std::int32_t texture : texturesOfEmission(light.surface()->material))
                 if (isOfEmission(texture)) textures.insert(texture);
     for (const std::int32_t texture : textures) findBadTexels(texture, cancel);
-    for (Light& light : m_lights) {
-        if (!shinesByTexture(*this, light)) continue;
-        SurfaceLight& shining = *light.surface();
-        LampTexture texture =
-            lookAtLamp(shining, std::max<std::size_t>(1, kMostLooks / count), cancel);
+    const std::size_t mostLooks = std::max<std::size_t>(1, kMostLooks / lights.size());
+    std::vector<LampTexture> seen(lights.size());
+    tbb::parallel_for(std::size_t{0}, lights.size(), [&](std::size_t i) {
+        seen[i] = lookAtLamp(*lights[i]->surface(), mostLooks, cancel);
+    });
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        SurfaceLight& shining = *lights[i]->surface();
         const double whole = channelMean(mostEmission(shining.material));
-        light.powerMean = std::numbers::pi * static_cast<double>(shining.area) *
-                          std::max(texture.mean(), kLeastPower * whole);
-        if (texture.isEven()) continue;
+        lights[i]->powerMean = std::numbers::pi * static_cast<double>(shining.area) *
+                               std::max(seen[i].mean(), kLeastPower * whole);
+        if (seen[i].isEven()) continue;
         shining.texture = static_cast<std::int32_t>(m_lampTextures.size());
-        m_lampTextures.push_back(std::move(texture));
+        m_lampTextures.push_back(std::move(seen[i]));
     }
 }
 

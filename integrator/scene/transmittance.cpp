@@ -57,7 +57,7 @@ class Crossings {
 Rgb Scene::straightShare(const Surface& surface, const Vec3f& direction) const {
     if (!m_traits[surface.material].letsThrough() && !(surface.eta > 0.0f)) return {};
     return pm::straightShare(m_materials, surface,
-                             opacityAt(m_materials, surface.material, contextAt(surface)),
+                             opacityAt(m_materials, surface.material, pm::contextAt(surface)),
                              dot(direction, surface.geometricNormal) < 0.0f);
 }
 
@@ -66,10 +66,10 @@ float Scene::openShare(const Ray& ray, const RayHit& hit) const {
     const std::uint32_t index = m_shapes[hit.shape].materialOf(hit.primitive);
     if (!m_traits[index].isCutAway) return 0.0f;
     const MaterialDescription& material = m_materials[index];
-    Surface surface;
+    TextureContext at;
     if (material.opacityTexture != kNoTexture || material.kind == MaterialKind::kMixture)
-        surfaceAt(hit, surface, {&ray, nullptr, true});
-    return 1.0f - opacityAt(m_materials, index, contextAt(surface));
+        at = contextAt(ray, hit);
+    return 1.0f - opacityAt(m_materials, index, at);
 }
 
 // Whether they are so close behind each other that a path which goes straight on from the first

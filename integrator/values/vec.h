@@ -49,6 +49,13 @@ using Vec3d = Vec3<double>;
 struct Vec2f {
     float x{}, y{};
     friend constexpr bool operator==(const Vec2f& a, const Vec2f& b) = default;
+    friend constexpr Vec2f operator+(const Vec2f& a, const Vec2f& b) {
+        return {a.x + b.x, a.y + b.y};
+    }
+    friend constexpr Vec2f operator-(const Vec2f& a, const Vec2f& b) {
+        return {a.x - b.x, a.y - b.y};
+    }
+    friend constexpr Vec2f operator*(const Vec2f& v, float s) { return {v.x * s, v.y * s}; }
 };
 
 template <typename T>

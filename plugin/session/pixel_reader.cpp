@@ -59,9 +59,41 @@ Destination checkedDestination(const Rect& rect, const LayerSpec& layer, float* 
     return {reinterpret_cast<unsigned char*>(destination), pixelStride, rowStride};
 }
 
-// The value of one layer at a pixel from all its channels. Beauty is the sum of its parts.
-void layerValue(Layer layer, const ChannelLayout& layout, const float* pixel, float* value) {
-    const auto copy = [&](std::int32_t first) { std::copy_n(pixel + first, 3, value); };
+// Channels of a frame that lie side by side, of one pixel.
+struct Channels {
+    const float* values;
+    std::int32_t first;
+
+    float operator[](std::int32_t channel) const { return values[channel - first]; }
+};
+
+// The first channel that a layer is made of, and how many there are up to its last.
+struct ChannelRange {
+    std::int32_t first = 0, count = 0;
+};
+
+// all: of the frame, which keeps no more than it needs.
+ChannelRange channelsOf(Layer layer, const ChannelLayout& layout, std::int32_t all) {
+    switch (layer) {
+        case Layer::kDirect:
+            return {layout.direct, 3};
+        case Layer::kIndirect:
+            return {layout.indirect, 3};
+        case Layer::kCaustic:
+            return {layout.caustic, 3};
+        case Layer::kEmission:
+            return {layout.emission, 3};
+        case Layer::kAlbedo:
+            return {layout.albedo, 3};
+        case Layer::kNormal:
+            return {layout.normal, 3};
+        default:
+            return {0, all};
+    }
+}
+
+// The value of one layer at a pixel. Beauty is the sum of its parts.
+void layerValue(Layer layer, const ChannelLayout& layout, const Channels& pixel, float* value) {
     switch (layer) {
         case Layer::kBeauty:
             for (int c = 0; c < 3; ++c)
@@ -70,17 +102,13 @@ void layerValue(Layer layer, const ChannelLayout& layout, const float* pixel, fl
             value[3] = pixel[layout.alpha];
             break;
         case Layer::kDirect:
-            return copy(layout.direct);
         case Layer::kIndirect:
-            return copy(layout.indirect);
         case Layer::kCaustic:
-            return copy(layout.caustic);
         case Layer::kEmission:
-            return copy(layout.emission);
         case Layer::kAlbedo:
-            return copy(layout.albedo);
         case Layer::kNormal:
-            return copy(layout.normal);
+            std::copy_n(pixel.values, 3, value);
+            break;
         case Layer::kDepth:
             value[0] =
                 pixel[layout.alpha] > 0.0f ? pixel[layout.depth] / pixel[layout.alpha] : kNoDepth;
@@ -96,7 +124,8 @@ void layerValue(Layer layer, const ChannelLayout& layout, const float* pixel, fl
 
 void readMeans(const FrameStore& frame, const ChannelLayout& layout, const Rect& rect,
                const LayerSpec& layer, const Destination& destination) {
-    const auto channels = static_cast<std::size_t>(layout.count);
+    const ChannelRange range = channelsOf(layer.id, layout, frame.channels());
+    const auto channels = static_cast<std::size_t>(range.count);
     const auto width = static_cast<std::size_t>(rect.width());
     std::vector<float> row(channels * width), samples(width);
     const auto pixelBytes = static_cast<std::int64_t>(channels * sizeof(float));
@@ -104,10 +133,11 @@ void readMeans(const FrameStore& frame, const ChannelLayout& layout, const Rect&
         const Rect line{rect.x0, y, rect.x1, y + 1};
         // The counts first: a pixel that was counted has a value by the time that is read.
         frame.readSampleCount(line, samples.data(), sizeof(float), 0);
-        frame.read(line, 0, frame.channels(), row.data(), pixelBytes, 0);
+        frame.read(line, range.first, range.count, row.data(), pixelBytes, 0);
         for (std::size_t x = 0; x < width; ++x) {
             float value[4] = {};
-            if (samples[x] > 0.0f) layerValue(layer.id, layout, row.data() + x * channels, value);
+            if (samples[x] > 0.0f)
+                layerValue(layer.id, layout, {row.data() + x * channels, range.first}, value);
             destination.put(static_cast<std::int64_t>(x), y - rect.y0, value, layer.channelCount);
         }
     }

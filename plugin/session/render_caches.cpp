@@ -35,7 +35,9 @@ std::vector<LedgerCache> cachesOf(const RenderScene& scene, const MemoryPlan& pl
     TextureSystem& system = *scene.textureSystem;
     add(
         "textures", TextureSystem::kLeastBytes, textures.texelBytes(),
-        [&system](std::uint64_t bytes) { system.holdAtMost(bytes); },
+        [&system, all = textures.texelBytes()](std::uint64_t bytes) {
+            system.holdAtMost(bytes, all);
+        },
         [&textures] { return textures.reads().bytes; });
     if (photons)
         add(

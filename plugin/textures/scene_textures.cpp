@@ -99,6 +99,12 @@ Texel SceneTextures::lookUpOfLight(std::int32_t index, Vec2f uv) const {
     return texel;
 }
 
+bool SceneTextures::isBlackWithin(std::int32_t index, Vec2f lo, Vec2f hi) const {
+    const Texture& texture = *m_textures[static_cast<std::size_t>(index)];
+    const TexturePicture* const picture = texture.at(lo);
+    return picture && picture == texture.at(hi) && texture.system->isBlackWithin(*picture, lo, hi);
+}
+
 BadTexels SceneTextures::badTexels(std::int32_t index, const CancelCheck& cancel) const {
     const Texture& texture = *m_textures[static_cast<std::size_t>(index)];
     if (texture.tiles.empty()) return texture.system->badTexels(texture.picture, cancel);

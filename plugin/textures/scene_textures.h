@@ -40,6 +40,7 @@ class SceneTextures final : public TextureSource {
     // By what the codes of the file are.
     Vec3f normalAt(std::int32_t index, const TextureContext& at) const override;
     Texel lookUpOfLight(std::int32_t index, Vec2f uv) const override;
+    bool isBlackWithin(std::int32_t index, Vec2f lo, Vec2f hi) const override;
     BadTexels badTexels(std::int32_t index, const CancelCheck& cancel) const override;
     std::array<float, 2> extremes(std::int32_t index, const CancelCheck& cancel) const override;
     std::string name(std::int32_t index) const override;

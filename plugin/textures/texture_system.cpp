@@ -6,10 +6,12 @@
 #include <OpenImageIO/imageio.h>
 #include <OpenImageIO/texture.h>
 #include <fmt/format.h>
+#include <tbb/parallel_for.h>
 #include <xxhash.h>
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -17,6 +19,7 @@
 #include <vector>
 
 #include "plugin/textures/picture_file.h"
+#include "plugin/textures/texture_filter.h"
 #include "plugin/textures/watched_input.h"
 #include "plugin/values/call_error.h"
 
@@ -28,22 +31,8 @@ namespace {
 constexpr float kFirstMegabytes = 16.0f;
 // Pictures that are not tiled are cut into tiles of this size when they are read.
 constexpr int kTilePixels = 64;
-// Along a long and narrow footprint; beyond, it is widened.
-constexpr int kMostProbes = 16;
-
-OIIO::TextureOpt::Wrap toOpenImageIo(Wrap wrap) {
-    switch (wrap) {
-        case Wrap::kRepeat:
-            break;
-        case Wrap::kClamp:
-            return OIIO::TextureOpt::WrapClamp;
-        case Wrap::kMirror:
-            return OIIO::TextureOpt::WrapMirror;
-        case Wrap::kBlack:
-            return OIIO::TextureOpt::WrapBlack;
-    }
-    return OIIO::TextureOpt::WrapPeriodic;
-}
+// Of what may be held, the share that threads hold beside the cache.
+constexpr std::uint64_t kHeldShare = 8;
 
 OIIO::TextureSystem::TextureHandle* handleOf(const TexturePicture& picture) {
     return static_cast<OIIO::TextureSystem::TextureHandle*>(picture.handle);
@@ -53,7 +42,7 @@ OIIO::TextureSystem::TextureHandle* handleOf(const TexturePicture& picture) {
     throw CallError(CallStatus::kIo, fmt::format("texture {} can't be read: {}", fileName, why));
 }
 
-Texel toTexel(const std::array<float, 4>& values, int channelCount) {
+Texel toTexel(const TexelValues& values, int channelCount) {
     switch (channelCount) {
         case 1:
             return {values[0], values[0], values[0], 1.0f};
@@ -79,12 +68,6 @@ Vec2f sideIn(const TexturePicture& picture, const Vec2f& side) {
         return std::isfinite(v) ? std::clamp(v, -kLongest, kLongest) : kLongest;
     };
     return {bounded(side.x * picture.uvScale.x), bounded(-side.y * picture.uvScale.y)};
-}
-
-// Of such footprints the finest level is looked up, and no probes are needed for it.
-bool isWithinATexel(const TexturePicture& picture, const Vec2f& side) {
-    return std::abs(side.x) * static_cast<float>(picture.width) <= 1.0f &&
-           std::abs(side.y) * static_cast<float>(picture.height) <= 1.0f;
 }
 
 Texel withGain(const TexturePicture& picture, Texel texel) {
@@ -136,6 +119,7 @@ std::array<std::uint64_t, 2> texelHash(const std::string& fileName, const Cancel
 }
 
 TextureSystem::~TextureSystem() {
+    m_tiles.reset();
     if (m_system != nullptr) OIIO::TextureSystem::destroy(m_system);
     // Its texels are given back, but it stays: other threads keep what they last used of it by its
     // address (2.4.7), and a later cache at the same one would be taken for it.
@@ -159,15 +143,21 @@ OIIO::TextureSystem& TextureSystem::system() {
         made->attribute("flip_t", 0);
         made->attribute("substitute_image", "");
         made->attribute("searchpath", "");
+        m_tiles = std::make_unique<HeldTilesOfThreads>(*m_cache);
+        m_tiles->holdAtMost(kLeastBytes / kHeldShare);
         m_system = made;
     });
     return *m_system;
 }
 
-void TextureSystem::holdAtMost(std::uint64_t bytes) {
+void TextureSystem::holdAtMost(std::uint64_t bytes, std::uint64_t all) {
     if (bytes == 0) return;
     const std::uint64_t held = std::max(bytes, kLeastBytes);
-    system().attribute("max_memory_MB", static_cast<float>(held) / (1024.0f * 1024.0f));
+    const bool isAll = all > 0 && all <= held;
+    const std::uint64_t byThreads = held / kHeldShare;
+    system().attribute("max_memory_MB",
+                       static_cast<float>(isAll ? held : held - byThreads) / (1024.0f * 1024.0f));
+    m_tiles->holdAtMost(isAll ? std::numeric_limits<std::size_t>::max() : byThreads);
 }
 
 TexturePicture TextureSystem::open(const TextureDescription& description) {
@@ -205,34 +195,54 @@ TexturePicture TextureSystem::open(const TextureDescription& description) {
     if (format == OIIO::TypeDesc::UINT16) picture.largestCode = 65535.0f;
     picture.width = static_cast<std::uint32_t>(std::max(1, size[0]));
     picture.height = static_cast<std::uint32_t>(std::max(1, size[1]));
+    picture.file = std::make_shared<const TextureFile>(fileOf(picture));
     return picture;
+}
+
+TextureFile TextureSystem::fileOf(const TexturePicture& picture) {
+    const OIIO::ustring name(picture.fileName);
+    TextureFile file;
+    file.number = ++m_files;
+    file.handle = m_cache->get_image_handle(name);
+    file.channels = std::min(picture.channelCount, 4);
+    int levels = 1;
+    m_cache->get_image_info(name, 0, 0, OIIO::ustring("miplevels"), OIIO::TypeInt, &levels);
+    const auto bitsOf = [](int side) {
+        return std::has_single_bit(static_cast<unsigned>(side))
+                   ? std::countr_zero(static_cast<unsigned>(side))
+                   : -1;
+    };
+    for (int level = 0; level < std::max(1, levels); ++level) {
+        OIIO::ImageSpec spec;
+        if (!m_cache->get_imagespec(name, spec, 0, level))
+            throwUnreadable(picture.fileName, m_cache->geterror());
+        TextureLevel of{.width = std::max(1, spec.full_width),
+                        .height = std::max(1, spec.full_height),
+                        .dataX = spec.x - spec.full_x,
+                        .dataY = spec.y - spec.full_y,
+                        .dataWidth = spec.width,
+                        .dataHeight = spec.height,
+                        .fileX = spec.x,
+                        .fileY = spec.y,
+                        .tileWidth = std::max(1, spec.tile_width),
+                        .tileHeight = std::max(1, spec.tile_height)};
+        of.tileBitsX = bitsOf(of.tileWidth);
+        of.tileBitsY = bitsOf(of.tileHeight);
+        file.levels.push_back(of);
+    }
+    return file;
 }
 
 bool TextureSystem::lookUp(const TexturePicture& picture, Vec2f uv, const UvFootprint& footprint,
                            Texel& texel) const {
     texel = {0.0f, 0.0f, 0.0f, 0.0f};
-    const auto [s, t] = placeIn(picture, uv);
-    if (!std::isfinite(s) || !std::isfinite(t)) return false;
-    OIIO::TextureOpt options;
-    options.swrap = toOpenImageIo(picture.wrapS);
-    options.twrap = toOpenImageIo(picture.wrapT);
-    options.interpmode = OIIO::TextureOpt::InterpBilinear;
-    options.anisotropic = kMostProbes;
-    Vec2f dx = sideIn(picture, footprint.x), dy = sideIn(picture, footprint.y);
-    options.mipmode = OIIO::TextureOpt::MipModeAniso;
-    if (isWithinATexel(picture, dx) && isWithinATexel(picture, dy)) {
-        dx = dy = {};
-        options.mipmode = OIIO::TextureOpt::MipModeTrilinear;
-    }
-    const int channelCount = std::min(picture.channelCount, 4);
-    std::array<float, 4> values{};
-    const bool good = m_system->texture(handleOf(picture), m_system->get_perthread_info(), options,
-                                        s, t, dx.x, dx.y, dy.x, dy.y, channelCount, values.data());
-    if (!good) {
-        m_system->geterror();  // or the texts pile up
+    const Vec2f place = placeIn(picture, uv);
+    if (!std::isfinite(place.x) || !std::isfinite(place.y)) return false;
+    TexelValues values;
+    if (!filtered(picture, *m_tiles, place, sideIn(picture, footprint.x),
+                  sideIn(picture, footprint.y), values))
         return false;
-    }
-    const Texel found = withGain(picture, toTexel(values, channelCount));
+    const Texel found = withGain(picture, toTexel(values, picture.channelCount));
     if (!isFinite(found)) return false;
     texel = found;
     return true;
@@ -240,37 +250,37 @@ bool TextureSystem::lookUp(const TexturePicture& picture, Vec2f uv, const UvFoot
 
 bool TextureSystem::lookUpOfLight(const TexturePicture& picture, Vec2f uv, Texel& texel) const {
     texel = {0.0f, 0.0f, 0.0f, 0.0f};
-    const auto [s, t] = placeIn(picture, uv);
-    if (!std::isfinite(s) || !std::isfinite(t)) return false;
-    OIIO::TextureOpt options;
-    options.swrap = toOpenImageIo(picture.wrapS);
-    options.twrap = toOpenImageIo(picture.wrapT);
-    options.mipmode = OIIO::TextureOpt::MipModeNoMIP;
-    options.interpmode = OIIO::TextureOpt::InterpClosest;
-    const auto width = static_cast<float>(picture.width),
-               height = static_cast<float>(picture.height);
-    const float x = s * width - 0.5f, y = t * height - 0.5f;
-    const float x0 = std::floor(x), y0 = std::floor(y);
-    const int channelCount = std::min(picture.channelCount, 4);
-    for (const float j : {0.0f, 1.0f})
-        for (const float i : {0.0f, 1.0f}) {
-            std::array<float, 4> values{};
-            if (!m_system->texture(handleOf(picture), m_system->get_perthread_info(), options,
-                                   (x0 + i + 0.5f) / width, (y0 + j + 0.5f) / height, 0.0f, 0.0f,
-                                   0.0f, 0.0f, channelCount, values.data())) {
-                m_system->geterror();  // or the texts pile up
-                return false;
-            }
-            const Texel found = withGain(picture, toTexel(values, channelCount));
-            const float weight =
-                (i > 0 ? x - x0 : 1.0f - (x - x0)) * (j > 0 ? y - y0 : 1.0f - (y - y0));
-            const Texel light = asLight(found);
-            texel.r += weight * light.r;
-            texel.g += weight * light.g;
-            texel.b += weight * light.b;
-            texel.a += weight * light.a;
-        }
+    const Vec2f place = placeIn(picture, uv);
+    if (!std::isfinite(place.x) || !std::isfinite(place.y)) return false;
+    TexelQuad quad;
+    if (!texelsAround(picture, *m_tiles, place, quad)) return false;
+    for (std::size_t i = 0; i < 4; ++i) {
+        const float weight = ((i & 1) != 0 ? quad.right : 1.0f - quad.right) *
+                             ((i & 2) != 0 ? quad.lower : 1.0f - quad.lower);
+        const Texel light =
+            asLight(withGain(picture, toTexel(quad.texels[i], picture.channelCount)));
+        texel.r += weight * light.r;
+        texel.g += weight * light.g;
+        texel.b += weight * light.b;
+        texel.a += weight * light.a;
+    }
     return true;
+}
+
+bool TextureSystem::isBlackWithin(const TexturePicture& picture, Vec2f lo, Vec2f hi) const {
+    if (picture.file->levels.size() == 1 || picture.base != 0.0f) return false;
+    // Looked up at levels whose texels are no smaller than the box, the two nearest along each axis
+    // cover it; a footprint of twice the size is looked up between such levels.
+    const float w = static_cast<float>(picture.width) * std::abs(picture.uvScale.x),
+                h = static_cast<float>(picture.height) * std::abs(picture.uvScale.y);
+    const float texels = std::max({(hi.x - lo.x) * w, (hi.y - lo.y) * h, 1.0f});
+    if (2.0f * texels >
+        std::min(static_cast<float>(picture.width), static_cast<float>(picture.height)))
+        return false;
+    const UvFootprint footprint{{2.0f * texels / w, 0.0f}, {0.0f, 2.0f * texels / h}};
+    Texel texel;
+    return lookUp(picture, (lo + hi) * 0.5f, footprint, texel) && texel.r == 0.0f &&
+           texel.g == 0.0f && texel.b == 0.0f;
 }
 
 TextureReads& TextureReads::operator+=(const TextureReads& other) {
@@ -302,17 +312,20 @@ TextureReads TextureSystem::reads(const TexturePicture& picture) const {
     return reads;
 }
 
-template <typename Visit>
-void TextureSystem::forEachTexel(const TexturePicture& picture, const char* what,
-                                 const CancelCheck& cancel, const Visit& visit) const {
+template <typename Found, typename Visit>
+std::vector<Found> TextureSystem::lookAtTexels(const TexturePicture& picture, const char* what,
+                                               const CancelCheck& cancel,
+                                               const Visit& visit) const {
     constexpr std::uint32_t kRows = kTilePixels;
     const int channelCount = std::min(picture.channelCount, 4);
     const auto channels = static_cast<std::size_t>(channelCount);
-    std::vector<float> texels(std::size_t{picture.width} * kRows * channels);
-    OIIO::TextureOpt options;
-    for (std::uint32_t row = 0; row < picture.height; row += kRows) {
+    std::vector<Found> found((picture.height + kRows - 1) / kRows);
+    tbb::parallel_for(std::size_t{0}, found.size(), [&](std::size_t strip) {
         cancel.throwIfSet(what);
+        const auto row = static_cast<std::uint32_t>(strip) * kRows;
         const std::uint32_t rows = std::min(kRows, picture.height - row);
+        std::vector<float> texels(std::size_t{picture.width} * rows * channels);
+        OIIO::TextureOpt options;
         if (!m_system->get_texels(handleOf(picture), m_system->get_perthread_info(), options, 0, 0,
                                   static_cast<int>(picture.width), static_cast<int>(row),
                                   static_cast<int>(row + rows), 0, 1, 0, channelCount,
@@ -320,37 +333,50 @@ void TextureSystem::forEachTexel(const TexturePicture& picture, const char* what
             throwUnreadable(picture.fileName, m_system->geterror());
         const std::size_t count = std::size_t{picture.width} * rows;
         for (std::size_t i = 0; i < count; ++i) {
-            std::array<float, 4> values{};
+            TexelValues values{};
             std::copy_n(&texels[i * channels], channels, values.begin());
-            visit(withGain(picture, toTexel(values, channelCount)));
+            visit(found[strip], withGain(picture, toTexel(values, channelCount)));
         }
-    }
+    });
+    return found;
 }
 
 BadTexels TextureSystem::badTexels(const TexturePicture& picture, const CancelCheck& cancel) const {
-    BadTexels bad;
-    forEachTexel(picture, "looking at a light's texels", cancel, [&](const Texel& texel) {
-        if (!std::isfinite(texel.r) || !std::isfinite(texel.g) || !std::isfinite(texel.b))
-            ++bad.notFinite;
-        else if (texel.r + texel.g + texel.b < 0.0f)
-            ++bad.negative;
-    });
-    return bad;
+    BadTexels all;
+    for (const BadTexels& bad : lookAtTexels<BadTexels>(
+             picture, "looking at a light's texels", cancel, [](BadTexels&bad, const Texel&texel) {
+                 if (!std::isfinite(texel.r) || !std::isfinite(texel.g) || !std::isfinite(texel.b))
+                     ++bad.notFinite;
+                 else if (texel.r + texel.g + texel.b < 0.0f)
+                     ++bad.negative;
+             })) {
+        all.notFinite += bad.notFinite;
+        all.negative += bad.negative;
+    }
+    return all;
 }
 
 std::array<float, 2> TextureSystem::extremes(const TexturePicture& picture,
                                              const CancelCheck& cancel) const {
-    constexpr float kInfinity = std::numeric_limits<float>::infinity();
-    std::array<float, 2> found{kInfinity, -kInfinity};
-    const auto add = [&](float value) {
-        if (!std::isfinite(value)) value = 0.0f;
-        found = {std::min(found[0], value), std::max(found[1], value)};
+    struct Range {
+        float lo = std::numeric_limits<float>::infinity(), hi = -lo;
+
+        void add(float value) {
+            if (!std::isfinite(value)) value = 0.0f;
+            lo = std::min(lo, value);
+            hi = std::max(hi, value);
+        }
     };
-    forEachTexel(picture, "looking at a texture's heights", cancel,
-                 [&](const Texel& texel) { add(texel.r); });
+    Range all;
+    for (const Range& range :
+         lookAtTexels<Range>(picture, "looking at a texture's heights", cancel,
+                             [](Range&range, const Texel&texel) { range.add(texel.r); })) {
+        all.add(range.lo);
+        all.add(range.hi);
+    }
     const bool hasOutside = picture.wrapS == Wrap::kBlack || picture.wrapT == Wrap::kBlack;
-    if (hasOutside) add(withGain(picture, {}).r);
-    return found;
+    if (hasOutside) all.add(withGain(picture, {}).r);
+    return {all.lo, all.hi};
 }
 
 }  // namespace pm::plugin

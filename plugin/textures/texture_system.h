@@ -5,15 +5,19 @@
 #include <OpenImageIO/oiioversion.h>
 
 #include <array>
+#include <atomic>
 #include <cstdint>
 #include <memory>
 #include <mutex>
 #include <string>
+#include <vector>
 
 #include "integrator/materials/texture_source.h"
 #include "integrator/values/cancel_check.h"
 #include "integrator/values/uv_footprint.h"
 #include "integrator/values/vec.h"
+#include "plugin/textures/held_tiles.h"
+#include "plugin/textures/texture_picture.h"
 
 OIIO_NAMESPACE_BEGIN
 class ImageCache;
@@ -21,35 +25,6 @@ class TextureSystem;
 OIIO_NAMESPACE_END
 
 namespace pm::plugin {
-
-// What lies outside [0,1]; the numbers are those of PMR_WRAP_* in pm_plugin.h.
-enum class Wrap : std::int32_t { kRepeat, kClamp, kMirror, kBlack };
-
-// A texture as a host asks for it: value = base + gain * texel. All numbers finite.
-struct TextureDescription {
-    std::string fileName;
-    Wrap wrapS = Wrap::kRepeat, wrapT = Wrap::kRepeat;
-    Vec2f uvScale{1.0f, 1.0f};
-    Vec2f uvOffset{};
-    float gain = 1.0f;
-    float base = 0.0f;
-    std::array<std::uint64_t, 2> texelHash{};  // that the host knows; 0, 0: none
-};
-
-// A picture and how it is looked up; a plain value that many scenes may share.
-struct TexturePicture {
-    std::string fileName;
-    void* handle = nullptr;  // OIIO::TextureSystem::TextureHandle, whose header is dear to compile
-    std::uint32_t width = 1, height = 1;  // texels of the finest level
-    int channelCount = 1;                 // as the file has, at most 4 are used
-    float largestCode = 1.0f;             // of the file's integers of 8 or 16 bits; else 1
-    Wrap wrapS = Wrap::kRepeat, wrapT = Wrap::kRepeat;
-    Vec2f uvScale{1.0f, 1.0f};
-    Vec2f uvOffset{};
-    float gain = 1.0f;
-    float base = 0.0f;
-    std::array<std::uint64_t, 2> texelHash{};  // that the host knows; 0, 0: none
-};
 
 // Checksum (XXH3, 128 bits) of a picture's size, channels and finest level, texel by texel: the
 // same picture in another file or of another date has the same. Throws CallError(IO);
@@ -80,9 +55,10 @@ class TextureSystem {
     TexturePicture open(const TextureDescription& description);
 
     // Texels that are held at once, in bytes; those of the render that asked last, as all renders
-    // of a context share them. At least kLeastBytes. The look-ups are the same.
+    // of a context share them. At least kLeastBytes. all: of all texels there are, where threads
+    // may hold whatever they looked at; 0: not known. The look-ups are the same.
     static constexpr std::uint64_t kLeastBytes = std::uint64_t{16} << 20;
-    void holdAtMost(std::uint64_t bytes);
+    void holdAtMost(std::uint64_t bytes, std::uint64_t all = 0);
 
     // The picture's value at uv, origin bottom left. Bilinear within a level, linear between the
     // levels of a mip-mapped file, by several probes along a footprint's longer side; a file
@@ -95,27 +71,34 @@ class TextureSystem {
     // The same of a light, at the finest level: each texel without what is no light in it, then
     // interpolated. See TextureSource.
     bool lookUpOfLight(const TexturePicture& picture, Vec2f uv, Texel& texel) const;
-    // Looks at all texels of the finest level. Throws CallError(IO); Error(kCancelled) soon after
-    // cancel is set.
+    // Whether a picture's colour is known by its coarser levels, each the mean of the one before,
+    // to be 0 all over a box of uv; no where it has no levels.
+    bool isBlackWithin(const TexturePicture& picture, Vec2f lo, Vec2f hi) const;
+    // Looks at all texels of the finest level, in parallel in the calling TBB arena. Throws
+    // CallError(IO); Error(kCancelled) soon after cancel is set.
     BadTexels badTexels(const TexturePicture& picture, const CancelCheck& cancel) const;
 
     // The least and the largest first channel of all texels of the finest level, gain and base
-    // applied, and of what is outside. Texels that are no finite number count as 0, as their
-    // look-up does. Errors as above.
+    // applied, and of what is outside; in parallel likewise. Texels that are no finite number count
+    // as 0, as their look-up does. Errors as above.
     std::array<float, 2> extremes(const TexturePicture& picture, const CancelCheck& cancel) const;
 
     TextureReads reads(const TexturePicture& picture) const;
 
   private:
     OIIO::TextureSystem& system();
-    // Calls visit(texel) for all of the finest level, in rows. while: for "cancelled while".
-    template <typename Visit>
-    void forEachTexel(const TexturePicture& picture, const char* what, const CancelCheck& cancel,
-                      const Visit& visit) const;
+    TextureFile fileOf(const TexturePicture& picture);
+    // Calls visit(found, texel) for all of the finest level, a Found for each strip of rows, in
+    // parallel. what: for "cancelled while".
+    template <typename Found, typename Visit>
+    std::vector<Found> lookAtTexels(const TexturePicture& picture, const char* what,
+                                    const CancelCheck& cancel, const Visit& visit) const;
 
     std::once_flag m_once;
     OIIO::ImageCache* m_cache = nullptr;  // of m_system alone
     OIIO::TextureSystem* m_system = nullptr;
+    std::unique_ptr<HeldTilesOfThreads> m_tiles;
+    std::atomic<std::uint64_t> m_files{0};  // numbers given so far
 };
 
 }  // namespace pm::plugin

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
+#include <cstdint>
 
 #include "integrator/materials/lobes/lambertian.h"
 #include "integrator/materials/lobes/layered.h"
@@ -21,19 +23,6 @@ struct CoatAlbedo {
     }
     float mean() const { return alpha == 0.0f ? f0 + (1.0f - f0) / 21.0f : lobe().mean().g; }
     GgxReflection lobe() const { return {{alpha}, {Fresnel::Curve::kSchlick, Rgb(f0)}}; }
-};
-
-// What a boundary lets in from a direction, over its mean: by so much light from there counts more
-// or less than in plain irradiance. As made, the same from everywhere.
-struct Admission {
-    CoatAlbedo boundary;
-    float mean = 1.0f;
-
-    bool isEven() const { return boundary.f0 == 0.0f; }
-    // cosine: to the shading normal.
-    float from(float cosine) const {
-        return isEven() ? 1.0f : (1.0f - boundary.at(std::clamp(cosine, 0.0f, 1.0f))) / mean;
-    }
 };
 
 // What lies over a diffuse lobe: the boundary of plastic, and a layer on top.
@@ -62,6 +51,27 @@ struct Cover {
         if (isBoundaryAlone()) return 1.0f - boundary.mean();
         constexpr int kSteps = 24;
         return meanOverCosines([&](float cosine) { return passes(cosine); }, kSteps);
+    }
+};
+
+// What a cover lets in from a direction, over its mean: by so much light from there counts more or
+// less than in plain irradiance. As made, the same from everywhere.
+struct Admission {
+    Cover cover;
+    float mean = 1.0f;
+
+    bool isEven() const { return cover.boundary.f0 == 0.0f && cover.isBoundaryAlone(); }
+    // cosine: to the shading normal.
+    float from(float cosine) const {
+        return isEven() ? 1.0f : cover.passes(std::clamp(cosine, 0.0f, 1.0f)) / mean;
+    }
+    // The same for covers of one material that are so alike that light kept for one serves the
+    // other: textures may change a boundary's roughness and reflectance from place to place.
+    std::uint32_t kind() const {
+        constexpr float kSteps = 8.0f, kStepsOfF0 = 32.0f;
+        const auto step = [](float v) { return static_cast<std::uint32_t>(v + 0.5f); };
+        return step(kSteps * std::sqrt(cover.boundary.alpha)) << 8 |
+               step(kStepsOfF0 * cover.boundary.f0);
     }
 };
 

@@ -139,7 +139,7 @@ void GatherPoints::tracePoint(Tile& tile, const Cell& cell) const {
             const Vec3f& normal = stop.bsdf.facingGeometricNormal();
             point.position = m_scene.pointUnderRay(stop.surface.position, stop.ray, normal);
             point.normal = stop.bsdf.facingShadingNormal();
-            point.admits = admission->isEven() ? kEven : stop.surface.material;
+            point.admits = admitsOf(*admission, stop.surface.material);
             tile.origins[cell.inTile()] = {normal, stop.surface.offset, stop.footprint.width(),
                                            *admission};
             return false;

@@ -61,13 +61,19 @@ class GatherPoints {
         const LightSampler* lights = nullptr;
     };
     static constexpr std::uint32_t kEven = 0xffffffffu;
+    // Of surfaces that what is kept for one speaks for, as far as their directions go.
+    static std::uint32_t admitsOf(const Admission& admission, std::uint32_t material) {
+        if (admission.isEven()) return kEven;
+        return static_cast<std::uint32_t>(
+            mixBits(std::uint64_t{material} << 32 | admission.kind()) >> 33);
+    }
     // A place that a camera path came to.
     struct Place {
         Vec2f screen;  // where the path left the camera, pixels
         Vec3f position;
         Vec3f shadingNormal, geometricNormal;  // unit, on the side that the path came to
         float offset = 0.0f;  // along the geometric one, to where rays leave from; scene units
-        // Whose surface it is, where that lets in more from one side than another; else kEven.
+        // See admitsOf().
         std::uint32_t admits = kEven;
     };
     struct Estimate {

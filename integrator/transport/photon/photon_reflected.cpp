@@ -83,10 +83,13 @@ PhotonPath::StillToFind PhotonPath::readMaps(const Surface& surface, const Bsdf&
     const Vec3f& normal = bsdf.facingGeometricNormal();
     // What is kept knows where light came from by the surface's admission alone.
     const std::optional<Admission> admission = bsdf.admission();
-    const bool isEven = !admission || admission->isEven();
     const GatherPoints::Place place{
-        m_view.screen, surface.position, bsdf.facingShadingNormal(),
-        normal,        surface.offset,   isEven ? GatherPoints::kEven : surface.material};
+        m_view.screen,
+        surface.position,
+        bsdf.facingShadingNormal(),
+        normal,
+        surface.offset,
+        admission ? GatherPoints::admitsOf(*admission, surface.material) : GatherPoints::kEven};
     const bool kept = m_maps.points && admission && m_maps.points->estimate(place, indirect);
     result.rays += indirect.rays;
     if (kept) {

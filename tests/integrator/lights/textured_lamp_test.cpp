@@ -45,7 +45,7 @@ std::shared_ptr<const SkyPicture> halves() {
 
 LampTexture lookAt(Domain domain, const std::shared_ptr<const SkyPicture>& of, double texels) {
     LampTexture::Lamp lamp{domain, texels, std::size_t{1} << 20, {}};
-    lamp.look = [&](Vec2f uv) {
+    lamp.look = [&](Vec2f uv, float) {
         const Texel t = of->lookUp(0, {uv});
         return LampTexture::Look{(static_cast<double>(t.r) + t.g + t.b) / 3};
     };

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -123,6 +124,37 @@ TEST(Layers, WhiteUnderFibresReflectsAll) {
             }
             expectWhite(m);
         }
+}
+
+// Below a cover diffuse light is a product of a factor by arrival and one by view, so that an
+// irradiance weighted by the first says all.
+TEST(Layers, DiffuseBelowACoverIsAProduct) {
+    std::vector<MaterialDescription> covers(4);
+    covers[0].coat = 0.7f;
+    covers[0].coatRoughness = 0.3f;
+    covers[1].sheen = Rgb(0.6f);
+    covers[2].glossy = Rgb(0.04f);
+    covers[2].roughness = 0.5f;
+    covers[2].coat = 1.0f;
+    covers[3].glossy = Rgb(0.04f);
+    covers[3].roughness = 0.5f;
+    covers[3].sheen = Rgb(0.3f);
+    for (MaterialDescription& material : covers) {
+        material.diffuse = {0.2f, 0.5f, 0.8f};
+        const Board board(material);
+        for (const float out : kCosines) {
+            const Bsdf bsdf = board.seenFrom(Board::along(out));
+            const std::optional<Admission> admission = bsdf.admission();
+            ASSERT_TRUE(admission);
+            EXPECT_FALSE(admission->isEven());
+            for (const float in : kCosines) {
+                const Rgb value = bsdf.evaluate(Lobe::kDiffuse, Board::along(in, 0.3f));
+                const Rgb kept = bsdf.reflectedOf(Rgb(in * admission->from(in)));
+                EXPECT_NEAR(value.g, kept.g, 1e-5f) << "out " << out << " in " << in;
+                EXPECT_NEAR(value.b, kept.b, 1e-5f) << "out " << out << " in " << in;
+            }
+        }
+    }
 }
 
 TEST(Layers, WhiteStretchedMetalReflectsAll) {

@@ -186,25 +186,44 @@ std::shared_ptr<const Scene> room() {
     return maker.build();
 }
 
-// Regions of the frame: bias allowed 2 % of the frame's mean, as estimates' discs reach round
-// corners and blur caustics.
-// Light that comes flat over a floor of plastic from a low wall, which a level sun lights: half of
-// it is reflected by the boundary. Points that are kept know that.
-TEST(RoughSurfaces, KeptPointsKnowWhatPlasticLetsIn) {
+// Light that comes flat over a floor from a low wall, which a level sun lights: half of it is
+// reflected by the floor's boundary, or by what covers it. Points that are kept know that.
+void expectKeptPointsKnow(const MaterialDescription& floor, std::uint32_t passes) {
     SceneMaker maker;
-    maker.quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, maker.material(coated(0.1f, Rgb(0.8f))));
+    maker.quad({-2, 0, 2}, {4, 0, 0}, {0, 0, -4}, maker.material(floor));
     maker.quad({-2, 0, -2}, {0, 0, 4}, {0, 0.6, 0}, maker.diffuse(Rgb(0.8f)));
     maker.sun({-1, 0, 0}, Rgb(3.0f), 0);
     maker.camera({0, 4, 0.01}, {0, 0, 0}, {0, 0, -1}, 30);
-    RenderSettings settings = smallFrame(8, 8, IntegratorKind::kPath, 64, 4);
+    RenderSettings settings = smallFrame(8, 8, IntegratorKind::kPath, passes, 4);
     const MeasuredLayers path = measure(maker.build(), settings);
     settings.integrator = IntegratorKind::kPhoton;
-    settings.passes = 64;
     settings.photons = 100'000;
     const MeasuredLayers photon = measure(maker.build(), settings);
     EXPECT_TRUE(agree(photon.indirect, path.indirect, 0.03));
 }
 
+TEST(RoughSurfaces, KeptPointsKnowWhatPlasticLetsIn) {
+    expectKeptPointsKnow(coated(0.1f, Rgb(0.8f)), 64);
+}
+
+TEST(RoughSurfaces, KeptPointsKnowWhatCoatsAndFibresLetIn) {
+    MaterialDescription coat = plaster(0.0f, Rgb(0.8f));
+    coat.coat = 1.0f;
+    coat.coatRoughness = 0.5f;
+    MaterialDescription fibres = plaster(0.0f, Rgb(0.8f));
+    fibres.sheen = Rgb(0.8f);
+    fibres.sheenRoughness = 0.5f;
+    MaterialDescription both = coated(0.4f, Rgb(0.8f));
+    both.coat = 0.6f;
+    both.coatRoughness = 0.5f;
+    for (const MaterialDescription& floor : {coat, fibres, both}) {
+        SCOPED_TRACE(fmt::format("coat {} sheen {}", floor.coat, floor.sheen.g));
+        expectKeptPointsKnow(floor, 24);
+    }
+}
+
+// Regions of the frame: bias allowed 2 % of the frame's mean, as estimates' discs reach round
+// corners and blur caustics.
 TEST(RoughSurfaces, PhotonsAndPathsAgree) {
     const auto scene = room();
     std::vector<Rect> regions;
