@@ -6,9 +6,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <future>
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <vector>
+
+#include "host_shim/process/side_work.h"
 
 namespace pm::host {
 namespace {
@@ -43,21 +46,20 @@ void addChannels(const PmrLayerInfo& info, Picture& picture) {
         picture.channels.push_back({names[c], info.kind == PMR_LAYER_COLOUR, {}});
 }
 
-// Fills the channels of a layer, from `channel` on; returns the first one after them.
-std::size_t fillLayer(const PictureSource& source, const PmrLayerInfo& info, std::size_t channel,
-                      Picture& picture) {
+// Fills the channels of a layer, from `channel` on.
+void fillLayer(const PictureSource& source, const PmrLayerInfo& info, std::size_t channel,
+               Picture& picture) {
     const PixelRect& window = picture.dataWindow;
     const PmrRectangle rectangle{window.x0, window.y0, window.x1, window.y1};
     const std::size_t stride = info.channelCount;
     const auto pixels = static_cast<std::size_t>(window.area());
     std::vector<float> values(pixels * stride);
     source.readPixels(rectangle, info.name, values.data());
-    for (std::size_t c = 0; c < stride; ++c, ++channel) {
-        std::vector<float>& to = picture.channels.at(channel).values;
+    for (std::size_t c = 0; c < stride; ++c) {
+        std::vector<float>& to = picture.channels.at(channel + c).values;
         to.resize(pixels);
         for (std::size_t i = 0; i < pixels; ++i) to[i] = values[i * stride + c];
     }
-    return channel;
 }
 
 // Settings that change no pixel are left out: the same picture gives the same bytes.
@@ -104,8 +106,15 @@ Picture assemblePicture(const PictureSource& source, const Options& options,
                         const ColourPipeline& colour, bool complete) {
     Picture picture = assembleHead(source, options, colour, complete);
     std::size_t channel = 0;
-    for (std::uint32_t i = 0; i < source.layerCount(); ++i)
-        channel = fillLayer(source, source.layerInfo(i), channel, picture);
+    std::vector<std::future<void>> filled;
+    for (std::uint32_t i = 0; i < source.layerCount(); ++i) {
+        const PmrLayerInfo info = source.layerInfo(i);
+        filled.push_back(doBeside(options.threads != 1, [&source, &picture, info, channel] {
+            fillLayer(source, info, channel, picture);
+        }));
+        channel += info.channelCount;
+    }
+    for (std::future<void>& one : filled) one.get();
     return picture;
 }
 

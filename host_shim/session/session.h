@@ -3,15 +3,18 @@
 #pragma once
 
 #include <functional>
+#include <future>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "host_shim/cli/options.h"
 #include "host_shim/colour/colour_pipeline.h"
+#include "host_shim/colour/display_picture.h"
 #include "host_shim/colour/exposure.h"
 #include "host_shim/log/log.h"
 #include "host_shim/pictures/picture.h"
+#include "host_shim/pictures/picture_io.h"
 #include "host_shim/process/temporary_folder.h"
 #include "host_shim/render/render_run.h"
 #include "host_shim/render/scene_memory.h"
@@ -110,10 +113,21 @@ class Session {
     std::string errorText() const;
     std::optional<SeenError> seenError(const PictureSource& source, const Picture& picture,
                                        const DisplayTransform& display) const;
-    void writeOutputs(const Picture& picture, bool complete,
-                      const std::optional<DisplayTransform>& display);
-    void writeOutput(const std::filesystem::path& file, const Picture& picture,
-                     const std::optional<DisplayTransform>& display);
+    // A picture's file, and what is to be told of it once it is written.
+    struct Written {
+        std::filesystem::path file;
+        std::optional<HostError> failure{};
+        ExrReport exr{};
+        std::optional<DisplayResult> shown{};
+    };
+    void writeOutputs(const Picture& picture, const std::optional<DisplayTransform>& display);
+    std::vector<std::future<Written>> beginOutputs(
+        const Picture& picture, bool complete,
+        const std::optional<DisplayTransform>& display) const;
+    void endOutputs(const Picture& picture, std::vector<std::future<Written>>& written);
+    void write(const Picture& picture, const std::optional<DisplayTransform>& display,
+               Written& done) const;
+    void tellOf(const Written& done, const Picture& picture);
     int compareWithReference(const Picture& picture);
     int compareWithDisplayReference(const Picture& picture, const DisplayTransform& display);
     int judgeAgainstLimit(const std::string& name, std::optional<double> value);

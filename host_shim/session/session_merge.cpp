@@ -101,7 +101,7 @@ EmbeddedPicture Session::writeIncomplete(const MergeRun& parts, bool isShown) {
         exposeAsParts(parts.settingText("hostNote"), colour, *display);
     }
     const Picture picture = assemblePicture(parts, m_options, colour, false);
-    writeOutputs(picture, true, display);  // under their own names
+    writeOutputs(picture, display);  // under their own names
     if (!isShown) return {};
     return embedded(makeDisplayPicture(picture, *display).picture, kMostBytes);
 }

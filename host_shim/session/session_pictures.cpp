@@ -7,14 +7,13 @@
 #include <cstdio>
 #include <vector>
 
-#include "host_shim/colour/display_picture.h"
 #include "host_shim/colour/error_codes.h"
 #include "host_shim/folders/own_folder.h"
 #include "host_shim/pictures/compare.h"
 #include "host_shim/pictures/display_compare.h"
-#include "host_shim/pictures/picture_io.h"
 #include "host_shim/process/interrupt.h"
 #include "host_shim/process/outputs.h"
+#include "host_shim/process/side_work.h"
 #include "host_shim/render/picture_assembly.h"
 #include "host_shim/report/report_command.h"
 #include "host_shim/session/session.h"
@@ -53,9 +52,10 @@ int Session::finish(const PictureSource& source, PmrStatus status, const ColourP
         m_report.takePicture(source, picture, m_reference ? &*m_reference : nullptr,
                              display.value(), colour.luminanceWeights());
     };
+    std::vector<std::future<Written>> written = beginOutputs(picture, complete, display);
     if (complete && display) m_statistics.seenError = seenError(source, picture, *display);
     try {
-        writeOutputs(picture, complete, display);
+        endOutputs(picture, written);
     } catch (...) {
         report();
         throw;
@@ -105,7 +105,7 @@ std::string Session::errorText() const {
 // Of rows enough to know shares of the pixels well; nothing where no error is told.
 std::optional<SeenError> Session::seenError(const PictureSource& source, const Picture& picture,
                                             const DisplayTransform& display) const {
-    constexpr std::int64_t kMostPixels = 500'000;
+    constexpr std::int64_t kMostPixels = 150'000;
     const PixelRect& window = picture.dataWindow;
     if (!m_statistics.estimatedRelMse() || window.empty()) return std::nullopt;
     const auto bias = m_statistics.estimatedBias();
@@ -127,41 +127,68 @@ std::optional<SeenError> Session::seenError(const PictureSource& source, const P
     return seen;
 }
 
-void Session::writeOutputs(const Picture& picture, bool complete,
-                           const std::optional<DisplayTransform>& display) {
+void Session::writeOutputs(const Picture& picture, const std::optional<DisplayTransform>& display) {
+    std::vector<std::future<Written>> written = beginOutputs(picture, true, display);
+    endOutputs(picture, written);
+}
+
+// Each in a thread of its own: packing takes longer than all else that comes after a render.
+std::vector<std::future<Session::Written>> Session::beginOutputs(
+    const Picture& picture, bool complete, const std::optional<DisplayTransform>& display) const {
+    std::vector<std::future<Written>> written;
+    for (const fs::path& output : m_options.outputs)
+        written.push_back(
+            doBeside(m_options.threads != 1,
+                     [this, &picture, &display, file = complete ? output : partialName(output)] {
+                         Written done{.file = file};
+                         try {
+                             write(picture, display, done);
+                         } catch (const HostError& fault) {
+                             done.failure = fault;
+                         }
+                         return done;
+                     }));
+    return written;
+}
+
+void Session::endOutputs(const Picture& picture, std::vector<std::future<Written>>& written) {
     const std::string error = errorText();
     // One that fails must not take the others with it.
     std::optional<HostError> failure;
-    for (const fs::path& output : m_options.outputs) {
-        const fs::path file = complete ? output : partialName(output);
-        try {
-            writeOutput(file, picture, display);
-        } catch (const HostError& fault) {
+    for (std::future<Written>& one : written) {
+        const Written done = one.get();
+        if (done.failure) {
             if (failure) m_log.message(Level::kError, failure->what());
-            failure = fault;
+            failure = done.failure;
             continue;
         }
-        m_statistics.outputs.push_back(file.string());
-        m_log.info(fmt::format("wrote {}{}", file.string(), error));
+        tellOf(done, picture);
+        m_statistics.outputs.push_back(done.file.string());
+        m_log.info(fmt::format("wrote {}{}", done.file.string(), error));
     }
     if (failure) throw *failure;
 }
 
-void Session::writeOutput(const fs::path& file, const Picture& picture,
-                          const std::optional<DisplayTransform>& display) {
-    if (!isDisplayReferred(pictureFormat(file))) {
-        warnOfClamped(file, writeLinearPicture(file, picture, {m_options.exrHalf}));
+void Session::write(const Picture& picture, const std::optional<DisplayTransform>& display,
+                    Written& done) const {
+    if (!isDisplayReferred(pictureFormat(done.file))) {
+        done.exr = writeLinearPicture(done.file, picture, {m_options.exrHalf});
         return;
     }
-    const DisplayResult result = makeDisplayPicture(picture, display.value());
-    const auto bad = result.cleaning.nanCount + result.cleaning.infiniteCount;
-    if (bad > 0) {
-        warn(Warning::kOutput, fmt::format("{}: {} values were not finite", file.string(), bad));
-    }
+    done.shown = makeDisplayPicture(picture, display.value());
     DisplayWriteOptions how;
     how.exposure = exposureText(m_exposure);
-    writeDisplayPicture(file, result.picture, how);
-    if (!m_isIncomplete) lookForDarkness(file, picture, result.picture);
+    writeDisplayPicture(done.file, done.shown->picture, how);
+}
+
+void Session::tellOf(const Written& done, const Picture& picture) {
+    warnOfClamped(done.file, done.exr);
+    if (!done.shown) return;
+    const auto bad = done.shown->cleaning.nanCount + done.shown->cleaning.infiniteCount;
+    if (bad > 0)
+        warn(Warning::kOutput,
+             fmt::format("{}: {} values were not finite", done.file.string(), bad));
+    if (!m_isIncomplete) lookForDarkness(done.file, picture, done.shown->picture);
 }
 
 int Session::compareWithReference(const Picture& picture) {

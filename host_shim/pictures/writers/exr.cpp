@@ -12,8 +12,17 @@
 namespace pm::host {
 namespace {
 
-// Scanlines given to the writer at once; a multiple of the 16 that ZIP packs together.
-constexpr std::int32_t kLinesAtOnce = 64;
+// Scanlines given to the writer at once: a multiple of the 16 that ZIP packs together, and so many
+// that all threads have some to pack; of wide pictures fewer, for the memory.
+constexpr std::int32_t kLeastLines = 64, kMostLines = 1024;
+constexpr std::int64_t kValuesAtOnce = std::int64_t{1} << 22;
+
+std::int32_t linesAtOnce(const Picture& picture) {
+    const std::int64_t ofLine = std::int64_t{picture.dataWindow.width()} *
+                                static_cast<std::int64_t>(picture.channels.size());
+    return static_cast<std::int32_t>(
+        std::clamp<std::int64_t>(kValuesAtOnce / ofLine / 16 * 16, kLeastLines, kMostLines));
+}
 
 void checkPicture(const std::filesystem::path& path, const Picture& picture) {
     const auto fail = [&](const std::string& text) {
@@ -78,9 +87,9 @@ ExrReport writeExr(const std::filesystem::path& path, const Picture& picture,
     checkPicture(path, picture);
     ExrReport report;
     writeImage(path, exrSpec(picture, options.halfColour), [&](OIIO::ImageOutput& output) {
-        const std::int32_t height = picture.dataWindow.height();
-        for (std::int32_t first = 0; first < height; first += kLinesAtOnce) {
-            const std::int32_t last = std::min(height, first + kLinesAtOnce);
+        const std::int32_t height = picture.dataWindow.height(), step = linesAtOnce(picture);
+        for (std::int32_t first = 0; first < height; first += step) {
+            const std::int32_t last = std::min(height, first + step);
             const auto lines =
                 interleave(picture, first, last, options.halfColour, report.clampedToHalf);
             const std::int32_t top = picture.dataWindow.y0;

@@ -16,6 +16,8 @@ class Png : public DisplayFormat {
     void describe(const DisplayWriteOptions& options, OIIO::ImageSpec& spec) const override {
         // Of names of our own only PNG has room.
         if (!options.exposure.empty()) spec.attribute("pm:exposure", options.exposure);
+        // Three times as fast as what the library takes, for files of a twentieth more.
+        spec.attribute("png:compressionLevel", 4);
     }
 };
 
