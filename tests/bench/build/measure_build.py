@@ -24,6 +24,9 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1] / "run"))
+import docs_page  # noqa: E402
+
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 EDITS = {  # a file, the program that tests it, a test of it
     "a lobe": ("integrator/materials/lobes/smooth_boundary.cpp", "pm_test_surfaces", "Bsdf.IsReciprocal"),
@@ -158,10 +161,7 @@ def main():
     text = "\n".join(table) + "\n"
     print(text, end="")
     if options.docs:
-        page = options.docs.read_text()
-        begin, end = "<!-- build begin -->\n", "<!-- build end -->"
-        head, rest = page.split(begin)
-        options.docs.write_text(head + begin + text + end + rest.split(end)[1])
+        docs_page.put(options.docs, "build", text)
 
 
 if __name__ == "__main__":
