@@ -8,6 +8,8 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <future>
+#include <memory>
 
 #include "host_shim/colour/display_picture.h"
 #include "host_shim/formats/all/scene_readers.h"
@@ -21,6 +23,7 @@
 #include "host_shim/process/interrupt.h"
 #include "host_shim/process/outputs.h"
 #include "host_shim/process/plain_text.h"
+#include "host_shim/process/side_work.h"
 #include "host_shim/render/picture_assembly.h"
 #include "host_shim/render/scene_builder.h"
 #include "host_shim/render/scene_memory.h"
@@ -108,12 +111,18 @@ int Session::writePages() {
 int Session::render() {
     if (!m_options.merge.empty()) return merge();
     checkBeforeReading();
+    // To load the library takes as long as to make the colours ready.
+    std::future<std::unique_ptr<const Plugin>> loading =
+        doBeside(m_options.threads != 1, [file = m_options.plugin] {
+            return std::unique_ptr<const Plugin>(std::make_unique<Plugin>(file));
+        });
     const ColourPipeline colour(m_options.colour);
     m_statistics.colourConfig = colour.configName();
     m_statistics.renderingSpace = colour.renderingSpace();
     for (const std::string& text : colour.warnings()) warn(Warning::kOutput, text);
     if (!m_options.reference.empty()) readReference(colour);
-    const Plugin plugin(m_options.plugin);
+    const std::unique_ptr<const Plugin> loaded = loading.get();
+    const Plugin& plugin = *loaded;
     const PluginContext context(plugin, contextDesc(plugin));
     m_log.message(Level::kDebug,
                   fmt::format("{}: {}; colour config {}, rendering space {}",

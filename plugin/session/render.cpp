@@ -46,6 +46,7 @@ void Render::changeSettings(const std::function<void(SettingValues&)>& change) {
     const std::lock_guard lock(m_mutex);
     if (m_state != RenderState::kCreated)
         throw CallError(CallStatus::kState, "settings can't change after startRender");
+    m_plan.reset();
     change(m_settings);
 }
 
@@ -65,10 +66,18 @@ void Render::checkDelivery(const SettingValues& values) const {
                                         values.word(Setting::kDelivery)));
 }
 
+// Kept for the start: a plan takes pilots.
 Plan Render::makePlan() const {
     const SettingValues values = settings();
+    {
+        const std::lock_guard lock(m_mutex);
+        if (m_plan) return *m_plan;
+    }
     WorkerArena arena(static_cast<int>(values.integer(Setting::kThreads)));
-    return planOf(*m_scene, values, arena);
+    const Plan plan = planOf(*m_scene, values, arena);
+    const std::lock_guard lock(m_mutex);
+    if (m_state == RenderState::kCreated) m_plan = plan;
+    return plan;
 }
 
 MemoryPlan Render::memoryPlan(const Plan& plan) const {
@@ -103,7 +112,7 @@ void Render::start() {
         throw CallError(CallStatus::kState, "the render was started before");
     m_startTime = std::chrono::steady_clock::now();
     checkDelivery(m_settings);
-    auto made = std::make_shared<RenderWork>(*m_scene, m_settings);
+    auto made = std::make_shared<RenderWork>(*m_scene, m_settings, m_plan);
     RenderPages* const pages = made->pages();
     made->divideMemory(std::make_unique<RenderCaches>(m_scene, made->memory(),
                                                       pages ? &pages->paging() : nullptr));

@@ -85,6 +85,7 @@ class Render {
 
     mutable std::mutex m_mutex;
     SettingValues m_settings;
+    mutable std::optional<Plan> m_plan;  // of these settings, where one was asked for
     RenderState m_state = RenderState::kCreated;
     CallStatus m_status = CallStatus::kOk;
     std::string m_errorText;

@@ -47,13 +47,14 @@ ProgressClock::Ends endsOf(const StopRule& rule, bool isAdaptive) {
 
 }  // namespace
 
-RenderWork::RenderWork(const RenderScene& scene, const SettingValues& values)
+RenderWork::RenderWork(const RenderScene& scene, const SettingValues& values,
+                       const std::optional<Plan>& plan)
     : m_processorStart(processorSeconds()),
       m_scene(scene.scene),
       m_settings(values.toRenderSettings()),
       m_stopRule(values),
       m_arena(static_cast<int>(values.integer(Setting::kThreads))),
-      m_plan(planOf(scene, values, m_arena)),
+      m_plan(plan ? *plan : planOf(scene, values, m_arena)),
       m_grid(bucketsOf(values)),
       m_memory(planMemory(*m_scene, m_plan, values, m_grid, scene.textures->texelBytes())),
       m_layout(channelLayout(m_settings)),

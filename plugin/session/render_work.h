@@ -62,10 +62,11 @@ struct Cancel {
 // Made when the render starts, run once by its thread.
 class RenderWork {
   public:
-    // Plans, checks the memory limit before anything is allocated, then makes frame and renderer.
-    // Errors: MEMORY with all figures; those of FrameRenderer and RenderPieces;
+    // Plans, where none is given, checks the memory limit before anything is allocated, then makes
+    // frame and renderer. Errors: MEMORY with all figures; those of FrameRenderer and RenderPieces;
     // CallError(CANCELLED) soon after scene.cancelPlans is set.
-    RenderWork(const RenderScene& scene, const SettingValues& values);
+    RenderWork(const RenderScene& scene, const SettingValues& values,
+               const std::optional<Plan>& plan);
 
     // Before run: who is told of each bucket that is done.
     void divideMemory(std::unique_ptr<RenderCaches> caches) { m_caches = std::move(caches); }
