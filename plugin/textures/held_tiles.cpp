@@ -111,8 +111,7 @@ bool HeldTiles::read(const TextureFile& file, std::size_t level, std::int32_t co
 }
 
 const HeldTiles::Slot* HeldTiles::tile(const TextureFile& file, std::size_t level,
-                                       std::int32_t column, std::int32_t row,
-                                       std::size_t allowance) {
+                                       std::int32_t column, std::int32_t row) {
     const std::uint64_t place = placeOf(level, column, row);
     // Neighbours, and the same place of other levels and pictures, lie in slots of their own.
     const auto hash = static_cast<std::size_t>(column) + 17 * static_cast<std::size_t>(row) +
@@ -120,7 +119,7 @@ const HeldTiles::Slot* HeldTiles::tile(const TextureFile& file, std::size_t leve
     Slot& slot = m_slots[hash % kSlots];
     if (slot.file == file.number && slot.place == place) return &slot;
     const std::size_t bytes = bytesOf(file.levels[level], file, sizeof(float));
-    if (m_bytes + bytes > allowance) release();
+    if (m_bytes + bytes > m_allowance.load(std::memory_order_relaxed)) release();
     release(slot);
     if (!read(file, level, column, row, slot)) {
         release(slot);
@@ -134,8 +133,7 @@ const HeldTiles::Slot* HeldTiles::tile(const TextureFile& file, std::size_t leve
 }
 
 bool HeldTiles::four(const TextureFile& file, std::size_t level, std::array<std::int32_t, 2> x,
-                     std::array<std::int32_t, 2> y, std::size_t allowance,
-                     std::array<TexelValues, 4>& texels) {
+                     std::array<std::int32_t, 2> y, std::array<TexelValues, 4>& texels) {
     const TextureLevel& of = file.levels[level];
     const Slot* slot = nullptr;
     std::int32_t column = -1, row = -1;
@@ -148,7 +146,7 @@ bool HeldTiles::four(const TextureFile& file, std::size_t level, std::array<std:
         if (!slot || of.columnOf(dx) != column || of.rowOf(dy) != row) {
             column = of.columnOf(dx);
             row = of.rowOf(dy);
-            slot = tile(file, level, column, row, allowance);
+            slot = tile(file, level, column, row);
             if (!slot) return false;
         }
         const std::int32_t inX = dx - column * of.tileWidth, inY = dy - row * of.tileHeight;
@@ -171,27 +169,6 @@ bool HeldTiles::four(const TextureFile& file, std::size_t level, std::array<std:
         }
     }
     return true;
-}
-
-HeldTilesOfThreads::HeldTilesOfThreads(OIIO::ImageCache& cache)
-    : m_number([] {
-          static std::atomic<std::uint64_t> made{0};
-          return made.fetch_add(1) + 1;
-      }()),
-      m_tiles([this, &cache] {
-          m_threads.store(m_tiles.size() + 1, std::memory_order_relaxed);
-          return HeldTiles(cache);
-      }) {}
-
-HeldTiles& HeldTilesOfThreads::mine() {
-    // By its number: another may come to stand at the same address.
-    thread_local std::uint64_t number = 0;
-    thread_local HeldTiles* tiles = nullptr;
-    if (number != m_number) {
-        tiles = &m_tiles.local();
-        number = m_number;
-    }
-    return *tiles;
 }
 
 }  // namespace pm::plugin

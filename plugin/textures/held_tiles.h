@@ -3,7 +3,6 @@
 #pragma once
 
 #include <OpenImageIO/oiioversion.h>
-#include <tbb/enumerable_thread_specific.h>
 
 #include <array>
 #include <atomic>
@@ -50,17 +49,17 @@ using TexelValues = std::array<float, 4>;
 // threads share. Threads: one.
 class HeldTiles {
   public:
-    explicit HeldTiles(OIIO::ImageCache& cache) : m_cache(cache) {}
+    // allowance: bytes to hold, but for the tile that was looked at last; may change.
+    HeldTiles(OIIO::ImageCache& cache, const std::atomic<std::size_t>& allowance)
+        : m_cache(cache), m_allowance(allowance) {}
     ~HeldTiles() { release(); }
     HeldTiles(const HeldTiles&) = delete;
     HeldTiles& operator=(const HeldTiles&) = delete;
 
     // The texels (x0 or x1, y0 or y1) of a level: x0 y0, x1 y0, x0 y1, x1 y1. One outside of the
-    // data is 0. Returns false when they can't be read. allowance: bytes to hold, but for the tile
-    // that was looked at last.
+    // data is 0. Returns false when they can't be read.
     bool four(const TextureFile& file, std::size_t level, std::array<std::int32_t, 2> x,
-              std::array<std::int32_t, 2> y, std::size_t allowance,
-              std::array<TexelValues, 4>& texels);
+              std::array<std::int32_t, 2> y, std::array<TexelValues, 4>& texels);
 
   private:
     enum class Format : std::uint8_t { kByte, kWord, kHalf, kFloat };
@@ -75,34 +74,16 @@ class HeldTiles {
 
     // column, row: of tiles. Null when it can't be read.
     const Slot* tile(const TextureFile& file, std::size_t level, std::int32_t column,
-                     std::int32_t row, std::size_t allowance);
+                     std::int32_t row);
     bool read(const TextureFile& file, std::size_t level, std::int32_t column, std::int32_t row,
               Slot& slot);
     void release(Slot& slot);
     void release();
 
     OIIO::ImageCache& m_cache;
+    const std::atomic<std::size_t>& m_allowance;
     std::array<Slot, kSlots> m_slots{};
     std::size_t m_bytes = 0;
-};
-
-// Those of all threads that look at the pictures of one cache. Threads: any, at once.
-class HeldTilesOfThreads {
-  public:
-    explicit HeldTilesOfThreads(OIIO::ImageCache& cache);
-
-    HeldTiles& mine();
-    // For all threads together, bytes.
-    void holdAtMost(std::size_t bytes) { m_most.store(bytes, std::memory_order_relaxed); }
-    // Of one thread.
-    std::size_t allowance() const {
-        return m_most.load(std::memory_order_relaxed) / m_threads.load(std::memory_order_relaxed);
-    }
-
-  private:
-    std::uint64_t m_number;  // no other's in this process
-    std::atomic<std::size_t> m_most{0}, m_threads{1};
-    tbb::enumerable_thread_specific<HeldTiles> m_tiles;
 };
 
 }  // namespace pm::plugin

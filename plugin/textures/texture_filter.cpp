@@ -44,11 +44,8 @@ Pair pairAt(float place, std::int32_t size, Wrap wrap) {
 
 class LookUp {
   public:
-    LookUp(const TexturePicture& picture, HeldTilesOfThreads& tiles)
-        : m_picture(picture),
-          m_file(*picture.file),
-          m_tiles(tiles.mine()),
-          m_allowance(tiles.allowance()) {}
+    LookUp(const TexturePicture& picture, HeldTiles& tiles)
+        : m_picture(picture), m_file(*picture.file), m_tiles(tiles) {}
 
     bool around(std::size_t level, Vec2f place, TexelQuad& quad) {
         const TextureLevel& of = m_file.levels[level];
@@ -56,7 +53,7 @@ class LookUp {
                    down = pairAt(place.y, of.height, m_picture.wrapT);
         quad.right = across.second;
         quad.lower = down.second;
-        return m_tiles.four(m_file, level, across.texels, down.texels, m_allowance, quad.texels);
+        return m_tiles.four(m_file, level, across.texels, down.texels, quad.texels);
     }
 
     // Adds a share of a level's value there.
@@ -76,7 +73,6 @@ class LookUp {
     const TexturePicture& m_picture;
     const TextureFile& m_file;
     HeldTiles& m_tiles;
-    std::size_t m_allowance;
 };
 
 // The ellipse into which a footprint's sides make a circle, texels of the finest level.
@@ -126,7 +122,7 @@ bool isWithinATexel(const TexturePicture& picture, const Vec2f& side) {
 
 }  // namespace
 
-bool filtered(const TexturePicture& picture, HeldTilesOfThreads& tiles, Vec2f place, Vec2f sideX,
+bool filtered(const TexturePicture& picture, HeldTiles& tiles, Vec2f place, Vec2f sideX,
               Vec2f sideY, TexelValues& value) {
     LookUp lookUp(picture, tiles);
     value = {};
@@ -152,8 +148,7 @@ bool filtered(const TexturePicture& picture, HeldTilesOfThreads& tiles, Vec2f pl
     return true;
 }
 
-bool texelsAround(const TexturePicture& picture, HeldTilesOfThreads& tiles, Vec2f place,
-                  TexelQuad& quad) {
+bool texelsAround(const TexturePicture& picture, HeldTiles& tiles, Vec2f place, TexelQuad& quad) {
     return LookUp(picture, tiles).around(0, place, quad);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // SPDX-FileCopyrightText: The pm authors
 // Look-ups in a picture's levels. Places are in units of the picture, origin upper left; sides of a
-// footprint likewise, finite.
+// footprint likewise, finite. tiles: of the calling thread.
 #pragma once
 
 #include "integrator/values/vec.h"
@@ -11,8 +11,8 @@
 namespace pm::plugin {
 
 // Bilinear within a level, linear between levels, by several probes along a footprint's longer
-// axis. Returns false when texels can't be read. Threads: any, at once.
-bool filtered(const TexturePicture& picture, HeldTilesOfThreads& tiles, Vec2f place, Vec2f sideX,
+// axis. Returns false when texels can't be read.
+bool filtered(const TexturePicture& picture, HeldTiles& tiles, Vec2f place, Vec2f sideX,
               Vec2f sideY, TexelValues& value);
 
 // The four texels of the finest level between which a place lies, and the weights of the right and
@@ -21,7 +21,6 @@ struct TexelQuad {
     std::array<TexelValues, 4> texels;  // upper left, upper right, lower left, lower right
     float right = 0.0f, lower = 0.0f;
 };
-bool texelsAround(const TexturePicture& picture, HeldTilesOfThreads& tiles, Vec2f place,
-                  TexelQuad& quad);
+bool texelsAround(const TexturePicture& picture, HeldTiles& tiles, Vec2f place, TexelQuad& quad);
 
 }  // namespace pm::plugin

@@ -20,6 +20,7 @@
 
 #include "plugin/textures/picture_file.h"
 #include "plugin/textures/texture_filter.h"
+#include "plugin/textures/tiles_of_threads.h"
 #include "plugin/textures/watched_input.h"
 #include "plugin/values/call_error.h"
 
@@ -118,6 +119,8 @@ std::array<std::uint64_t, 2> texelHash(const std::string& fileName, const Cancel
     return {hash.low64, hash.high64};
 }
 
+TextureSystem::TextureSystem() = default;
+
 TextureSystem::~TextureSystem() {
     m_tiles.reset();
     if (m_system != nullptr) OIIO::TextureSystem::destroy(m_system);
@@ -143,7 +146,7 @@ OIIO::TextureSystem& TextureSystem::system() {
         made->attribute("flip_t", 0);
         made->attribute("substitute_image", "");
         made->attribute("searchpath", "");
-        m_tiles = std::make_unique<HeldTilesOfThreads>(*m_cache);
+        m_tiles = std::make_unique<TilesOfThreads>(*m_cache);
         m_tiles->holdAtMost(kLeastBytes / kHeldShare);
         m_system = made;
     });
@@ -162,14 +165,8 @@ void TextureSystem::holdAtMost(std::uint64_t bytes, std::uint64_t all) {
 
 TexturePicture TextureSystem::open(const TextureDescription& description) {
     TexturePicture picture;
+    static_cast<TextureMapping&>(picture) = description;
     picture.fileName = description.fileName;
-    picture.wrapS = description.wrapS;
-    picture.wrapT = description.wrapT;
-    picture.uvScale = description.uvScale;
-    picture.uvOffset = description.uvOffset;
-    picture.gain = description.gain;
-    picture.base = description.base;
-    picture.texelHash = description.texelHash;
 
     checkIsRegularFile(picture.fileName);
     OIIO::TextureSystem& textures = system();
@@ -239,7 +236,7 @@ bool TextureSystem::lookUp(const TexturePicture& picture, Vec2f uv, const UvFoot
     const Vec2f place = placeIn(picture, uv);
     if (!std::isfinite(place.x) || !std::isfinite(place.y)) return false;
     TexelValues values;
-    if (!filtered(picture, *m_tiles, place, sideIn(picture, footprint.x),
+    if (!filtered(picture, m_tiles->mine(), place, sideIn(picture, footprint.x),
                   sideIn(picture, footprint.y), values))
         return false;
     const Texel found = withGain(picture, toTexel(values, picture.channelCount));
@@ -253,7 +250,7 @@ bool TextureSystem::lookUpOfLight(const TexturePicture& picture, Vec2f uv, Texel
     const Vec2f place = placeIn(picture, uv);
     if (!std::isfinite(place.x) || !std::isfinite(place.y)) return false;
     TexelQuad quad;
-    if (!texelsAround(picture, *m_tiles, place, quad)) return false;
+    if (!texelsAround(picture, m_tiles->mine(), place, quad)) return false;
     for (std::size_t i = 0; i < 4; ++i) {
         const float weight = ((i & 1) != 0 ? quad.right : 1.0f - quad.right) *
                              ((i & 2) != 0 ? quad.lower : 1.0f - quad.lower);

@@ -16,7 +16,6 @@
 #include "integrator/values/cancel_check.h"
 #include "integrator/values/uv_footprint.h"
 #include "integrator/values/vec.h"
-#include "plugin/textures/held_tiles.h"
 #include "plugin/textures/texture_picture.h"
 
 OIIO_NAMESPACE_BEGIN
@@ -25,6 +24,8 @@ class TextureSystem;
 OIIO_NAMESPACE_END
 
 namespace pm::plugin {
+
+class TilesOfThreads;
 
 // Checksum (XXH3, 128 bits) of a picture's size, channels and finest level, texel by texel: the
 // same picture in another file or of another date has the same. Throws CallError(IO);
@@ -46,7 +47,7 @@ struct TextureReads {
 // Threads: any, at once.
 class TextureSystem {
   public:
-    TextureSystem() = default;
+    TextureSystem();
     ~TextureSystem();
     TextureSystem(const TextureSystem&) = delete;
     TextureSystem& operator=(const TextureSystem&) = delete;
@@ -97,7 +98,7 @@ class TextureSystem {
     std::once_flag m_once;
     OIIO::ImageCache* m_cache = nullptr;  // of m_system alone
     OIIO::TextureSystem* m_system = nullptr;
-    std::unique_ptr<HeldTilesOfThreads> m_tiles;
+    std::unique_ptr<TilesOfThreads> m_tiles;
     std::atomic<std::uint64_t> m_files{0};  // numbers given so far
 };
 
