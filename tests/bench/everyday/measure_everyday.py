@@ -42,16 +42,16 @@ def arguments():
 
 
 def pixels(file):
-    """R, G, B of each, by oiiotool."""
-    text = subprocess.run(["oiiotool", file, "--ch", "R,G,B", "--dumpdata", "-o", "/dev/null"], capture_output=True,
-                          text=True).stdout  # fmt: skip
+    """R, G, B of each, by oiiotool; they are the first channels."""
+    text = subprocess.run(["oiiotool", "--dumpdata", file], capture_output=True, text=True, check=True).stdout
     return [float(v) for line in re.findall(r"Pixel \(\d+, \d+\): (.*)", text) for v in line.split()[:3]]
 
 
-def noise(a, b):
-    """relMSE of one picture, by two that share no noise."""
-    both = [((x + y) / 2, x - y) for x, y in zip(pixels(a), pixels(b))]
-    return sum(d * d / (2 * (m * m + 0.01)) for m, d in both) / len(both)
+def noise(a, b, stops):
+    """relMSE of one picture, by two that share no noise, at their error scale."""
+    offset = 0.01 * 4.0**-stops
+    both = [((x + y) / 2, x - y) for x, y in zip(pixels(a), pixels(b), strict=True)]
+    return sum(d * d / (2 * (m * m + offset)) for m, d in both) / len(both)
 
 
 def render(host, name, seed, options, folder):
@@ -65,12 +65,12 @@ def render(host, name, seed, options, folder):
     seconds = sum(getattr(after, k) - getattr(before, k) for k in ("ru_utime", "ru_stime"))
     told = json.loads(told.read_text())
     return {"picture": picture, "seconds": seconds, "build": told["phases"]["buildSceneSeconds"],
-            "told": told["relMseEstimate"], "rays": told["counters"]["rays"]}  # fmt: skip
+            "stops": told.get("errorScaleStops", 0), "told": told["relMseEstimate"], "rays": told["counters"]["rays"]}  # fmt: skip
 
 
 def turn(host, name, options, folder):
     first, second = (render(host, name, seed, options, folder) for seed in (1, 2))
-    return {"noise": noise(first["picture"], second["picture"]),
+    return {"noise": noise(first["picture"], second["picture"], first["stops"]),
             **{k: (first[k] + second[k]) / 2 for k in ("seconds", "build", "told", "rays")}}  # fmt: skip
 
 
