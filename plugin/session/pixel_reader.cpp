@@ -59,14 +59,6 @@ Destination checkedDestination(const Rect& rect, const LayerSpec& layer, float* 
     return {reinterpret_cast<unsigned char*>(destination), pixelStride, rowStride};
 }
 
-// Channels of a frame that lie side by side, of one pixel.
-struct Channels {
-    const float* values;
-    std::int32_t first;
-
-    float operator[](std::int32_t channel) const { return values[channel - first]; }
-};
-
 // The first channel that a layer is made of, and how many there are up to its last.
 struct ChannelRange {
     std::int32_t first = 0, count = 0;
@@ -92,8 +84,8 @@ ChannelRange channelsOf(Layer layer, const ChannelLayout& layout, std::int32_t a
     }
 }
 
-// The value of one layer at a pixel. Beauty is the sum of its parts.
-void layerValue(Layer layer, const ChannelLayout& layout, const Channels& pixel, float* value) {
+// The value of one layer at a pixel, by its channelsOf(). Beauty is the sum of its parts.
+void layerValue(Layer layer, const ChannelLayout& layout, const float* pixel, float* value) {
     switch (layer) {
         case Layer::kBeauty:
             for (int c = 0; c < 3; ++c)
@@ -101,24 +93,12 @@ void layerValue(Layer layer, const ChannelLayout& layout, const Channels& pixel,
                            pixel[layout.caustic + c] + pixel[layout.emission + c];
             value[3] = pixel[layout.alpha];
             break;
-        case Layer::kDirect:
-        case Layer::kIndirect:
-        case Layer::kCaustic:
-        case Layer::kEmission:
-        case Layer::kAlbedo:
-        case Layer::kNormal:
-            std::copy_n(pixel.values, 3, value);
-            break;
         case Layer::kDepth:
             value[0] =
                 pixel[layout.alpha] > 0.0f ? pixel[layout.depth] / pixel[layout.alpha] : kNoDepth;
             break;
-        case Layer::kStandardError:
-        case Layer::kHalfDifference:
-        case Layer::kSamples:
-        case Layer::kAaLevel:
-        case Layer::kCount:
-            break;
+        default:
+            std::copy_n(pixel, 3, value);
     }
 }
 
@@ -136,8 +116,7 @@ void readMeans(const FrameStore& frame, const ChannelLayout& layout, const Rect&
         frame.read(line, range.first, range.count, row.data(), pixelBytes, 0);
         for (std::size_t x = 0; x < width; ++x) {
             float value[4] = {};
-            if (samples[x] > 0.0f)
-                layerValue(layer.id, layout, {row.data() + x * channels, range.first}, value);
+            if (samples[x] > 0.0f) layerValue(layer.id, layout, row.data() + x * channels, value);
             destination.put(static_cast<std::int64_t>(x), y - rect.y0, value, layer.channelCount);
         }
     }

@@ -339,14 +339,15 @@ std::vector<Found> TextureSystem::lookAtTexels(const TexturePicture& picture, co
 }
 
 BadTexels TextureSystem::badTexels(const TexturePicture& picture, const CancelCheck& cancel) const {
+    const auto count = [](BadTexels& bad, const Texel& texel) {
+        if (!std::isfinite(texel.r) || !std::isfinite(texel.g) || !std::isfinite(texel.b))
+            ++bad.notFinite;
+        else if (texel.r + texel.g + texel.b < 0.0f)
+            ++bad.negative;
+    };
     BadTexels all;
-    for (const BadTexels& bad : lookAtTexels<BadTexels>(
-             picture, "looking at a light's texels", cancel, [](BadTexels&bad, const Texel&texel) {
-                 if (!std::isfinite(texel.r) || !std::isfinite(texel.g) || !std::isfinite(texel.b))
-                     ++bad.notFinite;
-                 else if (texel.r + texel.g + texel.b < 0.0f)
-                     ++bad.negative;
-             })) {
+    for (const BadTexels& bad :
+         lookAtTexels<BadTexels>(picture, "looking at a light's texels", cancel, count)) {
         all.notFinite += bad.notFinite;
         all.negative += bad.negative;
     }
@@ -364,10 +365,10 @@ std::array<float, 2> TextureSystem::extremes(const TexturePicture& picture,
             hi = std::max(hi, value);
         }
     };
+    const auto add = [](Range& range, const Texel& texel) { range.add(texel.r); };
     Range all;
     for (const Range& range :
-         lookAtTexels<Range>(picture, "looking at a texture's heights", cancel,
-                             [](Range&range, const Texel&texel) { range.add(texel.r); })) {
+         lookAtTexels<Range>(picture, "looking at a texture's heights", cancel, add)) {
         all.add(range.lo);
         all.add(range.hi);
     }

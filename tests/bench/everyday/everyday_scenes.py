@@ -5,8 +5,8 @@
 
 outdoors  sixty low-poly things by one picture of 1024 x 1024, Blender's plastic of Ks .5 and Pr .6, an area light, a
           night sky as picture
-covers    the same things under a clear coat, under sheen, and under both
-atrium    a courtyard of 260,000 triangles: columns, arches, drapes by pictures, plants whose leaves are cut out
+covers    the same things, a quarter each under a clear coat, sheen, part of a coat, and nothing
+atrium    a courtyard of 290,000 triangles: columns and drapes by pictures, plants whose leaves are cut out
 helmet    20,000 triangles that shine by a picture of 4096 x 4096
 
 VIEWS has the options of each.
@@ -68,11 +68,10 @@ class Mesh:
         self.triangles += sum(len(f) - 2 for f in faces)
 
     # place(u, v): a point; n x m quads, each point's uv is its own times `repeat`.
-    def sheet(self, place, n, m, material, repeat=(1, 1), within=(0, 0, 1, 1)):
-        x0, y0, x1, y1 = within
-        points = [place(i / n, j / m) for j in range(m + 1) for i in range(n + 1)]
-        uvs = [((x0 + (x1 - x0) * i / n) * repeat[0], (y0 + (y1 - y0) * j / m) * repeat[1])
-               for j in range(m + 1) for i in range(n + 1)]  # fmt: skip
+    def sheet(self, place, n, m, material, repeat=(1, 1)):
+        places = [(i / n, j / m) for j in range(m + 1) for i in range(n + 1)]
+        points = [place(u, v) for u, v in places]
+        uvs = [(u * repeat[0], v * repeat[1]) for u, v in places]
         k = lambda i, j: j * (n + 1) + i
         faces = [(k(i, j), k(i + 1, j), k(i + 1, j + 1), k(i, j + 1)) for j in range(m) for i in range(n)]
         self.add(points, uvs, faces, material)
@@ -160,7 +159,7 @@ def write_atrium(folder):
     mesh = Mesh("atrium.mtl")
     mesh.sheet(lambda u, v: (-11 + 22 * u, 0, 6 - 12 * v), 60, 40, "floor", (11, 6))
     for side in (-1, 1):
-        wall = lambda u, v, s=side: (-11 + 22 * u * 1, 8 * v, s * 6 + 0.06 * math.sin(40 * u) * math.sin(9 * v))
+        wall = lambda u, v, s=side: (-11 + 22 * u, 8 * v, s * 6 + 0.06 * math.sin(40 * u) * math.sin(9 * v))
         mesh.sheet(wall, 120, 60, "wall", (8, 3))
         mesh.sheet(lambda u, v, s=side: (s * 11, 8 * v, -6 + 12 * u), 60, 40, "wall", (4, 3))
         mesh.sheet(lambda u, v, s=side: (-11 + 22 * u, 4, s * (6 - 2.6 * v)), 80, 10, "stone", (8, 1))

@@ -1,16 +1,14 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
 # SPDX-FileCopyrightText: The pm authors
-"""Error times processor time of two builds of pm_host on scenes as people have them (everyday_scenes.py), side by
-side, and of Blender's Cycles on the outdoor one where it is installed.
+"""Error times processor time of two builds of pm_host on scenes as people have them (everyday_scenes.py).
 
 usage: measure_everyday.py BEFORE_PM_HOST AFTER_PM_HOST [--turns N] [--scenes NAME,...] [--size WxH] [--passes N]
                            [--docs FILE]
 
 A turn renders each scene by two seeds with each build, one after the other. The error is the noise's relMSE, half of
-what two seeds differ by, squared; processor time is that of rendering, reading and writing left out. Told are medians
-of the turns, and the least and the most of the ratios. --docs puts the table between the lines of that file that say
-where.
+what two seeds differ by, squared; processor time is that of the whole run. Told are medians of the turns, and the
+least and the most of the ratios. --docs puts the table between the lines of that file that say where.
 """
 import argparse
 import json
@@ -55,7 +53,7 @@ def noise(a, b, stops):
 
 
 def render(host, name, seed, options, folder):
-    """(picture, processor seconds, wall seconds before the first pass, told relMSE, rays, samples)"""
+    """The picture, the processor seconds of the run, and what it told of itself."""
     picture, told = folder / f"{name}_{seed}.exr", folder / "told.json"
     command = [host, folder / f"{name}.obj", *everyday_scenes.VIEWS[name].split(), "--size", options.size, "--passes",
                options.passes, "--seed", str(seed), "-q", "-o", picture, "--stats", told]  # fmt: skip

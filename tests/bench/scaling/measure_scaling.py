@@ -28,7 +28,7 @@ import docs_page  # noqa: E402
 SHARED = HERE.parents[3] / "shared"
 HALL_VIEW = "--eye -9,2.2,5.2 --look-at 4,.6,-2 --fov 50"
 # Of pm_host's statistics, one after the other; startSeconds is what is left of the process's whole time.
-PHASES = ("startSeconds", "readSceneSeconds", "buildSceneSeconds", "pilotSeconds", "planSeconds", "beginPassSeconds",
+PHASES = ("startSeconds", "readSceneSeconds", "buildSceneSeconds", "pilotSeconds", "beginPassSeconds",
           "renderSeconds", "otherRenderSeconds", "writePicturesSeconds")  # fmt: skip
 
 
