@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -22,6 +23,7 @@ struct ReadRules {
     SceneFileRules files;
     std::vector<std::string> materials;  // names that are wanted beside those that faces use
     MemoryNote takes{};                  // beside what the scene's own file takes by its size
+    std::uint32_t threads{1};            // that reading may keep busy; 0: as many as there are
 };
 
 // What a reader is given.

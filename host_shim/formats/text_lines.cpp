@@ -2,13 +2,19 @@
 // SPDX-FileCopyrightText: The pm authors
 #include "host_shim/formats/text_lines.h"
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 
 namespace pm::host {
 namespace {
 
-constexpr std::string_view kBlanks = " \t\v\f";
+bool isBlank(char c) {
+    return c == ' ' || c == '\t' || c == '\v' || c == '\f';
+}
+bool isEnd(char c) {
+    return c == '\n' || c == '\r';
+}
 
 template <typename T>
 std::from_chars_result parseWhole(std::string_view word, T& value) {
@@ -19,16 +25,17 @@ std::from_chars_result parseWhole(std::string_view word, T& value) {
 }  // namespace
 
 std::string_view trimmed(std::string_view text) {
-    const auto first = text.find_first_not_of(kBlanks);
-    if (first == std::string_view::npos) return {};
-    return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
+    // std::string_view's own searches for one of several characters call memchr for each.
+    while (!text.empty() && isBlank(text.front())) text.remove_prefix(1);
+    while (!text.empty() && isBlank(text.back())) text.remove_suffix(1);
+    return text;
 }
 
 std::string_view takeWord(std::string_view& text) {
     text = trimmed(text);
-    const auto end = std::min(text.find_first_of(kBlanks), text.size());
-    const std::string_view word = text.substr(0, end);
-    text = trimmed(text.substr(end));
+    const auto end = std::find_if(text.begin(), text.end(), isBlank);
+    const std::string_view word(text.begin(), end);
+    text = trimmed({end, text.end()});
     return word;
 }
 
@@ -53,9 +60,8 @@ TextLines::TextLines(std::string_view text) : m_rest(text) {
 }
 
 std::string_view TextLines::takePhysicalLine() {
-    const auto end = std::min(m_rest.find_first_of("\r\n"), m_rest.size());
-    const std::string_view line = m_rest.substr(0, end);
-    m_rest.remove_prefix(end);
+    const std::string_view line(m_rest.begin(), std::find_if(m_rest.begin(), m_rest.end(), isEnd));
+    m_rest.remove_prefix(line.size());
     if (m_rest.starts_with("\r\n")) m_rest.remove_prefix(1);
     if (!m_rest.empty()) m_rest.remove_prefix(1);
     ++m_nextNumber;

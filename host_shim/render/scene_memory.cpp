@@ -26,7 +26,7 @@ constexpr std::uint64_t kProgramBytes = 134 * kMib;
 constexpr std::uint64_t kBytesOfTriangle = 150;
 // The same of a corner of a plain face.
 constexpr std::uint64_t kBytesOfCorner = 55;
-// Of a byte of text: itself, cleaned, parsed, and the arrays; at most, of faces of bare numbers.
+// Of a byte of text: itself, parsed, and the arrays; at most, of faces of bare numbers.
 constexpr std::uint64_t kBytesOfText = 8;
 // Of a byte of a sidecar; 13 are measured of instances.
 constexpr std::uint64_t kBytesOfSidecar = 14;

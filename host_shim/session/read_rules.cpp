@@ -21,6 +21,7 @@ namespace fs = std::filesystem;
 
 ReadRules readRules(const Options& options) {
     ReadRules rules = options.reading;
+    rules.threads = options.threads;
     std::string config = options.colour.ocioFile;
     if (const char* const variable = std::getenv("OCIO"); config.empty() && variable != nullptr)
         config = variable;

@@ -57,7 +57,7 @@ MAY_INCLUDE = {
     "host_shim/pictures/writers": "pictures values",
     "host_shim/process": "pictures values",
     "host_shim/cli": "colour formats formats/mtl look pictures values",
-    "host_shim/formats/obj": "formats formats/mtl values",
+    "host_shim/formats/obj": "formats formats/mtl process values",
     "host_shim/report": "folders pictures plugin/include process",
     "host_shim/sky": "formats pictures process",
     "host_shim/textures": "colour folders pictures values",

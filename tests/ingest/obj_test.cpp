@@ -271,6 +271,30 @@ TEST(Obj, readingIsGivenUpAtAnyMoment) {
     }
 }
 
+// A piece of text is checked beside the parser, which reads the one before.
+TEST(Obj, piecesThatAreReadBesideTheParserAreTheSame) {
+    std::string text = kQuad;
+    for (int i = 0; i < 40000; ++i)
+        text += fmt::format("v {} 1 {}\nusemtl m{}\nf 1 2 3 {}\n", i, i % 7, i % 101, i + 5);
+    Heard heard;
+    ReadRules rules;
+    const SceneData alone = readObj(text, "scene.obj", ".", heard.sink, {}, {}, rules);
+    rules.threads = 2;
+    const SceneData beside = readObj(text, "scene.obj", ".", heard.sink, {}, {}, rules);
+    ASSERT_EQ(alone.meshes.size(), beside.meshes.size());
+    EXPECT_EQ(alone.materials.size(), 102u);
+    for (std::size_t i = 0; i < alone.meshes.size(); ++i) {
+        EXPECT_EQ(alone.meshes[i].positions, beside.meshes[i].positions);
+        EXPECT_EQ(alone.meshes[i].indices, beside.meshes[i].indices);
+        EXPECT_EQ(alone.meshes[i].faceSlots, beside.meshes[i].faceSlots);
+        EXPECT_EQ(alone.meshes[i].slotMaterials, beside.meshes[i].slotMaterials);
+    }
+    const std::string error = errorOf([&] {
+        readObj(text + "v nan 0 0\n" + text, "scene.obj", ".", heard.sink, {}, {}, rules);
+    });
+    EXPECT_NE(error.find("scene.obj:120005: vertex coordinate 'nan'"), error.npos) << error;
+}
+
 TEST(Obj, missingFilesAreErrorsThatNameThem) {
     Heard heard;
     EXPECT_EQ(errorOf([&] { readObjFile("no/such.obj", heard.sink); }),

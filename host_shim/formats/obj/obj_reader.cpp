@@ -9,6 +9,7 @@
 #include <cmath>
 #include <exception>
 #include <functional>
+#include <future>
 #include <istream>
 #include <limits>
 #include <span>
@@ -22,6 +23,7 @@
 #include "host_shim/formats/obj/obj_text.h"
 #include "host_shim/formats/scene_centre.h"
 #include "host_shim/formats/source_file.h"
+#include "host_shim/process/side_work.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
@@ -34,29 +36,28 @@ static_assert(sizeof(tinyobj::real_t) == sizeof(double), "the double-precision l
 // Materials are read by us; the parser only hands their numbers through.
 class NumberedMaterials : public tinyobj::MaterialReader {
   public:
-    explicit NumberedMaterials(std::size_t count) : m_count(count) {}
-    bool operator()(const std::string&, std::vector<tinyobj::material_t>*,
+    bool operator()(const std::string& number, std::vector<tinyobj::material_t>*,
                     std::map<std::string, int>* names, std::string*, std::string*) override {
-        for (std::size_t i = 0; i < m_count; ++i) {
-            names->emplace(std::to_string(i), static_cast<int>(i));
-        }
+        names->emplace(number, std::stoi(number));
         return true;
     }
-
-  private:
-    std::size_t m_count;
 };
 
 struct Parsed {
     tinyobj::attrib_t attributes;
     std::vector<tinyobj::shape_t> shapes;
+    ObjText text;
 };
 
-// Text for the parser, a piece at a time, with a question before each whether to go on. The parser
-// takes a stop for the end of the text, so who asked throws once it has returned.
+// Text for the parser, a part at a time, with a question before each whether to go on; the piece
+// that comes after is made while the parser reads one. The parser takes a stop for the end of the
+// text, so who asked throws once it has returned.
 class TextInPieces : public std::streambuf {
   public:
-    TextInPieces(std::string& text, const GoOn& goOn) : m_text(text), m_goOn(goOn) {}
+    TextInPieces(ObjTextScan& scan, const GoOn& goOn, bool inThread)
+        : m_scan(scan), m_goOn(goOn), m_inThread(inThread) {
+        makeNext();
+    }
 
     void throwIfStopped() const {
         if (m_stop) std::rethrow_exception(m_stop);
@@ -64,42 +65,55 @@ class TextInPieces : public std::streambuf {
 
   protected:
     int_type underflow() override {
-        constexpr std::size_t kPiece = 1 << 16;
-        const std::size_t size = std::min(kPiece, m_text.size() - m_next);
-        if (size == 0 || isStopped()) return traits_type::eof();
-        char* const piece = m_text.data() + m_next;
-        setg(piece, piece, piece + size);
-        m_next += size;
-        return traits_type::to_int_type(*piece);
-    }
-
-  private:
-    bool isStopped() {
+        if (m_stop) return traits_type::eof();
         try {
-            if (m_goOn && !m_stop) m_goOn();
+            if (m_goOn) m_goOn();
+            if (m_read == m_piece.size()) takeNext();
         } catch (...) {
             m_stop = std::current_exception();
         }
-        return m_stop != nullptr;
+        if (m_stop || m_piece.empty()) return traits_type::eof();
+        constexpr std::size_t kBetweenQuestions = 1 << 16;  // bytes
+        char* const part = m_piece.data() + m_read;
+        const std::size_t size = std::min(kBetweenQuestions, m_piece.size() - m_read);
+        m_read += size;
+        setg(part, part, part + size);
+        return traits_type::to_int_type(*part);
     }
 
-    std::string& m_text;
+  private:
+    void makeNext() {
+        m_next = doBeside(m_inThread, [&scan = m_scan] { return scan.nextPiece(); });
+    }
+    void takeNext() {
+        m_piece = m_next.get();
+        m_read = 0;
+        makeNext();
+    }
+
+    ObjTextScan& m_scan;
     const GoOn& m_goOn;
-    std::size_t m_next = 0;
+    bool m_inThread;
+    std::string m_piece;
+    std::size_t m_read = 0;  // of m_piece
     std::exception_ptr m_stop;
+    std::future<std::string> m_next;
 };
 
-Parsed parse(ObjText& text, const std::string& fileName, const GoOn& goOn) {
+// What tinyobjloader reads of the text, and what the text says beside.
+Parsed parse(std::string_view text, const std::string& fileName, const WarningSink& warn,
+             const GoOn& goOn, bool inThread) {
+    ObjTextScan scan(text, fileName);
     Parsed parsed;
     std::vector<tinyobj::material_t> materials;
-    NumberedMaterials reader(text.materialNames.size());
-    TextInPieces pieces(text.cleaned, goOn);
-    std::istream stream(&pieces);
+    NumberedMaterials reader;
     std::string warning, error;
+    TextInPieces pieces(scan, goOn, inThread);
+    std::istream stream(&pieces);
     const bool good = tinyobj::LoadObj(&parsed.attributes, &parsed.shapes, &materials, &warning,
                                        &error, &stream, &reader, false, false);
     pieces.throwIfStopped();
-    text.cleaned = {};
+    parsed.text = scan.finish(warn);
     if (!good) {
         std::ranges::replace(error, '\n', ' ');
         throw HostError(ExitCode::kBadInput, fmt::format("{}: {}", fileName, error));
@@ -109,7 +123,8 @@ Parsed parse(ObjText& text, const std::string& fileName, const GoOn& goOn) {
 
 // The text was checked; this holds the parser to it, since a bad index would be read out of bounds.
 // Numbers of normals or texture coordinates of which there are none become -1.
-void checkParsed(Parsed& parsed, const ObjText& text, const std::string& fileName) {
+void checkParsed(Parsed& parsed, const std::string& fileName) {
+    const ObjText& text = parsed.text;
     const std::array<std::size_t, 3> counts{parsed.attributes.vertices.size() / 3,
                                             parsed.attributes.texcoords.size() / 2,
                                             parsed.attributes.normals.size() / 3};
@@ -186,10 +201,10 @@ SceneData readObj(std::string_view text, const std::string& fileName, const fs::
     const auto ask = [&goOn] {
         if (goOn) goOn();
     };
-    ObjText objText = readObjText(text, fileName, warn, goOn);
-    Parsed parsed = parse(objText, fileName, goOn);
+    Parsed parsed = parse(text, fileName, warn, goOn, rules.threads != 1);
     ask();
-    checkParsed(parsed, objText, fileName);
+    checkParsed(parsed, fileName);
+    const ObjText& objText = parsed.text;
     ask();
     SceneData scene;
     MaterialLibrary library = readLibraries(

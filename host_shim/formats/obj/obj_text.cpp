@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -26,25 +27,26 @@ constexpr std::array<const char*, 3> kKinds{"vertex", "texture coordinate", "nor
 const std::string kNotUnderstood = "statements that are not understood,";
 constexpr std::size_t kShownOfWord = 40;  // characters
 
-class ObjScan {
+// Bytes; what takes some ten milliseconds, so that a thread for it finds a core of its own.
+constexpr std::size_t kPieceSize = 1 << 19;
+
+}  // namespace
+
+class ObjTextScan::Scan {
   public:
-    ObjScan(std::string_view text, const std::string& fileName, const WarningSink& warn)
-        : m_lines(text), m_file(fileName), m_warn(warn) {
-        // The cleaned text needs room of its own; a line grows by no more than its end.
-        m_out.cleaned.reserve(text.size() + 64);
-        m_out.cleaned = "mtllib 0\n";
+    Scan(std::string_view text, const std::string& fileName) : m_lines(text), m_file(fileName) {}
+
+    std::string nextPiece() {
+        m_piece.clear();
+        while (m_piece.size() < kPieceSize && m_lines.next()) statement();
+        return std::move(m_piece);
     }
 
-    ObjText run(const GoOn& goOn) {
-        constexpr std::uint64_t kLinesBetweenQuestions = 1 << 14;
-        for (std::uint64_t lines = 0; m_lines.next(); ++lines) {
-            if (goOn && lines % kLinesBetweenQuestions == 0) goOn();
-            statement();
-        }
+    ObjText finish(const WarningSink& warn) {
         if (m_out.counts[0] == 0 || m_out.faceSizes.empty()) failWithoutGeometry();
         checkForwardReferences();
         settleTagGroups();
-        reportLeftOut();
+        reportLeftOut(warn);
         return std::move(m_out);
     }
 
@@ -114,7 +116,7 @@ class ObjScan {
     }
 
     void emit(std::string_view word, std::string_view rest) {
-        m_out.cleaned.append(word).append(" ").append(rest).append("\n");
+        m_piece.append(word).append(" ").append(rest).append("\n");
     }
 
     void leaveOut(const std::string& what) { leaveOut(what, m_lines.number()); }
@@ -218,12 +220,15 @@ class ObjScan {
             if (last) break;
         }
         if (!given[0] || !word.empty()) badCorner(whole);
-        fmt::format_to(std::back_inserter(corners), "{}", indices[0]);
-        if (given[1]) fmt::format_to(std::back_inserter(corners), "/{}", indices[1]);
-        if (given[2]) {
-            fmt::format_to(std::back_inserter(corners), "{}{}", given[1] ? "/" : "//", indices[2]);
-        }
+        appendNumber(corners, indices[0]);
+        if (given[1]) appendNumber(corners += '/', indices[1]);
+        if (given[2]) appendNumber(corners += given[1] ? "/" : "//", indices[2]);
         corners += ' ';
+    }
+
+    static void appendNumber(std::string& text, std::int64_t number) {
+        char digits[24];
+        text.append(digits, std::to_chars(digits, std::end(digits), number).ptr);
     }
 
     [[noreturn]] void badCorner(std::string_view word) const {
@@ -280,7 +285,9 @@ class ObjScan {
             m_out.materialNames.emplace_back(name);
             m_out.materialLines.push_back(m_lines.number());
         }
-        emit("usemtl", std::to_string(found->second));
+        const std::string number = std::to_string(found->second);
+        if (isNew) emit("mtllib", number);
+        emit("usemtl", number);
     }
 
     void tag(std::string_view rest) {
@@ -343,12 +350,12 @@ class ObjScan {
         tag.integers = std::move(kept);
     }
 
-    void reportLeftOut() const {
+    void reportLeftOut(const WarningSink& warn) const {
         for (const auto& [what, entry] : m_leftOut) {
             const std::string example =
                 what == kNotUnderstood ? fmt::format(" '{}' the first,", m_unknown) : "";
-            m_warn(Warning::kGeometry, fmt::format("{}:{}: {} {}{} left out", m_file, entry.second,
-                                                   entry.first, what, example));
+            warn(Warning::kGeometry, fmt::format("{}:{}: {} {}{} left out", m_file, entry.second,
+                                                 entry.first, what, example));
         }
     }
 
@@ -356,7 +363,7 @@ class ObjScan {
 
     TextLines m_lines;
     const std::string& m_file;
-    const WarningSink& m_warn;
+    std::string m_piece;
     ObjText m_out;
     std::uint64_t m_group{};
     std::vector<std::uint64_t> m_faceGroups;  // for each face kept
@@ -368,11 +375,15 @@ class ObjScan {
     std::string m_unknown;  // the first statement that is not understood
 };
 
-}  // namespace
+ObjTextScan::ObjTextScan(std::string_view text, const std::string& fileName)
+    : m_scan(std::make_unique<Scan>(text, fileName)) {}
+ObjTextScan::~ObjTextScan() = default;
 
-ObjText readObjText(std::string_view text, const std::string& fileName, const WarningSink& warn,
-                    const GoOn& goOn) {
-    return ObjScan(text, fileName, warn).run(goOn);
+std::string ObjTextScan::nextPiece() {
+    return m_scan->nextPiece();
+}
+ObjText ObjTextScan::finish(const WarningSink& warn) {
+    return m_scan->finish(warn);
 }
 
 }  // namespace pm::host
