@@ -38,8 +38,10 @@ OIIO::ImageSpec exrSpec(const Picture& picture, bool halfColour) {
     for (std::size_t i = 0; i < picture.channels.size(); ++i) {
         const Channel& channel = picture.channels[i];
         spec.channelnames.push_back(channel.name);
-        spec.channelformats.push_back(halfColour && channel.isColour ? OIIO::TypeDesc::HALF
-                                                                     : OIIO::TypeDesc::FLOAT);
+        // Formats by channel have OpenImageIO copy all pixels once more.
+        if (halfColour)
+            spec.channelformats.push_back(channel.isColour ? OIIO::TypeDesc::HALF
+                                                           : OIIO::TypeDesc::FLOAT);
         if (channel.name == "A") spec.alpha_channel = static_cast<int>(i);
         if (channel.name == "Z") spec.z_channel = static_cast<int>(i);
     }

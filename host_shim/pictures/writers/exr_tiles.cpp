@@ -95,7 +95,7 @@ void TiledExr::write(const PixelRect& tile, std::span<const float> values) {
                                                          m_path.string(), values.size()));
     m_values.assign(values.begin(), values.end());
     for (std::size_t c = 0; c < channels; ++c) {
-        if (m_output->spec.channelformats[c] != OIIO::TypeDesc::HALF) continue;
+        if (m_output->spec.channelformat(static_cast<int>(c)) != OIIO::TypeDesc::HALF) continue;
         for (std::size_t i = c; i < m_values.size(); i += channels)
             m_values[i] = clampedToHalf(m_values[i], m_report.clampedToHalf);
     }

@@ -8,6 +8,7 @@
 #include "integrator/materials/lobes/fresnel.h"
 #include "integrator/materials/lobes/ggx.h"
 #include "integrator/materials/lobes/table_cell.h"
+#include "integrator/materials/lobes/table_rows.h"
 
 namespace pm {
 
@@ -33,7 +34,7 @@ GgxShares mix(const GgxShares& a, const GgxShares& b, float t) {
 }  // namespace
 
 GgxAlbedo::GgxAlbedo() {
-    for (std::size_t r = 0; r < kSize; ++r) {
+    forEachTableRow(kSize, [this](std::size_t r) {
         for (std::size_t c = 0; c < kSize; ++c)
             m_shares[r][c] = integrate(tableCosine(c), tableAlpha(r));
         const auto part = [&](float GgxShares::*which) {
@@ -44,7 +45,7 @@ GgxAlbedo::GgxAlbedo() {
             }));
         };
         m_means[r] = {part(&GgxShares::normal), part(&GgxShares::grazing)};
-    }
+    });
 }
 
 const GgxAlbedo& GgxAlbedo::table() {

@@ -8,6 +8,7 @@
 
 #include "integrator/materials/lobes/fresnel.h"
 #include "integrator/materials/lobes/table_cell.h"
+#include "integrator/materials/lobes/table_rows.h"
 
 namespace pm {
 
@@ -42,7 +43,7 @@ float integrate(float cosine, float alpha, float eta) {
 
 GlassAlbedo::GlassAlbedo(float ior) : m_ior(ior) {
     for (int side = 0; side < 2; ++side) {
-        for (std::size_t r = 0; r < kSize; ++r) fill(side, r);
+        forEachTableRow(kSize, [this, side](std::size_t r) { fill(side, r); });
         const float eta = side == 0 ? ior : 1.0f / ior;
         m_letsThrough[static_cast<std::size_t>(side)] =
             static_cast<float>(meanOverCosines([&](float cosine) {
