@@ -132,10 +132,10 @@ std::shared_ptr<const FrameStore> RenderWork::frame() const {
     return m_buckets ? m_buckets->shelf().shown() : m_frame;
 }
 
-std::optional<FrameError> RenderWork::estimateError() const {
+std::optional<FrameError> RenderWork::estimateError(bool inParallel) const {
     if (m_photons.isOnly()) return std::nullopt;
     std::optional<FrameError> error =
-        m_buckets ? m_buckets->estimateError() : m_frame->estimateError();
+        m_buckets ? m_buckets->estimateError() : m_frame->estimateError(inParallel);
     if (error) error->cut = std::pow(counters().shareCut(), 2);
     return error;
 }
@@ -162,14 +162,15 @@ bool RenderWork::endPass(std::uint32_t pass, double photonSeconds, double bucket
     PassEnd end;
     end.passesDone = pass + 1;
     const bool inCurve = progress().curve.wants(end.passesDone);
-    if (inCurve || m_stopRule.hasErrorTarget()) end.error = estimateError();
+    const auto estimate = [&] { return m_arena.execute([&] { return estimateError(true); }); };
+    if (inCurve || m_stopRule.hasErrorTarget()) end.error = estimate();
     end.seconds = m_watch.seconds();
     const std::uint32_t made = end.passesDone - progress().passesResumed;
     end.longestPassSeconds =
         made == 0 ? 0 : std::max(end.seconds / made, photonSeconds + bucketSeconds);
     const StopReason stop = m_stopRule.after(end);
     const bool isLast = stop != StopReason::kNone;
-    if (isLast && !end.error) end.error = estimateError();
+    if (isLast && !end.error) end.error = estimate();
     m_clock.endPass(
         photonSeconds, bucketSeconds, m_stopRule.passesToErrorTarget(end),
         isLast || !m_frame ? 1.0 : samplesOverPassBefore(m_settings, *m_frame, end.passesDone));
@@ -177,6 +178,7 @@ bool RenderWork::endPass(std::uint32_t pass, double photonSeconds, double bucket
     const std::lock_guard lock(m_mutex);
     m_progress.passesDone = end.passesDone;
     m_progress.stopReason = stop;
+    if (isLast) m_progress.lastError = end.error;
     if (inCurve || isLast)
         m_progress.curve.add(
             {end.passesDone, end.seconds, processorSeconds() - m_processorStart, end.error});

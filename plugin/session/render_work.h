@@ -83,6 +83,7 @@ class RenderWork {
         std::uint32_t passesResumed = 0;  // of these from the checkpoint
         StopReason stopReason = StopReason::kNone;
         ErrorCurve curve;
+        std::optional<FrameError> lastError;   // once the last pass has ended
         std::string photonHash;                // of a photon map that was written
         double photonSeconds = 0;              // beginPass: photons and their maps
         double bucketSeconds = 0;              // the buckets of all passes
@@ -104,7 +105,8 @@ class RenderWork {
     const MemoryPlan& memory() const { return m_memory; }
     // The pixels that can be read now; by buckets null where no bucket is being delivered.
     std::shared_ptr<const FrameStore> frame() const;
-    std::optional<FrameError> estimateError() const;  // of the pixels so far
+    // Of the pixels so far. inParallel: in the threads of the arena that it is called in.
+    std::optional<FrameError> estimateError(bool inParallel = false) const;
     // By buckets: the host is about to be called back for one, or has returned from that.
     void beforeDelivery(std::uint32_t bucketIndex);
     void afterDelivery(std::uint32_t bucketIndex);

@@ -161,7 +161,9 @@ void addPasses(const RenderWork& work, const RenderWork::Progress& progress, Jso
     json["delivery"] = work.memory().byBuckets ? "buckets" : "frame";
     // Of a torn picture it would be that of its finished buckets alone.
     const bool isTorn = work.memory().byBuckets && progress.passesDone == 0;
-    addError(isTorn ? std::nullopt : work.estimateError(), work.plan().errorScale, json);
+    std::optional<FrameError> error = progress.lastError;
+    if (!error && !isTorn) error = work.estimateError();
+    addError(error, work.plan().errorScale, json);
     json["errorCurve"] = curveJson(progress.curve);
 }
 

@@ -139,12 +139,15 @@ class FrameStore {
 
     // What is known of the frame's error without a reference: of the pixels whose even and odd
     // passes both had samples; nothing where there is no such pixel.
-    std::optional<FrameError> estimateError() const;
+    // inParallel: in the threads of the arena that it is called in; the same bits.
+    std::optional<FrameError> estimateError(bool inParallel = false) const;
 
     // The same pixel by pixel, row by row from the top, as FrameErrorSum::add takes them.
     using ErrorVisitor =
         std::function<void(std::int32_t x, std::int32_t y, const PixelError& pixel)>;
-    void visitErrors(const ErrorVisitor& visit) const;
+    void visitErrors(const ErrorVisitor& visit) const {
+        visitErrors(m_window.y0, m_window.y1, visit);
+    }
 
   private:
     friend class FrameStoreBytes;  // the arrays below as bytes; a new one belongs there too
@@ -181,6 +184,7 @@ class FrameStore {
     // channel.
     double evenSum(std::size_t pixel, std::int32_t channel) const;
     void readMeans(std::int32_t y, std::vector<NeighbourRows::Pixel>& row) const;
+    void visitErrors(std::int32_t begin, std::int32_t end, const ErrorVisitor& visit) const;
     void visitError(std::int32_t x, std::int32_t y, const NeighbourRows& rows,
                     const ErrorVisitor& visit) const;
     double mean(std::size_t pixel, std::int32_t channel) const;

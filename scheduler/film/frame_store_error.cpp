@@ -2,8 +2,11 @@
 // SPDX-FileCopyrightText: The pm authors
 
 // The frame's error out of the frame store; the method is told at FrameError.
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
+#include <vector>
 
 #include "scheduler/buckets/fp_environment.h"
 #include "scheduler/film/frame_store.h"
@@ -135,22 +138,51 @@ void FrameStore::visitError(std::int32_t x, std::int32_t y, const NeighbourRows&
     visit(x, y, error);
 }
 
-void FrameStore::visitErrors(const ErrorVisitor& visit) const {
+// Of the rows [begin,end).
+void FrameStore::visitErrors(std::int32_t begin, std::int32_t end,
+                             const ErrorVisitor& visit) const {
     const FpEnvironment guard;
     NeighbourRows rows(static_cast<std::size_t>(m_window.width()));
-    readMeans(m_window.y0, rows.nextRow());
-    for (std::int32_t y = m_window.y0; y < m_window.y1; ++y) {
+    if (begin > m_window.y0) readMeans(begin - 1, rows.nextRow());
+    readMeans(begin, rows.nextRow());
+    for (std::int32_t y = begin; y < end; ++y) {
         readMeans(y + 1, rows.nextRow());
         const std::lock_guard lock(bandLock(y));
         for (std::int32_t x = m_window.x0; x < m_window.x1; ++x) visitError(x, y, rows, visit);
     }
 }
 
-std::optional<FrameError> FrameStore::estimateError() const {
+std::optional<FrameError> FrameStore::estimateError(bool inParallel) const {
     const FpEnvironment guard;
     FrameErrorSum sum(m_window);
-    visitErrors(
-        [&sum](std::int32_t x, std::int32_t y, const PixelError& pixel) { sum.add(x, y, pixel); });
+    if (!inParallel) {
+        visitErrors([&sum](std::int32_t x, std::int32_t y, const PixelError& pixel) {
+            sum.add(x, y, pixel);
+        });
+        return sum.result();
+    }
+    // Some bands at a time, for the memory; added up in the order of their rows.
+    struct Pixel {
+        std::int32_t x{}, y{};
+        PixelError error;
+    };
+    constexpr std::int32_t kRowsOfBand = 16, kBandsAtOnce = 64;
+    std::vector<std::vector<Pixel>> bands(kBandsAtOnce);
+    for (std::int32_t top = m_window.y0; top < m_window.y1; top += kRowsOfBand * kBandsAtOnce) {
+        tbb::parallel_for(0, kBandsAtOnce, [&](std::int32_t band) {
+            const std::int32_t begin = std::min(m_window.y1, top + band * kRowsOfBand);
+            const std::int32_t end = std::min(m_window.y1, begin + kRowsOfBand);
+            auto& pixels = bands[static_cast<std::size_t>(band)];
+            pixels.clear();
+            if (begin == end) return;
+            visitErrors(begin, end,
+                        [&pixels](std::int32_t x, std::int32_t y, const PixelError& error) {
+                            pixels.push_back({x, y, error});
+                        });
+        });
+        for (const auto& pixels : bands)
+            for (const Pixel& pixel : pixels) sum.add(pixel.x, pixel.y, pixel.error);
+    }
     return sum.result();
 }
 

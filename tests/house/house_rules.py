@@ -36,7 +36,7 @@ OWN = {
 THIRD_PARTY = [
     (re.compile(r"embree\d*/"), ("integrator/rays/",)),
     (re.compile(r"opensubdiv/"), ("integrator/geometry/",)),
-    (re.compile(r"(?:oneapi/)?tbb/"), ("integrator/", "scheduler/buckets/", "plugin/")),
+    (re.compile(r"(?:oneapi/)?tbb/"), ("integrator/", "scheduler/", "plugin/")),
     (re.compile(r"OpenImageIO/"),
      ("plugin/textures/", "plugin/values/version.cpp", "host_shim/pictures/", "host_shim/textures/",
       "host_shim/check/junit.cpp")),

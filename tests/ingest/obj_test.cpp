@@ -289,9 +289,8 @@ TEST(Obj, piecesThatAreReadBesideTheParserAreTheSame) {
         EXPECT_EQ(alone.meshes[i].faceSlots, beside.meshes[i].faceSlots);
         EXPECT_EQ(alone.meshes[i].slotMaterials, beside.meshes[i].slotMaterials);
     }
-    const std::string error = errorOf([&] {
-        readObj(text + "v nan 0 0\n" + text, "scene.obj", ".", heard.sink, {}, {}, rules);
-    });
+    const std::string error = errorOf(
+        [&] { readObj(text + "v nan 0 0\n" + text, "scene.obj", ".", heard.sink, {}, {}, rules); });
     EXPECT_NE(error.find("scene.obj:120005: vertex coordinate 'nan'"), error.npos) << error;
 }
 
