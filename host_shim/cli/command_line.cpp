@@ -354,6 +354,7 @@ Options parseCommandLine(const std::vector<std::string>& arguments, bool areName
         return options;
     }
     readReadRules(typed, options);
+    options.reading.pov.frame = frame;
     readCamera(typed, options);
     readSettings(typed, frame, options);
     readPhotonMap(typed.photonMap, typed.settings, {frame, areNamesFilled}, options);

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "host_shim/cli/command_line.h"
+#include "host_shim/pictures/file_ending.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
@@ -88,7 +89,10 @@ Options ofErrorScale(Options frame, std::optional<std::int32_t> stops) {
 }
 
 bool areSameRender(const Options& frame, const Options& other) {
-    return frame.scene == other.scene && frame.merge == other.merge &&
+    // The frame's number is the clock of scenes of POV-Ray's.
+    const bool isSameClock = lowerCaseExtension(frame.scene) != ".pov" ||
+                             frame.reading.pov.frame == other.reading.pov.frame;
+    return isSameClock && frame.scene == other.scene && frame.merge == other.merge &&
            settingsOf(frame) == settingsOf(other);
 }
 

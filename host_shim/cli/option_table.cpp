@@ -88,7 +88,8 @@ void addUntrusted(CLI::App& app, Options& options) {
 
 void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
     addText(app, "SCENE", typed.scene, "FILE",
-            "the scene, an .obj, or http://, https:// or file:// to the manifest.json of one that "
+            "the scene, an .obj or .pov, or http://, https:// or file:// to the manifest.json of "
+            "one that "
             "pm_host pack made");
     addOutputOptions(app, typed, options, false);
     addText(app, "--size", typed.size, "WxH", "pixels, 1 to 65536 each (640x480)");
@@ -118,6 +119,10 @@ void addSceneOptions(CLI::App& app, Typed& typed, Options& options) {
             "where libraries and textures are looked for that are not found beside the scene; may "
             "be repeated");
     addUntrusted(app, options);
+    addText(app, "--pov-library", options.reading.pov.library, "DIR",
+            "where the include files of POV-Ray are (/usr/share/povray-3.7/include)");
+    app.add_flag("--allow-write", options.reading.pov.mayWrite,
+                 "let #fopen of a POV-Ray scene write files");
     addText(app, "--camera-light", typed.cameraLight, "auto|on|off",
             "a point light at the camera; auto: where the scene has no light, or where no --eye is "
             "given and its own light reaches nothing that is seen (auto)");

@@ -255,6 +255,7 @@ struct SceneData {
     std::vector<MaterialFile> materialFiles;
     std::vector<std::string> files;  // others that were read beside the scene's own
     std::string sidecar;             // the one of them that stands beside it; empty: none
+    std::string explanation;         // lines that --explain prints before the plan; may be empty
 
     // One instance for each mesh, in its place.
     void placeEachMesh();

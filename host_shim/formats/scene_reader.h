@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -17,6 +18,14 @@
 
 namespace pm::host {
 
+// Of scenes in POV-Ray's language.
+struct PovRules {
+    std::string library;  // the folder of its own include files; empty: where Debian puts it
+    bool mayWrite{};      // #fopen ... write makes files
+    std::optional<std::int64_t> frame;                 // of an animation; none: its first
+    std::function<void(const std::string& text)> say;  // hears what #debug says; may be empty
+};
+
 // How a scene is read, and from which files.
 struct ReadRules {
     std::string mtlDialect;  // of all MTL files, as --mtl-dialect names it; empty: by their headers
@@ -24,6 +33,8 @@ struct ReadRules {
     std::vector<std::string> materials;  // names that are wanted beside those that faces use
     MemoryNote takes{};                  // beside what the scene's own file takes by its size
     std::uint32_t threads{1};            // that reading may keep busy; 0: as many as there are
+    std::array<std::int32_t, 2> size{640, 480};  // of the picture, pixels
+    PovRules pov{};
 };
 
 // What a reader is given.

@@ -26,6 +26,7 @@ enum class Warning : int {
     kBadSamples = 1012,     // some are NaN, infinite or negative and count as black
     kFarm = 1013,           // machines that differ, or tasks that had to be started again
     kCopies = 1014,         // a local copy that was not what it should be
+    kSceneLanguage = 1015,  // what a scene in POV-Ray's language says, or does without
 };
 
 using WarningSink = std::function<void(Warning code, const std::string& text)>;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <cstdlib>
 
 #include "host_shim/formats/all/scene_readers.h"
@@ -22,6 +23,8 @@ namespace fs = std::filesystem;
 ReadRules readRules(const Options& options) {
     ReadRules rules = options.reading;
     rules.threads = options.threads;
+    rules.size = {options.width, options.height};
+    rules.pov.say = [](const std::string& text) { std::fputs(text.c_str(), stderr); };
     std::string config = options.colour.ocioFile;
     if (const char* const variable = std::getenv("OCIO"); config.empty() && variable != nullptr)
         config = variable;

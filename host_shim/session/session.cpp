@@ -211,6 +211,7 @@ void Session::noteFiles(const SceneData& data) {
         m_log.info(
             fmt::format("{}: is read with the scene (--no-sidecar leaves it out)", data.sidecar));
     m_statistics.materialFiles = data.materialFiles;
+    m_explanation = data.explanation;
     for (const MaterialFile& library : data.materialFiles)
         m_log.message(Level::kDebug, fmt::format("{}: MTL as {} writes it: {}", library.file,
                                                  library.dialect, library.reason));
@@ -319,8 +320,10 @@ int Session::renderBuilt(const ColourPipeline& colour, const PluginScene& scene)
             run.keepFrame(whole + " needs the whole picture at once");
     }
     if (m_options.explain) {
-        std::fputs(plainLines(run.explain() + explainMaterials(m_statistics.materialFiles)).c_str(),
-                   stdout);
+        std::fputs(
+            plainLines(m_explanation + run.explain() + explainMaterials(m_statistics.materialFiles))
+                .c_str(),
+            stdout);
         m_statistics.stopReason = "finished";
         return 0;
     }

@@ -144,6 +144,7 @@ class Session {
 
     Options m_options;
     Log& m_log;
+    std::string m_explanation;  // of the scene, by its reader
     Statistics m_statistics;
     Report m_report;                              // gathers only where one is wanted
     std::optional<HostMemory> m_memory;           // of a scene that is read

@@ -47,6 +47,7 @@ RENDERS = {
     1010: (room("Kd 0 0 0\nKe 1e6 1e6 1e6\n"), ["--exr-half"]),
     1011: (room(light=""), ["--camera-light", "off"]),
     1012: (BRIGHT, []),
+    1015: ({"room.pov": "sphere { 0, 1 }\n#fopen F \"a.txt\" write\n"}, []),
 }
 
 
@@ -107,7 +108,7 @@ def plain(text):
 def said_of(code, folder, host):
     if code in RENDERS:
         files, words = RENDERS[code]
-        return Room(folder, host, files).render("room.obj", *words)
+        return Room(folder, host, files).render(next(iter(files)), *words)
     return {1013: of_damaged_part, 1014: of_damaged_copy}[code](Room(folder, host, room()))
 
 

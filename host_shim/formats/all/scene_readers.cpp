@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "host_shim/formats/obj/obj_reader.h"
+#include "host_shim/formats/pov/pov_reader.h"
 #include "host_shim/pictures/file_ending.h"
 #include "host_shim/values/host_error.h"
 
@@ -17,7 +18,8 @@ namespace pm::host {
 // A new format adds itself here, and its files to host_shim/CMakeLists.txt.
 std::span<const SceneReader* const> sceneReaders() {
     static const ObjReader kObj;
-    static const std::array<const SceneReader*, 1> kReaders{&kObj};
+    static const PovReader kPov;
+    static const std::array<const SceneReader*, 2> kReaders{&kObj, &kPov};
     return kReaders;
 }
 
