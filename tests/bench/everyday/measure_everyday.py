@@ -4,11 +4,12 @@
 """Error times processor time of two builds of pm_host on scenes as people have them (everyday_scenes.py).
 
 usage: measure_everyday.py BEFORE_PM_HOST AFTER_PM_HOST [--turns N] [--scenes NAME,...] [--size WxH] [--passes N]
-                           [--docs FILE]
+                           [--cycles SAMPLES] [--docs FILE]
 
 A turn renders each scene by two seeds with each build, one after the other. The error is the noise's relMSE, half of
 what two seeds differ by, squared; processor time is that of the whole run. Told are medians of the turns, and the
-least and the most of the ratios. --docs puts the table between the lines of that file that say where.
+least and the most of the ratios. --cycles renders `outdoors` in Blender's Cycles beside them, at the same error scale;
+its processor time is that of the render call. --docs puts the table between the lines of that file that say where.
 """
 import argparse
 import json
@@ -35,6 +36,7 @@ def arguments():
     parser.add_argument("--scenes", default=",".join(everyday_scenes.VIEWS))
     parser.add_argument("--size", default="192x144")
     parser.add_argument("--passes", default="4")
+    parser.add_argument("--cycles", type=int, default=0)
     parser.add_argument("--docs", type=pathlib.Path)
     return parser.parse_args()
 
@@ -69,7 +71,7 @@ def render(host, name, seed, options, folder):
 def turn(host, name, options, folder):
     first, second = (render(host, name, seed, options, folder) for seed in (1, 2))
     return {"noise": noise(first["picture"], second["picture"], first["stops"]),
-            **{k: (first[k] + second[k]) / 2 for k in ("seconds", "build", "told", "rays")}}  # fmt: skip
+            **{k: (first[k] + second[k]) / 2 for k in ("seconds", "build", "told", "rays", "stops")}}  # fmt: skip
 
 
 def rows(name, turns):
@@ -80,6 +82,23 @@ def rows(name, turns):
         ratio = f"{statistics.median(ratios):.2f} ({min(ratios):.2f} to {max(ratios):.2f})" if which else ""
         yield (f"| {name} | {label} | {middle('noise'):.2e} | {middle('told'):.2e} | {middle('seconds'):.1f} | "
                f"{middle('build'):.2f} | {middle('rays') / 1e6:.2f} | {ratio} |")  # fmt: skip
+
+
+def cycles_text(options, ours, folder):
+    """A line that holds Cycles' noise and time on the outdoor scene to this build's."""
+    view = everyday_scenes.VIEWS["outdoors"].split()
+    of = lambda option: view[view.index(option) + 1]
+    seconds, pictures = [], []
+    for seed in (1, 2):
+        pictures.append(folder / f"cycles_{seed}.exr")
+        command = ["blender", "-b", "--factory-startup", "-noaudio", "-P", HERE / "cycles_outdoors.py", "--",
+                   folder / "outdoors.obj", folder / of("--environment"), of("--eye"), of("--look-at"), of("--fov"),
+                   options.size, options.cycles, seed, pictures[-1]]  # fmt: skip
+        said = subprocess.run([str(word) for word in command], check=True, capture_output=True, text=True).stdout
+        seconds.append(float(re.search(r"^cycles (\S+)", said, re.MULTILINE)[1]))
+    found, took = noise(*pictures, ours["stops"]), statistics.mean(seconds)
+    return (f"Cycles, {options.cycles} samples of `outdoors`: noise {found:.2e} in {took:.1f} s of processor time; noise x time "
+            f"is {found * took / (ours['noise'] * ours['seconds']):.2f} times this build's.\n")  # fmt: skip
 
 
 def main():
@@ -100,12 +119,13 @@ def main():
         for _ in range(options.turns):
             for name in names:
                 found[name].append([turn(host, name, options, folder) for host in hosts])
+        beside = cycles_text(options, found["outdoors"][-1][1], folder) if options.cycles else ""
     lines = [f"{options.size}, {options.passes} passes, two seeds, {options.turns} turns; processor seconds of a whole "
              "run.", "", "| scene | build | noise, relMSE | told | processor, s | building the scene, s | million rays "
              "| noise x time, after over before |", "|---|---|---|---|---|---|---|---|"]  # fmt: skip
     for name in names:
         lines += rows(name, found[name])
-    text = "\n".join(lines) + "\n"
+    text = "\n".join(lines) + "\n" + ("\n" + beside if beside else "")
     print(text)
     if options.docs:
         docs_page.put(options.docs, "everyday", text)
