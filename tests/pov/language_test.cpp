@@ -63,6 +63,10 @@ TEST(PovLanguage, NamesComeAndGo) {
     EXPECT_EQ(said("#declare A = array[2][2] {{1, 2}, {3, 4}} #declare A[1][0] = 7; "
                    "#debug str(A[1][0] + A[0][1], 0, 0) #debug str(dimension_size(A, 2), 0, 0)"),
               "92");
+    // What is declared next waits until this is.
+    EXPECT_EQ(said("#macro G(R) #local A = array[2] {1, R} A #end #declare V = G(3) "
+                   "#declare Q = V[1]; #debug str(Q, 0, 0)"),
+              "3");
     Scene scene;
     scene.files["a.inc"] = "#local L = 2; #declare G = L + 1;";
     EXPECT_EQ(scene.debug("#include \"a.inc\" #debug str(G, 0, 0) #ifdef (L) #debug \"L\" #end"),

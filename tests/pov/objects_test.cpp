@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "host_shim/formats/pov/animation.h"
 #include "host_shim/formats/pov/objects/camera_of.h"
 #include "host_shim/formats/pov/objects/scene_of.h"
 #include "tests/pov/evaluated.h"
@@ -49,6 +50,22 @@ TEST(PovObjects, WhatWaitsIsNamedAndCounted) {
     EXPECT_EQ(scene.leftOut.at("box: waits for shapes").count, 2u);
     EXPECT_EQ(scene.leftOut.at("light_source: waits for looks").count, 1u);
     EXPECT_EQ(scene.objects, 3u);
+}
+
+TEST(PovObjects, IniSaysTheClock) {
+    const PovIni ini = readPovIni(
+        "; frames\nInitial_Frame = 1\nfinal_frame=5 ; five\nFinal_Clock=2\nDeclare=A=3\n+kfi0\n");
+    EXPECT_EQ(ini.declared.at("A"), "3");
+    EXPECT_EQ(ini.firstFrame, 0);
+    EXPECT_DOUBLE_EQ(clockOf(ini, 5).at("clock"), 2);
+    EXPECT_DOUBLE_EQ(clockOf(ini, {}).at("frame_number"), 0);
+    EXPECT_DOUBLE_EQ(clockOf(ini, 1).at("clock"), 0.4);
+    EXPECT_DOUBLE_EQ(clockOf({}, {}).at("clock_on"), 0);
+    EXPECT_DOUBLE_EQ(clockOf(readPovIni("Clock=.25"), {}).at("clock"), 0.25);
+}
+
+TEST(PovObjects, CamerasWithoutVolumeAreLeftOut) {
+    EXPECT_EQ(made("camera { direction x right x } sphere { 0, 1 }").data.cameras.size(), 0u);
 }
 
 TEST(PovObjects, CamerasAngleIsHorizontal) {

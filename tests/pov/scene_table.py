@@ -46,8 +46,8 @@ def table(results):
     for kind, _, _ in results.values():
         counts[kind] = counts.get(kind, 0) + 1
     lines = ["# POV-Ray's example scenes", "",
-             "Made by `tests/pov/scene_table.py PM_HOST --docs FILE` of Debian's povray-examples. Read: the language was",
-             "evaluated to its end. Waits: the scene asks a shape or a pattern while it is read.", "",
+             "Made by `tests/pov/scene_table.py` of Debian's povray-examples. Read: the language was evaluated to its end.",
+             "Waits: the scene asks a shape or a pattern while it is read.", "",
              ", ".join(f"{kind}: {count}" for kind, count in sorted(counts.items())) + f"; of {len(results)}.", "",
              "| scene | | why |", "|---|---|---|"]
     for name, (kind, why, _) in sorted(results.items()):

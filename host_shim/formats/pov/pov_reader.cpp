@@ -68,9 +68,13 @@ pov::Surroundings surroundingsOf(const ReadRequest& request, SceneFiles& files,
         read.push_back(file);
         return readWholeFile(file, request.goOn, most);
     };
-    around.writable = [folder, &rules](const std::string& name) -> std::optional<std::string> {
-        if (!rules.mayWrite) return std::nullopt;
-        return (folder / name).string();
+    const bool isTrusted = request.rules.files.isTrusted;
+    around.writable = [folder, &rules,
+                       isTrusted](const std::string& name) -> std::optional<std::string> {
+        const fs::path inside = fs::path(name).lexically_normal();
+        const bool leaves = inside.is_absolute() || *inside.begin() == "..";
+        if (!rules.mayWrite || inside.empty() || (leaves && !isTrusted)) return std::nullopt;
+        return (folder / inside).string();
     };
     around.debug = [&rules](const std::string& text) {
         if (rules.say) rules.say(text);

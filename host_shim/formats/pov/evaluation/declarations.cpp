@@ -18,6 +18,13 @@ void Parser::takeSemicolon() {
         ++frame().at;
 }
 
+// An array of its own: what is put in one is not seen in the other.
+Value Parser::own(Value value) {
+    if (auto* const of = std::get_if<std::shared_ptr<Array>>(&value); of && of->use_count() > 1)
+        value = std::make_shared<Array>(**of);
+    return value;
+}
+
 void Parser::declareName(bool isLocal) {
     Lexeme name = raw();
     if (isWord(name, "deprecated")) {
@@ -40,15 +47,13 @@ void Parser::declareName(bool isLocal) {
             at = static_cast<std::size_t>(element(*held) - held->elements.data());
         }
         expectSymbol('=');
-        Value value = rvalue();
+        Value value = own(rvalue());
+        hold(held->depth, depthOf(value));
         held->elements[at] = std::move(value);
         return takeSemicolon();
     }
     expectSymbol('=');
-    Value value = rvalue();
-    // A copy: what is put in one is not seen in the other.
-    if (auto* const of = std::get_if<std::shared_ptr<Array>>(&value); of && of->use_count() > 1)
-        value = std::make_shared<Array>(**of);
+    Value value = own(rvalue());
     if (auto* const of = std::get_if<std::shared_ptr<const Function>>(&value);
         of && (*of)->name.empty()) {
         auto named = std::make_shared<Function>(**of);

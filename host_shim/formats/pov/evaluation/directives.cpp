@@ -3,39 +3,58 @@
 // #if and its like: what decides which tokens come next.
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
+#include <utility>
 
 #include "host_shim/formats/pov/evaluation/parser.h"
 
 namespace pm::host::pov {
 
 void Parser::directive(const Lexeme& token) {
+    using Of = void (*)(Parser&, const Lexeme&);
+    static constexpr std::array<std::pair<std::string_view, Of>, 26> kDirectives{{
+        {"declare", [](Parser& p, const Lexeme&) { p.declareName(false); }},
+        {"local", [](Parser& p, const Lexeme&) { p.declareName(true); }},
+        {"end", [](Parser& p, const Lexeme&) { p.endBlock(); }},
+        {"if", [](Parser& p, const Lexeme& t) { p.beginIf(t); }},
+        {"ifdef", [](Parser& p, const Lexeme& t) { p.beginIf(t); }},
+        {"ifndef", [](Parser& p, const Lexeme& t) { p.beginIf(t); }},
+        {"else", [](Parser& p, const Lexeme& t) { p.branch(t); }},
+        {"elseif", [](Parser& p, const Lexeme& t) { p.branch(t); }},
+        {"case", [](Parser& p, const Lexeme& t) { p.branch(t); }},
+        {"range", [](Parser& p, const Lexeme& t) { p.branch(t); }},
+        {"while", [](Parser& p, const Lexeme&) { p.beginWhile(); }},
+        {"for", [](Parser& p, const Lexeme&) { p.beginFor(); }},
+        {"switch", [](Parser& p, const Lexeme&) { p.beginSwitch(); }},
+        {"break", [](Parser& p, const Lexeme&) { p.breakOut(); }},
+        {"macro", [](Parser& p, const Lexeme&) { p.defineMacro(); }},
+        {"include", [](Parser& p, const Lexeme&) { p.include(); }},
+        {"version", [](Parser& p, const Lexeme&) { p.setVersion(); }},
+        {"default", [](Parser& p, const Lexeme&) { p.setDefault(); }},
+        {"undef", [](Parser& p, const Lexeme&) { p.undefine(); }},
+        {"fopen", [](Parser& p, const Lexeme&) { p.openFile(); }},
+        {"fclose", [](Parser& p, const Lexeme&) { p.closeFile(); }},
+        {"read", [](Parser& p, const Lexeme&) { p.readFromFile(); }},
+        {"write", [](Parser& p, const Lexeme&) { p.writeToFile(); }},
+        {"error", [](Parser& p, const Lexeme& t) { p.message(p.wordOf(t)); }},
+        {"warning", [](Parser& p, const Lexeme& t) { p.message(p.wordOf(t)); }},
+        {"debug", [](Parser& p, const Lexeme& t) { p.message(p.wordOf(t)); }},
+    }};
     const Deeper deeper(*this);
+    // The last stands for #render and #statistics too, which POV-Ray sends to the same place.
     const std::string& word = wordOf(token);
-    if (word == "declare" || word == "local") return declareName(word == "local");
-    if (word == "if" || word == "ifdef" || word == "ifndef") return beginIf(token);
-    if (word == "end") return endBlock();
-    if (word == "else" || word == "elseif" || word == "case" || word == "range")
-        return branch(token);
-    if (word == "while") return beginWhile();
-    if (word == "for") return beginFor();
-    if (word == "switch") return beginSwitch();
-    if (word == "break") return breakOut();
-    if (word == "macro") return defineMacro();
-    if (word == "include") return include();
-    if (word == "version") return setVersion();
-    if (word == "default") return setDefault();
-    if (word == "undef") {
-        const Lexeme name = raw();
-        if (name.kind != TokenKind::kName) expected(name, "an identifier");
-        m_symbols.remove(name.name);
-        return;
-    }
-    if (word == "fopen") return openFile();
-    if (word == "fclose") return closeFile();
-    if (word == "read") return readFromFile();
-    if (word == "write") return writeToFile();
-    message(word);
+    auto found = std::ranges::find(kDirectives, word, [](const auto& d) { return d.first; });
+    if (found == kDirectives.end()) --found;
+    found->second(*this, token);
+}
+
+void Parser::undefine() {
+    const Lexeme name = raw();
+    if (name.kind != TokenKind::kName) expected(name, "an identifier");
+    m_symbols.remove(name.name);
 }
 
 // The token of the #end of a block whose directive is at `opener`.

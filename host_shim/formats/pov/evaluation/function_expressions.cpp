@@ -16,7 +16,7 @@ namespace pm::host::pov {
 class Parser::FunctionReader {
   public:
     FunctionReader(Parser& parser, Function& function)
-        : m_parser(parser), m_variables(function.parameters) {}
+        : m_parser(parser), m_variables(function.parameters), m_depth(function.depth) {}
 
     // | binds least, then &, comparisons, sums and products.
     FunctionTerm read(std::size_t level = 0) {
@@ -146,6 +146,7 @@ class Parser::FunctionReader {
     }
 
     FunctionTerm call(const std::shared_ptr<const Function>& function) {
+        m_parser.hold(m_depth, function->depth);
         FunctionTerm term;
         term.kind = FunctionTerm::Kind::kCall;
         term.function = function;
@@ -182,6 +183,7 @@ class Parser::FunctionReader {
 
     Parser& m_parser;
     std::vector<std::string> m_variables;
+    std::uint32_t& m_depth;
 };
 
 // Behind `function`.
@@ -209,6 +211,7 @@ std::shared_ptr<const Function> Parser::functionValue() {
         expectSymbol(')');
     } else if (word == "pattern" || word == "pigment" || word == "transform") {
         function->node = statement(next());
+        hold(function->depth, function->node->depth);
     } else if (word == "spline") {
         next();
         function->spline = splineValue();

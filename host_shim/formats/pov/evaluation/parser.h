@@ -24,8 +24,8 @@ namespace pm::host::pov {
 // What a scene may take, so that a hostile one ends with a message.
 struct Limits {
     std::uint64_t bytesOfFile = 128u << 20;
-    std::uint64_t tokensOfFile = 40'000'000;
-    std::uint64_t iterations = 20'000'000;  // of all loops and calls of macros together
+    std::uint64_t tokensOfFile = 16'000'000;
+    std::uint64_t iterations = 5'000'000;  // of all loops and calls of macros together
     std::uint64_t elementsOfArrays = 20'000'000;
     std::uint64_t charactersOfString = 1u << 20;
     std::uint32_t depth = 200;  // of blocks, include files, macros and expressions in each other
@@ -137,6 +137,7 @@ class Parser {
 
     // --- directives (directives.cpp, blocks_of_directives.cpp, declarations.cpp)
     void directive(const Lexeme& token);
+    void undefine();
     void branch(const Lexeme& token);
     void takeBranch(std::size_t at);
     void open(Block::Kind kind);
@@ -154,6 +155,7 @@ class Parser {
     bool isDefined();
     void declareName(bool isLocal);
     void takeSemicolon();
+    Value own(Value value);
     void defineMacro();
     Argument macroArgument();
     void callMacro(const std::shared_ptr<const Macro>& macro, const Lexeme& name);
@@ -219,6 +221,8 @@ class Parser {
     void values(Node& node, std::shared_ptr<Node>& open);
     bool isItem(const Node& node, const Lexeme& token);
     void checkAround(const Node& node);
+    // Counts a value into the depth of what holds it.
+    void hold(std::uint32_t& depth, std::uint32_t held);
 
     Surroundings m_around;
     Names& m_names;

@@ -163,6 +163,7 @@ void Parser::arrayElements(Array& array, std::size_t dimension, std::size_t& at)
             arrayElements(array, dimension + 1, at);
         } else {
             array.elements[at] = rvalue();
+            hold(array.depth, depthOf(array.elements[at]));
         }
     }
     at = begin + stride * array.sizes[dimension];

@@ -79,12 +79,14 @@ void Parser::body(Node& node, char closing) {
             entry->place = placeOf(token);
             entry->isBlock = true;
             body(*entry, ']');
+            hold(node.depth, entry->depth);
             node.items.push_back(std::move(entry));
             open.reset();
         } else if (isSymbol(ahead, '{') && open) {
             next();
             open->isBlock = true;
             body(*open, '}');
+            hold(node.depth, open->depth);
             open.reset();
         } else if (isItem(node, ahead)) {
             item(node, next(), open);
@@ -122,6 +124,8 @@ void Parser::item(Node& node, const Lexeme& token, std::shared_ptr<Node>& open) 
             takeSymbol(',');
         }
         added->arguments.emplace_back(functionValue());
+        hold(added->depth, depthOf(added->arguments.back()));
+        hold(node.depth, added->depth);
         return;
     }
     if (isSymbol(peek(), '{')) {
@@ -129,6 +133,7 @@ void Parser::item(Node& node, const Lexeme& token, std::shared_ptr<Node>& open) 
         added->isBlock = true;
         body(*added, '}');
         checkAround(*added);
+        hold(node.depth, added->depth);
         return;
     }
     if (mostArguments(added->kind) > 0) open = added;
@@ -153,9 +158,16 @@ void Parser::values(Node& node, std::shared_ptr<Node>& open) {
     }
     if (ahead.kind == TokenKind::kName || beginsNumbers(ahead) || beginsText(ahead)) {
         to.arguments.push_back(rvalue());
+        hold(to.depth, depthOf(to.arguments.back()));
+        if (&to != &node) hold(node.depth, to.depth);
         return;
     }
     expected(next(), fmt::format("something that {} may have, or its end", node.kind));
+}
+
+void Parser::hold(std::uint32_t& depth, std::uint32_t held) {
+    if (held >= kMostDepth) fail(fmt::format("values deeper than {} in each other", kMostDepth));
+    depth = std::max(depth, held + 1);
 }
 
 void Parser::checkAround(const Node& node) {

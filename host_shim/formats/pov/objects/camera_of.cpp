@@ -101,18 +101,24 @@ PovCamera povCameraOf(const Node& node) {
     return camera;
 }
 
-CameraData cameraOf(const PovCamera& camera, const std::array<std::int32_t, 2>& size) {
-    // A field of view of 90 degrees sees what is within 1 of the axis at a distance of 1.
-    const double aspect = static_cast<double>(size[0]) / size[1];
-    const std::array<Vector, 4> columns{
-        scaled(mirrored(camera.right), 0.5 / aspect), scaled(mirrored(camera.up), 0.5),
-        scaled(mirrored(camera.direction), -1), mirrored(camera.location)};
+std::optional<CameraData> cameraOf(const PovCamera& camera,
+                                   const std::array<std::int32_t, 2>& size) {
+    const double along = length(camera.direction), across = length(camera.right),
+                 high = length(camera.up);
+    const double volume = std::abs(dot(cross(camera.up, camera.direction), camera.right));
+    constexpr double kFlat = 1e-9;
+    if (!(volume > kFlat * along * across * high)) return std::nullopt;
+    // Our camera takes the directions of its axes, square to each other or not, and no lengths.
+    const std::array<Vector, 4> columns{mirrored(camera.right), mirrored(camera.up),
+                                        scaled(mirrored(camera.direction), -1),
+                                        mirrored(camera.location)};
     CameraData data;
     data.transform.emplace();
     for (std::size_t column = 0; column < 4; ++column)
         for (std::size_t row = 0; row < 3; ++row)
             (*data.transform)[row * 4 + column] = columns[column][row];
-    data.verticalFovDegrees = 90;
+    data.verticalFovDegrees = std::atan(high / 2 / along) * 360 / std::numbers::pi;
+    data.lens.pixelAspect = across / high * size[1] / size[0];
     return data;
 }
 

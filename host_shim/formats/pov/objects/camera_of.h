@@ -3,6 +3,8 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
+#include <optional>
 
 #include "host_shim/formats/pov/values/transform_of.h"
 #include "host_shim/formats/scene_data.h"
@@ -27,7 +29,8 @@ struct PovCamera {
 // (which is horizontal) next, look_at after it, and transforms last, in their order.
 PovCamera povCameraOf(const Node& camera);
 
-// For a picture of so many pixels. kind is not looked at.
-CameraData cameraOf(const PovCamera& camera, const std::array<std::int32_t, 2>& size);
+// For a picture of so many pixels; none where the three vectors lie in a plane.
+std::optional<CameraData> cameraOf(const PovCamera& camera,
+                                   const std::array<std::int32_t, 2>& size);
 
 }  // namespace pm::host::pov

@@ -11,6 +11,7 @@
 #include "host_shim/formats/pov/objects/camera_of.h"
 #include "host_shim/formats/pov/objects/meshes_of.h"
 #include "host_shim/formats/pov/objects/objects.h"
+#include "host_shim/values/host_error.h"
 
 namespace pm::host::pov {
 namespace {
@@ -54,10 +55,18 @@ class Assembly {
     void addCamera(const Node& node) {
         for (const std::string_view kind : kOtherCameras)
             if (node.find(kind) != nullptr) leaveOut(*node.find(kind), "waits for shapes");
-        m_made.data.cameras.push_back(cameraOf(povCameraOf(node), m_size));
+        if (auto camera = cameraOf(povCameraOf(node), m_size))
+            m_made.data.cameras.push_back(std::move(*camera));
+        else
+            leaveOut(node, "has direction, right and up in one plane");
     }
 
     void object(const Node& node, const Around& around) {
+        constexpr std::uint64_t kMostObjects = 10'000'000;
+        if (++m_placed > kMostObjects)
+            throw HostError(ExitCode::kBadInput,
+                            fmt::format("{}: more than {} objects in each other", node.place.text(),
+                                        kMostObjects));
         Around inside = around;
         inside.place = after(around.place, transformOfItems(node));
         for (const auto& item : node.items)
@@ -162,6 +171,7 @@ class Assembly {
     const Evaluated& m_scene;
     std::array<std::int32_t, 2> m_size;
     SceneOf m_made;
+    std::uint64_t m_placed = 0;
     std::map<std::array<float, 3>, std::uint32_t> m_materials;
 };
 

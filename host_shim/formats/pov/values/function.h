@@ -44,7 +44,8 @@ struct Function {
     int internal{-1};                  // functions.inc: internal(N)
     std::shared_ptr<const Node> node;  // pattern, pigment or transform
     std::shared_ptr<const Spline> spline;
-    std::string name;  // that it was declared by, for messages
+    std::string name;        // that it was declared by, for messages
+    std::uint32_t depth{1};  // more than that of what it calls or asks
 
     bool isExpression() const { return internal < 0 && !node && !spline; }
 };

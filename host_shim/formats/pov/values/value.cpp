@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <ranges>
 
 #include "host_shim/formats/pov/values/function.h"
 #include "host_shim/formats/pov/values/spline.h"
@@ -17,6 +16,8 @@ template <typename... Cases>
 struct Overloaded : Cases... {
     using Cases::operator()...;
 };
+template <typename... Cases>
+Overloaded(Cases...) -> Overloaded<Cases...>;
 
 std::string withArticle(std::string_view kind) {
     const bool isVowel = !kind.empty() && std::string_view("aeiou").find(kind[0]) != kind.npos;
@@ -60,10 +61,22 @@ std::string kindOf(const Value& value) {
         value);
 }
 
+std::uint32_t depthOf(const Value& value) {
+    return std::visit(
+        Overloaded{
+            [](const std::shared_ptr<Array>& array) { return array->depth; },
+            [](const std::shared_ptr<const Function>& function) { return function->depth; },
+            [](const std::shared_ptr<const Node>& node) { return node->depth; },
+            [](const auto&) { return 0u; },
+        },
+        value);
+}
+
 const Node* Node::find(std::string_view itemKind) const {
-    for (const auto& item : std::views::reverse(items))
-        if (item->kind == itemKind) return item.get();
-    return nullptr;
+    const auto found = std::find_if(items.rbegin(), items.rend(), [itemKind](const auto& item) {
+        return item->kind == itemKind;
+    });
+    return found == items.rend() ? nullptr : found->get();
 }
 
 const Numbers* Node::numbers(std::size_t i) const {

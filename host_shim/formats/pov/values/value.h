@@ -30,8 +30,13 @@ using Value = std::variant<std::monostate, Numbers, std::string, std::shared_ptr
 // "a float", "a vector of 3", "an array", "a sphere" ... for messages.
 std::string kindOf(const Value& value);
 
+// How deep a value holds others: 0 of numbers, texts and files.
+std::uint32_t depthOf(const Value& value);
+inline constexpr std::uint32_t kMostDepth = 1000;
+
 // Of one or more dimensions; elements row by row.
 struct Array {
+    std::uint32_t depth{1};  // more than that of each element
     std::vector<std::uint32_t> sizes;
     std::vector<Value> elements;
 };
@@ -43,7 +48,8 @@ struct Array {
 struct Node {
     std::string_view kind;  // a reserved word, "[" for an entry of a map
     Place place;
-    bool isBlock{};  // with { } or [ ]
+    bool isBlock{};          // with { } or [ ]
+    std::uint32_t depth{1};  // more than that of each argument and item
     std::vector<Value> arguments;
     std::vector<std::shared_ptr<const Node>> items;
 

@@ -1,0 +1,9 @@
+#version 3.7;
+global_settings { assumed_gamma 1 }
+#macro F(A) #debug concat(str(A, 0, 9), "\n") #end
+#macro M(V) #debug concat(vstr(3, V, " ", 0, 9), "\n") #end
+#macro S(T) #debug concat(T, "\n") #end
+#debug "BEGIN\n"
+F(mod(-7, 3)) F(mod(7, -3)) F(mod(7.5, 2)) F(div(-7, 3)) F(div(7, 2))
+#debug "END\n"
+sphere { 0, 1 }

@@ -1,0 +1,9 @@
+#version 3.7;
+global_settings { assumed_gamma 1 }
+#macro F(A) #debug concat(str(A, 0, 9), "\n") #end
+#macro M(V) #debug concat(vstr(3, V, " ", 0, 9), "\n") #end
+#macro S(T) #debug concat(T, "\n") #end
+#debug "BEGIN\n"
+F(strlen("hello")) F(asc("B")) F(val("12.5e1")) F(val("-3")) F(strcmp("a", "a"))
+#debug "END\n"
+sphere { 0, 1 }
