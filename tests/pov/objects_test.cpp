@@ -66,6 +66,9 @@ TEST(PovObjects, IniSaysTheClock) {
 
 TEST(PovObjects, CamerasWithoutVolumeAreLeftOut) {
     EXPECT_EQ(made("camera { direction x right x } sphere { 0, 1 }").data.cameras.size(), 0u);
+    const SceneOf wide = made("camera { fisheye angle 360 look_at z } sphere { 0, 1 }");
+    EXPECT_NEAR(wide.data.cameras.at(0).verticalFovDegrees.value(),
+                2 * std::atan(0.5) * 180 / std::numbers::pi, 1e-12);
 }
 
 TEST(PovObjects, CamerasAngleIsHorizontal) {

@@ -93,7 +93,10 @@ PovCamera povCameraOf(const Node& node) {
     const Vector sky = vectorOf(node.find("sky")).value_or(Vector{0, 1, 0});
     if (const Node* const angle = node.find("angle"); angle && angle->numbers(0)) {
         const double half = angle->numbers(0)->at[0] * std::numbers::pi / 360;
-        camera.direction = ofLength(camera.direction, length(camera.right) / 2 / std::tan(half));
+        // Wider ones are of other projections.
+        if (half > 0 && half < std::numbers::pi / 2)
+            camera.direction =
+                ofLength(camera.direction, length(camera.right) / 2 / std::tan(half));
     }
     if (const auto v = vectorOf(node.find("look_at"))) lookAt(camera, *v, sky);
     for (const auto& item : node.items)
