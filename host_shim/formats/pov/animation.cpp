@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include "host_shim/formats/text_lines.h"
+
 namespace pm::host {
 namespace {
 
@@ -14,13 +16,6 @@ std::string small(std::string_view text) {
         if (c != ' ' && c != '\t' && c != '_')
             result += static_cast<char>(c >= 'A' && c <= 'Z' ? c | 0x20 : c);
     return result;
-}
-
-std::string_view trimmedOf(std::string_view text) {
-    constexpr std::string_view kBlanks = " \t\r";
-    const auto first = text.find_first_not_of(kBlanks);
-    if (first == text.npos) return {};
-    return text.substr(first, text.find_last_not_of(kBlanks) - first + 1);
 }
 
 std::optional<double> numberOf(std::string_view text) {
@@ -39,8 +34,8 @@ void put(PovIni& ini, const std::string& key, std::string_view value) {
     if (key == "declare") {
         const auto equals = value.find('=');
         if (equals != value.npos)
-            ini.declared[std::string(trimmedOf(value.substr(0, equals)))] =
-                trimmedOf(value.substr(equals + 1));
+            ini.declared[std::string(trimmed(value.substr(0, equals)))] =
+                trimmed(value.substr(equals + 1));
         return;
     }
     if (key == "cyclicanimation") {
@@ -62,7 +57,7 @@ void putSwitches(PovIni& ini, std::string_view line) {
     while (!line.empty()) {
         const std::size_t end = std::min(line.find_first_of(" \t"), line.size());
         const std::string word = small(line.substr(0, end));
-        line = trimmedOf(line.substr(end));
+        line = trimmed(line.substr(end));
         if (!word.starts_with('+')) continue;
         const auto digits = word.find_first_of("0123456789-.", 1);
         if (digits != word.npos) put(ini, word.substr(1, digits - 1), word.substr(digits));
@@ -74,15 +69,15 @@ void putSwitches(PovIni& ini, std::string_view line) {
 PovIni readPovIni(std::string_view text) {
     PovIni ini;
     while (!text.empty()) {
-        const std::size_t end = std::min(text.find('\n'), text.size());
+        const std::size_t end = std::min(text.find_first_of("\r\n"), text.size());
         std::string_view line = text.substr(0, end);
         text.remove_prefix(std::min(end + 1, text.size()));
-        line = trimmedOf(line.substr(0, std::min(line.find(';'), line.size())));
+        line = trimmed(line.substr(0, std::min(line.find(';'), line.size())));
         const std::size_t equals = line.find('=');
         if (equals == line.npos)
             putSwitches(ini, line);
         else
-            put(ini, small(line.substr(0, equals)), trimmedOf(line.substr(equals + 1)));
+            put(ini, small(line.substr(0, equals)), trimmed(line.substr(equals + 1)));
     }
     return ini;
 }

@@ -4,7 +4,6 @@
 
 #include <fmt/format.h>
 
-#include <charconv>
 #include <filesystem>
 #include <system_error>
 
@@ -12,6 +11,7 @@
 #include "host_shim/formats/pov/evaluation/parser.h"
 #include "host_shim/formats/pov/objects/scene_of.h"
 #include "host_shim/formats/source_file.h"
+#include "host_shim/formats/text_lines.h"
 #include "host_shim/values/host_error.h"
 
 namespace pm::host {
@@ -46,9 +46,7 @@ PovIni iniBeside(const ReadRequest& request) {
 // A number, else a text.
 pov::Value declaredValue(const std::string& text) {
     double value = 0;
-    const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (result.ec == std::errc{} && result.ptr == text.data() + text.size())
-        return pov::Numbers::of(value);
+    if (parseNumber(text, value)) return pov::Numbers::of(value);
     const bool isQuoted = text.size() >= 2 && text.front() == '"' && text.back() == '"';
     return isQuoted ? text.substr(1, text.size() - 2) : text;
 }

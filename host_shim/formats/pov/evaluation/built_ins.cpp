@@ -5,6 +5,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "host_shim/formats/pov/evaluation/parser.h"
 #include "host_shim/formats/pov/values/transform_of.h"
@@ -33,8 +34,7 @@ Numbers aboutAxis(const Numbers& v, const Numbers& axis, double degrees) {
     const double length = std::sqrt(dot(axis, axis));
     if (length == 0) return v;
     const Numbers unit = combined(axis, '/', Numbers::of(length));
-    const Numbers turn = Numbers::of(degrees);
-    const double angle = turn.at[0] * std::acos(-1.0) / 180;
+    const double angle = degrees * std::numbers::pi / 180;
     const Numbers along = combined(unit, '*', Numbers::of(dot(unit, v) * (1 - std::cos(angle))));
     const Numbers turned = combined(combined(v, '*', Numbers::of(std::cos(angle))), '+',
                                     combined(cross(unit, v), '*', Numbers::of(std::sin(angle))));
@@ -119,8 +119,7 @@ Numbers Parser::textAsNumber(const std::string& word) {
     if (word == "dimensions" || word == "dimension_size") {
         const Lexeme name = next();
         Value* const value = name.kind == TokenKind::kName ? resolved(name) : nullptr;
-        const auto* const array =
-            value == nullptr ? nullptr : std::get_if<std::shared_ptr<Array>>(value);
+        const auto* const array = heldIn<std::shared_ptr<Array>>(value);
         if (array == nullptr) expected(name, "an array");
         const auto sizes = (*array)->sizes;
         if (word == "dimensions") return Numbers::of(static_cast<double>(sizes.size()));
@@ -133,7 +132,7 @@ Numbers Parser::textAsNumber(const std::string& word) {
     // trace, inside, min_extent, max_extent
     const Lexeme name = next();
     const Value* const value = name.kind == TokenKind::kName ? resolved(name) : nullptr;
-    const auto* const node = value == nullptr ? nullptr : std::get_if<NodePtr>(value);
+    const auto* const node = heldIn<NodePtr>(value);
     if (node == nullptr) expected(name, "an object");
     fail(fmt::format("{} of {}: waits for shapes", word, kindOf(*value)));
 }
@@ -157,7 +156,6 @@ Numbers Parser::randomNumber(bool isSeed) {
 Numbers Parser::callFunction(const Function& function) {
     expectSymbol('(');
     std::vector<double> arguments;
-    const bool isVector = !function.isExpression() && !function.spline;
     if (!takeSymbol(')')) {
         do {
             const Numbers value = expression();
@@ -167,12 +165,9 @@ Numbers Parser::callFunction(const Function& function) {
         } while (takeSymbol(','));
         expectSymbol(')');
     }
-    const std::size_t wanted = function.isExpression() ? function.parameters.size()
-                               : isVector              ? 3
-                                                       : 1;
-    if (function.internal < 0 && arguments.size() != wanted)
+    if (!function.takes(arguments.size()))
         fail(fmt::format("function {} of {} arguments; {} are wanted", function.name,
-                         arguments.size(), wanted));
+                         arguments.size(), function.arity()));
     try {
         return evaluated(function, arguments);
     } catch (const HostError& error) {

@@ -36,7 +36,7 @@ void Parser::declareName(bool isLocal) {
     // A macro that makes the value may not have ended yet when it is made.
     const std::uint32_t depth = m_symbols.depth();
     Value* const known = m_symbols.find(name.name);
-    auto* const array = known == nullptr ? nullptr : std::get_if<std::shared_ptr<Array>>(known);
+    auto* const array = heldIn<std::shared_ptr<Array>>(known);
     if (array != nullptr && isSymbol(peek(), '[')) {
         std::shared_ptr<Array> held = *array;
         auto at = static_cast<std::size_t>(element(*held) - held->elements.data());
@@ -82,8 +82,7 @@ void Parser::defineMacro() {
     }
     macro->begin = frame().at;
     macro->end = endOf(opener);
-    for (const auto& [file, source] : m_sources)
-        if (source.get() == frame().source.get()) macro->source = source;
+    macro->source = frame().source;
     skipTo(macro->end + 1);
     m_symbols.declare(name.name, std::shared_ptr<const Macro>(std::move(macro)));
 }
@@ -105,8 +104,7 @@ Parser::Argument Parser::macroArgument() {
 void Parser::callMacro(const std::shared_ptr<const Macro>& called, const Lexeme& name) {
     const Deeper deeper(*this);
     const std::shared_ptr<const Macro> macro = called;
-    if (++m_iterations > m_around.limits.iterations)
-        fail(fmt::format("more than {} iterations and calls", m_around.limits.iterations));
+    countIteration();
     const Place place = placeOf(name);
     expectSymbol('(');
     std::vector<Argument> arguments;

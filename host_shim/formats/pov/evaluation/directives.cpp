@@ -89,7 +89,7 @@ bool Parser::isDefined() {
     Value* value = nullptr;
     if (name.kind == TokenKind::kName) {
         value = m_symbols.find(name.name);
-        auto* const array = value == nullptr ? nullptr : std::get_if<std::shared_ptr<Array>>(value);
+        auto* const array = heldIn<std::shared_ptr<Array>>(value);
         if (array != nullptr && isSymbol(peek(), '[')) value = element(**array);
     } else if (name.kind != TokenKind::kWord) {
         expected(name, "an identifier");
@@ -211,8 +211,7 @@ void Parser::endBlock() {
     Block& block = m_blocks.back();
     const bool loops = block.kind == Block::Kind::kWhile || block.kind == Block::Kind::kFor;
     if (!loops || !block.isTaken) return m_blocks.pop_back();
-    if (++m_iterations > m_around.limits.iterations)
-        fail(fmt::format("more than {} iterations and calls", m_around.limits.iterations));
+    countIteration();
     const std::size_t opener = block.opener;
     if (block.kind == Block::Kind::kWhile) {
         m_blocks.pop_back();
@@ -220,7 +219,7 @@ void Parser::endBlock() {
         return beginWhile();
     }
     const Value* const value = m_symbols.find(block.variable);
-    const auto* const counter = value == nullptr ? nullptr : std::get_if<Numbers>(value);
+    const auto* const counter = heldIn<Numbers>(value);
     if (counter == nullptr)
         fail(
             fmt::format("'{}', which #for counts with, is no float", m_names.text(block.variable)));

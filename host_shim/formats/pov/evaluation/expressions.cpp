@@ -31,10 +31,6 @@ constexpr std::array<std::pair<std::string_view, Numbers>, 13> kConstants{{
     {"v", {{0, 1}, 2, false}},
 }};
 
-double gray(const Numbers& colour) {
-    return 0.297 * colour.at[0] + 0.589 * colour.at[1] + 0.114 * colour.at[2];
-}
-
 }  // namespace
 
 double Parser::number() {
@@ -43,23 +39,22 @@ double Parser::number() {
 
 Numbers Parser::expression(bool relations) {
     const Deeper deeper(*this);
-    return relations ? conditional(true) : sum(nullptr);
+    return relations ? conditional() : sum(nullptr);
 }
 
 // With its first operand already read.
-Numbers Parser::expressionFrom(const Numbers& first, bool relations) {
-    static_cast<void>(relations);
+Numbers Parser::expressionFrom(const Numbers& first) {
     const Deeper deeper(*this);
     return sum(&first);
 }
 
-Numbers Parser::conditional(bool relations) {
-    const Numbers value = relations ? logical() : sum(nullptr);
+Numbers Parser::conditional() {
+    const Numbers value = logical();
     if (!isSymbol(peekOperator(), '?')) return value;
     next();
-    const Numbers first = conditional(true);
+    const Numbers first = conditional();
     expectSymbol(':');
-    const Numbers second = conditional(true);
+    const Numbers second = conditional();
     return std::abs(value.at[0]) > kEpsilon ? first : second;
 }
 
@@ -165,10 +160,7 @@ Numbers Parser::operand(const Lexeme& token) {
                 if (values.size() < 2 || values.size() > 5)
                     fail(fmt::format("a vector of {} components; 2 to 5 are allowed",
                                      values.size()));
-                Numbers vector;
-                vector.size = static_cast<std::uint8_t>(values.size());
-                std::ranges::copy(values, vector.at.begin());
-                return vector;
+                return Numbers::vectorOf(values);
             }
             break;
         default:

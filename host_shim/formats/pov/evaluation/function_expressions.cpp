@@ -157,13 +157,9 @@ class Parser::FunctionReader {
             while (m_parser.takeSymbol(','));
             m_parser.expectSymbol(')');
         }
-        const std::size_t wanted = function->isExpression() ? function->parameters.size()
-                                   : function->spline       ? 1
-                                   : function->node         ? 3
-                                                            : term.terms.size();
-        if (term.terms.size() != wanted)
+        if (!function->takes(term.terms.size()))
             m_parser.fail(fmt::format("function {} of {} arguments; {} are wanted", function->name,
-                                      term.terms.size(), wanted));
+                                      term.terms.size(), function->arity()));
         return term;
     }
 

@@ -54,7 +54,6 @@ struct Surroundings {
 struct Evaluated {
     std::vector<std::shared_ptr<const Node>> statements;  // in their order
     std::shared_ptr<const Node> defaultTexture;           // by #default; may be nullptr
-    double version{};
 };
 
 // Reads the language: directives as they come, and statements as values. For one scene; not for
@@ -130,6 +129,7 @@ class Parser {
     const std::string& wordOf(const Lexeme& token) const { return m_names.text(token.name); }
     void warn(const std::string& text) { m_around.warn(m_place, text); }
     void count();
+    void countIteration();
     Frame& frame() { return m_frames.back(); }
     void enterSource(std::shared_ptr<const Source> source, std::size_t at, std::string what);
     void leaveFrame();
@@ -180,7 +180,7 @@ class Parser {
     bool beginsNumbers(const Lexeme& token);
     bool beginsText(const Lexeme& token);
     Numbers expression(bool relations = false);
-    Numbers expressionFrom(const Numbers& first, bool relations = false);
+    Numbers expressionFrom(const Numbers& first);
     Numbers sum(const Numbers* first);
     Numbers product(const Numbers* first);
     Numbers factor();
@@ -188,7 +188,7 @@ class Parser {
     Numbers operand(const Lexeme& token);
     Numbers operandOfWord(const Lexeme& token);
     Numbers operandOfName(const Lexeme& token);
-    Numbers conditional(bool relations);
+    Numbers conditional();
     Numbers logical();
     Numbers relation();
     Numbers colour(const Lexeme& token);
@@ -220,7 +220,6 @@ class Parser {
     void item(Node& node, const Lexeme& token, std::shared_ptr<Node>& open);
     void values(Node& node, std::shared_ptr<Node>& open);
     bool isItem(const Node& node, const Lexeme& token);
-    void checkAround(const Node& node);
     // Counts a value into the depth of what holds it.
     void hold(std::uint32_t& depth, std::uint32_t held);
 
@@ -238,7 +237,6 @@ class Parser {
     std::uint64_t m_tokens{}, m_iterations{}, m_elements{};
     std::uint32_t m_depth{};
     double m_version;
-    double m_gamma{};  // assumed_gamma; 0: none yet
     NodePtr m_defaultTexture;
     std::chrono::steady_clock::time_point m_begin;
     bool m_warnedOfDivision{};
@@ -256,7 +254,8 @@ class Parser::Deeper {
   public:
     explicit Deeper(Parser& parser) : m_parser(parser) {
         if (++parser.m_depth > parser.m_around.limits.depth)
-            parser.fail("deeper than 200 blocks, macros or parentheses in each other");
+            parser.fail("deeper than " + std::to_string(parser.m_around.limits.depth) +
+                        " blocks, macros or parentheses in each other");
     }
     ~Deeper() { --m_parser.m_depth; }
     Deeper(const Deeper&) = delete;

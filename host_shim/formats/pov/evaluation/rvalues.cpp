@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "host_shim/formats/pov/evaluation/parser.h"
@@ -36,8 +35,7 @@ bool Parser::beginsText(const Lexeme& token) {
     if (token.kind != TokenKind::kName) return false;
     const Value* value = m_symbols.find(token.name);
     // Of an array the elements are alike; without [ ] it is meant as a whole.
-    if (const auto* const array =
-            value == nullptr ? nullptr : std::get_if<std::shared_ptr<Array>>(value)) {
+    if (const auto* const array = heldIn<std::shared_ptr<Array>>(value)) {
         if (!isBehind('[')) return false;
         const auto found =
             std::ranges::find_if((*array)->elements, [](const Value& v) { return v.index() != 0; });
@@ -109,9 +107,7 @@ std::optional<Value> Parser::rvalueOfWord(const Lexeme& token) {
     if (word == "spline") return splineValue();
     if (word == "function") return functionValue();
     if (m_names.use(token.name) != WordUse::kStatement) return std::nullopt;
-    NodePtr node = statement(token);
-    // An object statement around a declared one adds nothing if nothing is in it.
-    return node;
+    return statement(token);
 }
 
 std::shared_ptr<Array> Parser::arrayValue() {
@@ -182,8 +178,7 @@ std::shared_ptr<const Spline> Parser::splineValue() {
         }
         const Value* const value =
             ahead.kind == TokenKind::kName ? m_symbols.find(ahead.name) : nullptr;
-        const auto* const other =
-            value == nullptr ? nullptr : std::get_if<std::shared_ptr<const Spline>>(value);
+        const auto* const other = heldIn<std::shared_ptr<const Spline>>(value);
         if (other != nullptr) {
             *spline = **other;
             next();

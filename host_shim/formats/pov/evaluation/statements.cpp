@@ -57,7 +57,6 @@ Parser::NodePtr Parser::statement(const Lexeme& word) {
     if (!isSymbol(brace, '{')) expected(brace, fmt::format("'{{' behind {}", node->kind));
     node->isBlock = true;
     body(*node, '}');
-    checkAround(*node);
     return node;
 }
 
@@ -132,7 +131,6 @@ void Parser::item(Node& node, const Lexeme& token, std::shared_ptr<Node>& open) 
         next();
         added->isBlock = true;
         body(*added, '}');
-        checkAround(*added);
         hold(node.depth, added->depth);
         return;
     }
@@ -150,10 +148,7 @@ void Parser::values(Node& node, std::shared_ptr<Node>& open) {
             for (const double value : list) to.arguments.emplace_back(Numbers::of(value));
             return;
         }
-        Numbers first;
-        first.size = static_cast<std::uint8_t>(list.size());
-        std::ranges::copy(list, first.at.begin());
-        to.arguments.emplace_back(expressionFrom(first));
+        to.arguments.emplace_back(expressionFrom(Numbers::vectorOf(list)));
         return;
     }
     if (ahead.kind == TokenKind::kName || beginsNumbers(ahead) || beginsText(ahead)) {
@@ -168,12 +163,6 @@ void Parser::values(Node& node, std::shared_ptr<Node>& open) {
 void Parser::hold(std::uint32_t& depth, std::uint32_t held) {
     if (held >= kMostDepth) fail(fmt::format("values deeper than {} in each other", kMostDepth));
     depth = std::max(depth, held + 1);
-}
-
-void Parser::checkAround(const Node& node) {
-    if (node.kind != "global_settings") return;
-    if (const Node* const gamma = node.find("assumed_gamma"); gamma && gamma->numbers(0))
-        m_gamma = gamma->numbers(0)->at[0];
 }
 
 }  // namespace pm::host::pov

@@ -120,7 +120,7 @@ void Parser::openFile() {
 std::shared_ptr<TextFile> Parser::fileHandle(NameId& name) {
     const Lexeme token = raw();
     Value* const value = token.kind == TokenKind::kName ? m_symbols.find(token.name) : nullptr;
-    auto* const file = value == nullptr ? nullptr : std::get_if<std::shared_ptr<TextFile>>(value);
+    auto* const file = heldIn<std::shared_ptr<TextFile>>(value);
     if (file == nullptr) expected(token, "a file that #fopen has opened");
     name = token.name;
     return *file;
@@ -147,7 +147,7 @@ void Parser::readFromFile() {
             fail(fmt::format("{}: neither a float, a vector nor a string",
                              file->source().place(file->source().tokens[file->at]).text()));
         Value* const known = m_symbols.find(name.name);
-        auto* const array = known == nullptr ? nullptr : std::get_if<std::shared_ptr<Array>>(known);
+        auto* const array = heldIn<std::shared_ptr<Array>>(known);
         if (array != nullptr && isSymbol(peek(), '[')) {
             const auto held = *array;
             Value* const to = element(*held);

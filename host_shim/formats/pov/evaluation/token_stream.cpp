@@ -39,7 +39,6 @@ Evaluated Parser::run(std::string_view text, const std::string& file) {
         scene.statements.push_back(statement(token));
     }
     scene.defaultTexture = m_defaultTexture;
-    scene.version = m_version;
     return scene;
 }
 
@@ -107,6 +106,11 @@ void Parser::count() {
         fail(fmt::format("reading the scene takes more than {:g} s", m_around.limits.seconds));
 }
 
+void Parser::countIteration() {
+    if (++m_iterations > m_around.limits.iterations)
+        fail(fmt::format("more than {} iterations and calls", m_around.limits.iterations));
+}
+
 Parser::Lexeme Parser::raw() {
     if (m_peeked) return *std::exchange(m_peeked, std::nullopt);
     count();
@@ -140,8 +144,7 @@ Parser::Lexeme Parser::next() {
             if (endOfText(token)) return token;
         } else if (token.kind == TokenKind::kName) {
             const Value* const value = m_symbols.find(token.name);
-            const auto* const macro =
-                value == nullptr ? nullptr : std::get_if<std::shared_ptr<const Macro>>(value);
+            const auto* const macro = heldIn<std::shared_ptr<const Macro>>(value);
             if (macro == nullptr) return token;
             const bool wasForOperator = std::exchange(m_isForOperator, false);
             callMacro(*macro, token);

@@ -101,10 +101,4 @@ NameId Names::id(std::string_view name) {
     return id;
 }
 
-std::optional<NameId> Names::known(std::string_view name) const {
-    const auto found = m_ids.find(name);
-    if (found == m_ids.end()) return std::nullopt;
-    return found->second;
-}
-
 }  // namespace pm::host::pov

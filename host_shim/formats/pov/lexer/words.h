@@ -4,7 +4,6 @@
 
 #include <cstdint>
 #include <deque>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -35,14 +34,12 @@ class Names {
     Names();
 
     NameId id(std::string_view name);  // also of new ones
-    std::optional<NameId> known(std::string_view name) const;
     // Valid as long as this.
     const std::string& text(NameId id) const { return m_texts[id]; }
     bool isReserved(NameId id) const { return id < m_reserved; }
     // Of reserved words. The text lives as long as the program.
     std::string_view reserved(NameId id) const { return m_reservedTexts[id]; }
     WordUse use(NameId id) const { return m_uses[id]; }
-    std::size_t count() const { return m_texts.size(); }
 
   private:
     struct Hash {

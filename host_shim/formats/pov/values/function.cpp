@@ -190,9 +190,7 @@ class Evaluation {
     }
 
     static double component(const Numbers& value, const FunctionTerm& term) {
-        if (term.text == "gray")
-            return 0.297 * value.at[0] + 0.589 * value.at[1] + 0.114 * value.at[2];
-        return value.at[term.index];
+        return term.text == "gray" ? gray(value) : value.at[term.index];
     }
 
     int m_depth = 0;

@@ -48,6 +48,9 @@ struct Function {
     std::uint32_t depth{1};  // more than that of what it calls or asks
 
     bool isExpression() const { return internal < 0 && !node && !spline; }
+    // How many arguments it takes: of one by number any.
+    bool takes(std::size_t arguments) const { return internal >= 0 || arguments == arity(); }
+    std::size_t arity() const { return node ? 3 : spline ? 1 : parameters.size(); }
 };
 
 std::string printed(const Function& function);

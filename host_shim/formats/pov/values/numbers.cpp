@@ -69,6 +69,17 @@ std::size_t componentOf(std::string_view word) {
     return found == kComponents.end() ? 6 : found->second;
 }
 
+double gray(const Numbers& colour) {
+    return 0.297 * colour.at[0] + 0.589 * colour.at[1] + 0.114 * colour.at[2];
+}
+
+Numbers Numbers::vectorOf(std::span<const double> components) {
+    Numbers vector;
+    vector.size = static_cast<std::uint8_t>(components.size());
+    std::ranges::copy(components, vector.at.begin());
+    return vector;
+}
+
 Numbers Numbers::promoted(std::size_t components) const {
     Numbers to = *this;
     if (size == 1) to.at.fill(at[0]);

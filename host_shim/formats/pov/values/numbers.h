@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string_view>
 
 namespace pm::host::pov {
@@ -17,6 +18,8 @@ struct Numbers {
 
     static Numbers of(double value) { return {{value}, 1, false}; }
     static Numbers vector(double x, double y, double z) { return {{x, y, z}, 3, false}; }
+    // Of 2 to 5 components.
+    static Numbers vectorOf(std::span<const double> components);
     static Numbers colour(double red, double green, double blue, double filter, double transmit) {
         return {{red, green, blue, filter, transmit}, 5, true};
     }
@@ -29,6 +32,8 @@ struct Numbers {
 
 // Which of .x, .red and the like; 5: the gray of a colour; 6: none of them.
 std::size_t componentOf(std::string_view word);
+
+double gray(const Numbers& colour);
 
 // What is nearer to 0 is false, and what is nearer to each other is equal.
 inline constexpr double kEpsilon = 1e-10;

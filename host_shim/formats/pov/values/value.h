@@ -27,6 +27,12 @@ using Value = std::variant<std::monostate, Numbers, std::string, std::shared_ptr
                            std::shared_ptr<const Node>, std::shared_ptr<const Macro>,
                            std::shared_ptr<TextFile>>;
 
+// The T that a value is; nullptr where there is no value, or one of another type.
+template <typename T, typename Of>
+auto* heldIn(Of* value) {
+    return value == nullptr ? nullptr : std::get_if<T>(value);
+}
+
 // "a float", "a vector of 3", "an array", "a sphere" ... for messages.
 std::string kindOf(const Value& value);
 
